@@ -15,8 +15,8 @@ configure()
 
 def on_server_loaded(_server_context: Any) -> None:
     """Import what pages need, and start the process from which workers are forked."""
-    if ROOT not in sys.path:
-        sys.path.insert(0, ROOT)
+    # The path is as it was before this file was run.
+    sys.path.insert(0, ROOT)
     from app.worker.process import Worker
 
     Worker(lambda worker, report: None).end()

@@ -62,12 +62,13 @@ class Pulse(DataModel):
 class Display:
     """Paints the views in sight: the next picture follows once the browser has painted the last.
 
-    `also` is called with each picture, inside its hold: for what is not a view, as the status line.
+    `views` are those in sight; `also` is called with each picture, inside its hold: for what is
+    not a view, as the status line.
     """
 
     def __init__(self, state: PageState, document: Any, also: Callable[[], None]) -> None:
         self._state, self._document, self._also = state, document, also
-        self._views: Sequence[View] = ()
+        self.views: Sequence[View] = ()
         self._is_due = False
         self._sent_at = self._took = 0.0
         self.pulse = Pulse(name="pulse")
@@ -75,14 +76,9 @@ class Display:
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
         state.param.watch(lambda *events: self._update(), ["frame", "selection", "ghost"])
 
-    @property
-    def views(self) -> Sequence[View]:
-        """The views in sight."""
-        return self._views
-
-    @views.setter
-    def views(self, views: Sequence[View]) -> None:
-        self._views = views
+    def look_at(self, views: Sequence[View]) -> None:
+        """Have other views be in sight."""
+        self.views = views
         self._state.needs = frozenset(need for view in views for need in view.needs)
         self._update()
 
@@ -112,7 +108,7 @@ class Display:
             return
         began = time.monotonic()
         with pn.io.hold():
-            for view in self._views:
+            for view in self.views:
                 try:
                     view.update(frame, state.selection, state.ghost)
                 except Exception:

@@ -18,9 +18,9 @@ import panel_material_ui as pmui
 import param
 import segno
 
-from app.addresses import address_for_others, how_to_open
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
+from app.server import address_for_others, how_to_open
 from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
 
@@ -33,25 +33,22 @@ RESUMED = "settings", "selection", "lesson", "plots"
 """What the next leader has of the last one's state."""
 SHARED = *RESUMED, "frame", "newest", "ghost", "iteration", "running"
 """What followers have of the leader's state."""
-APART = 10_000
-"""Runs of a page that has left a class are counted so far from the leader's."""
 
 
 class Classroom:
     """What the pages of a class have in common.
 
     Whoever has `key` may lead: the page that began the class, after it was loaded again. `leader`
-    is the last one while there is none; `members` follow.
+    is the last one while there is none; `members` follow. `opened` is the lesson whose counts all
+    may see.
     """
 
-    def __init__(self, code: str, leader: Member) -> None:
+    def __init__(self, code: str, leader: ClassMember) -> None:
         self.code, self.key = code, secrets.token_hex(8)
         self.leader = leader
-        self.members: list[Member] = []
+        self.members: list[ClassMember] = []
         self._gone_at: float | None = None
-        self._lesson = ""
-        self.votes: dict[Member, int] = {}
-        self.is_open = False
+        self.opened = ""
 
     @property
     def is_alone(self) -> bool:
@@ -63,18 +60,17 @@ class Classroom:
         """Whether it was ended, or its leader has not come back."""
         return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
 
-    def lead(self, member: Member) -> None:
+    def lead(self, member: ClassMember) -> None:
         """Have a page lead it, in place of the one that did."""
         self.leader, self._gone_at = member, None
         self.notify()
 
-    def part(self, member: Member) -> None:
+    def part(self, member: ClassMember) -> None:
         """Wait for a leader whose page is closed, or let a follower go."""
         if member is self.leader and not self.is_alone:
             self._gone_at = time.monotonic()
         elif member in self.members:
             self.members.remove(member)
-            self.votes.pop(member, None)
         self.notify()
 
     def end(self) -> None:
@@ -82,26 +78,27 @@ class Classroom:
         self._gone_at = -math.inf
         self.notify()
 
-    def poll_for(self, member: Member) -> Poll | None:
+    def poll_for(self, member: ClassMember) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
-        state = self.leader.state
-        if state.lesson not in LESSONS or self.is_over:
+        leader = self.leader.state
+        if leader.lesson not in LESSONS or self.is_over:
             return None
-        votes = list(self.votes.values())
-        choices = range(len(LESSONS[state.lesson].choices))
+        states = (follower.state for follower in self.members)
+        votes = [state.prediction for state in states if state.lesson == leader.lesson]
+        choices = range(len(LESSONS[leader.lesson].choices))
+        counts = [votes.count(choice) for choice in choices]
         return Poll(
             leads=member.leads,
-            predicted=len(votes),
+            predicted=sum(counts),
             present=len(self.members),
-            counts=tuple(votes.count(choice) for choice in choices) if self.is_open else (),
-            is_answered=state.prediction is not None,
+            counts=tuple(counts) if self.opened == leader.lesson else (),
+            is_answered=leader.prediction is not None,
         )
 
     def notify(self) -> None:
         """Have all pages take what is new; another lesson is predicted anew."""
-        lesson = self.leader.state.lesson
-        if lesson != self._lesson:
-            self._lesson, self.votes, self.is_open = lesson, {}, False
+        if self.opened != self.leader.state.lesson:
+            self.opened = ""
         for member in self.members + [self.leader] * (not self.is_alone):
             member.notify()
 
@@ -116,7 +113,7 @@ def find(code: str) -> Classroom | None:
     return None if room is None or room.is_over else room
 
 
-def begin_class(leader: Member) -> Classroom:
+def begin_class(leader: ClassMember) -> Classroom:
     """A new class; those that are over are forgotten."""
     for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
         del CLASSROOMS[code]
@@ -127,7 +124,7 @@ def begin_class(leader: Member) -> Classroom:
     return CLASSROOMS[code]
 
 
-class Member(param.Parameterized):
+class ClassMember(param.Parameterized):
     """The part of a page in a class: it leads one, follows one, or neither.
 
     Its worker is ended while it follows. `room` is the class that is led or followed, `left` the
@@ -142,8 +139,8 @@ class Member(param.Parameterized):
         self.room: Classroom | None = None
         self.left: Classroom | None = None
         self._is_due = False
-        state.param.watch(lambda *events: self._on_change(), [*SHARED, "prediction"])
-        state.param.watch(lambda event: self._vote(event.new), "prediction")
+        state.param.watch(lambda *events: self._on_change(), SHARED)
+        state.param.watch(lambda event: self.room and self.room.notify(), "prediction")
         state.param.watch(lambda event: self._on_address(event.new), "room")
 
     @property
@@ -158,7 +155,10 @@ class Member(param.Parameterized):
         return self.room is not None and self in self.room.members
 
     def enter(self, address: str) -> bool:
-        """Follow the class of an address, or lead it on with its key; whether the page follows."""
+        """Follow the class of an address, or lead it on with its key; whether the page follows.
+
+        Where there is no such class, `message` says so, and all stays as it is.
+        """
         code, _, key = address.partition(".")
         room = find(code)
         if room is None:
@@ -171,9 +171,10 @@ class Member(param.Parameterized):
             self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
             self.state.prediction = last.prediction
             self._lead(room)
-        else:
+        elif room is not self.room:
+            self.leave()
             self._follow(room)
-        return self.follows
+        return room is not None and self.follows
 
     def begin(self) -> None:
         """Begin a class that sees what this page shows."""
@@ -199,9 +200,8 @@ class Member(param.Parameterized):
         state.history = History()
         if state.newest is not None:
             state.history.add(state.newest)
-        state.number += APART
         state.poll = None
-        self.state.room = self._address()
+        state.room = self._address()
         self.message = f"You have left class {room.code}."
         self._supervisor.begin()
         state.run()
@@ -213,7 +213,7 @@ class Member(param.Parameterized):
 
     def open_counts(self) -> None:
         """Have all see how many predicted what."""
-        self.room.is_open = True
+        self.room.opened = self.state.lesson
         self.room.notify()
 
     def close(self) -> None:
@@ -260,7 +260,7 @@ class Member(param.Parameterized):
         values: dict[str, Any] = {"poll": room.poll_for(self)}
         if self.follows:
             leader = room.leader.state
-            state.history, state.number, state.began = leader.history, leader.number, leader.number
+            state.history, state.number = leader.history, leader.number
             values |= {name: getattr(leader, name) for name in SHARED}
         # Watchers of what is as it was have nothing to do.
         changed = {name: value for name, value in values.items() if value != getattr(state, name)}
@@ -278,12 +278,6 @@ class Member(param.Parameterized):
         if room.is_alone:
             return f"The leader of class {room.code} is away: it waits some minutes."
         return f"You follow class {room.code}. Change anything to go on by yourself."
-
-    def _vote(self, choice: int | None) -> None:
-        """Predict, in place of what was predicted before."""
-        if self.follows and choice is not None and choice >= 0:
-            self.room.votes[self] = choice
-            self.room.notify()
 
     def _address(self) -> str:
         """What the page's address has of the class: its code; of one that is led its key, too."""
@@ -308,7 +302,7 @@ class ClassDialog:
     what the header's button opens.
     """
 
-    def __init__(self, member: Member) -> None:
+    def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
         self._act = _button("", lambda: self._offer()[1](), variant="text")
@@ -328,13 +322,11 @@ class ClassDialog:
 
     def _offered(self) -> list[Any]:
         self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
-        self._refusal = pn.pane.Markdown(margin=0)
         join = _button("Join", self._join, variant="outlined")
         return [
             pn.pane.Markdown("Whoever joins a class sees what its leader sees, and predicts too."),
             _button("Begin a class", self._begin),
             pn.Row(self._field, join, align="end", margin=(12, 0)),
-            self._refusal,
         ]
 
     def _led(self) -> list[Any]:
@@ -347,7 +339,7 @@ class ClassDialog:
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
             below = how_to_open()
-        return [pn.pane.HTML(large), pn.pane.HTML(below), _button("End the class", self._end)]
+        return [pn.pane.HTML(large + below), _button("End the class", self._end)]
 
     def _begin(self) -> None:
         self._member.begin()
@@ -355,12 +347,11 @@ class ClassDialog:
 
     def _join(self) -> None:
         code = self._field.value_input or self._field.value
-        if find(code) is None:
-            self._refusal.object = f"There is no class {code[:4] or 'without a code'}."
-            return
-        self._member.leave()
-        self._member.enter(code)
-        self.dialog.open = False
+        if self._member.enter(code):
+            self.dialog.open = False
+        else:
+            refusal = self._member.message if code else "Write a code."
+            self._field.param.update(error_state=True, helper_text=refusal)
 
     def _end(self) -> None:
         self._member.end()
@@ -385,5 +376,5 @@ class ClassDialog:
 
 
 def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
-    style = {"variant": "contained", "size": "small", "sx": {"textTransform": "none"}, **more}
+    style = {"variant": "contained", "size": "small", **more}
     return pmui.Button(label=label, on_click=lambda event: act(), **style)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 from urllib.parse import quote
 
@@ -64,7 +63,7 @@ PICTURES = {
 }
 
 
-class Control:
+class SettingControl:
     """The widget of one setting: it shows the state's and changes it.
 
     `field` takes the value; of a number it is a text field, which has a `slider`, too. Both stand
@@ -240,7 +239,7 @@ class Control:
             self._dialog = CurveDialog(self.name, self._state)
             self.view.append(self._dialog.view)
         self.update()
-        self._dialog.open()
+        self._dialog.view.open = True
 
 
 class Controls:
@@ -251,7 +250,7 @@ class Controls:
 
     def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
         self._state, self._copy = state, copy
-        self._controls: list[Control] = []
+        self._controls: list[SettingControl] = []
         pictures = {
             f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
             for number, entry in enumerate(CATALOGUE.values(), start=1)
@@ -264,7 +263,7 @@ class Controls:
             size="small",
             sx=PICTURES | pictures,
         )
-        self._scene.param.watch(lambda event: self._choose(event.new), "value")
+        self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
         self._chief = pn.Column(margin=0)
         self._groups = pmui.Accordion(
             margin=(10, 0),
@@ -295,7 +294,7 @@ class Controls:
         self._built = self._scene.value = settings.scene
         self._scene.label = CATALOGUE[settings.scene].title
         chief, groups = _groups_of(type(settings))
-        self._controls = [Control(name, self._state) for name in chief]
+        self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
         self._names = list(groups.values())
         self._groups.active = []
@@ -311,16 +310,11 @@ class Controls:
             if column is self._files:
                 column.append(FilesPanel(self._state, self._copy, WIDTH).view)
                 continue
-            controls = [Control(name, self._state) for name in self._names[place]]
+            controls = [SettingControl(name, self._state) for name in self._names[place]]
             self._controls += controls
             column[:] = [control.view for control in controls]
 
-    def _choose(self, scene: str) -> None:
-        if scene != self._state.settings.scene:
-            self._state.choose_scene(scene)
 
-
-@cache
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     """The chief settings of a scene, and all others by group; without those of a single value."""
     definitions = kind.definitions()

@@ -65,12 +65,7 @@ def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | Bro
         For what is none of these, or is refused.
     """
     if source.lower().endswith(".toml"):
-        try:
-            text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            remedy = "it is no text in UTF-8: save it as TOML"
-            raise SettingError("the file", source, "a text", remedy) from None
-        read = settings_from_toml(text, source=source)
+        read = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
         return read, f"{source}: settings of the scene {read.scene}."
     table = _table(data, source)
     if {"x", "position"} & {column.key for column in table.columns}:
@@ -233,15 +228,9 @@ class CurveDialog:
             close_on_click=True,
             width_option="sm",
         )
-        self.update()
-
-    def open(self) -> None:
-        """Show the points, those of the preset where there are none yet."""
-        self.update()
-        self.view.open = True
 
     def update(self) -> None:
-        """Show the points that hold."""
+        """Show the points that hold, those of the preset where there are none yet."""
         settings = self._state.settings
         value = getattr(settings, self._name)
         points = points_of(settings, self._name) if isinstance(value, str) else value

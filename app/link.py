@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
@@ -16,7 +16,6 @@ from bokeh.models import CustomJS
 
 from app.frame import Selection
 from app.lessons.catalogue import LESSONS, settings_of
-from app.messages import Step
 from app.refusals import message_of
 from app.state import PACES, TABS, VIEWS, PageState, default_settings
 from app.views.catalogue import CARDS
@@ -134,21 +133,7 @@ def show(state: PageState, place: Place) -> None:
     if dump(place.settings) != dump(state.settings):
         state.adopt(place.settings)
     if place.iteration:
-        wait_at(state, place.iteration)
-
-
-def wait_at(state: PageState, iteration: int) -> None:
-    """Run up to an iteration and wait there."""
-    state.reset()
-    number = state.number
-
-    def step(event: Any) -> None:
-        state.param.unwatch(watcher)
-        first = event.new
-        if number == state.number and first is not None and first.iteration < iteration:
-            state.send(Step(iteration - first.iteration))
-
-    watcher = state.param.watch(step, "newest")
+        state.reset(place.iteration)
 
 
 def place_of(state: PageState) -> Place:
@@ -254,33 +239,22 @@ def _base(name: str, scene: str, refused: list[str]) -> Settings:
 
 def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> Settings:
     """Settings with as many values as hold together; the others are refused."""
-    try:
+    with suppress(RefusedError):
         return base.replace(**values)
-    except RefusedError:
-        pass
-    taken: dict[str, Any] = {}
-    left, messages = dict(values), dict[str, str]()
-    while left:
+    messages = {}
+    # A method comes first, as it brings values of others.
+    for name in sorted(values, key=lambda name: name != "method"):
+        try:
+            base = base.replace(**{name: values[name]})
+        except RefusedError as refusal:
+            is_known = refusal.name in base.definitions()
+            message = message_of(refusal, base, name, values[name])
+            messages[name] = message if is_known else f"{name[:40]}: {refusal.remedy}"
+    if len(messages) < len(values):
         # One that was refused may hold beside one that came later.
-        messages = {}
-        for name, value in left.items():
-            try:
-                base.replace(**taken, **{name: value})
-                taken[name] = value
-            except RefusedError as refusal:
-                messages[name] = _refused(refusal, base, name, value)
-        if len(messages) == len(left):
-            break
-        left = {name: left[name] for name in messages}
+        return _together(base, {name: values[name] for name in messages}, refused)
     refused.extend(messages.values())
-    return base.replace(**taken)
-
-
-def _refused(refusal: RefusedError, settings: Settings, name: str, value: Any) -> str:
-    if name in settings.definitions() or name in settings.RETIRED:
-        return message_of(refusal, settings, name, value)
-    near = get_close_matches(name, settings.definitions(), n=1)
-    return f"there is no setting {name[:40]}" + (f": did you mean {near[0]}?" if near else "")
+    return base
 
 
 def too_long(settings: Settings) -> list[str]:

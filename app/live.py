@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -43,30 +42,28 @@ class Live:
 
     def __init__(self, state: PageState, document: Any) -> None:
         self.state = state
-        self._status = _words("status", margin=(8, 6))
+        self._status = _words("status", margin=(8, 6), styles={"flex": "1 1 240px"})
         self._sentence, self._figures = _words("sentence"), _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
-        self._all = self._cards = [Card(kinds, state, self.look) for kinds in CARDS]
+        self._all = self._cards = [Card(kinds, state) for kinds in CARDS]
         self.transport = Transport(state, document)
         self.display = Display(state, document, self._write)
         document.add_root(self.display.pulse)
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.
         document.add_next_tick_callback(self.prepare)
-        wraps = {"css_classes": ["wraps"], "stylesheets": [STYLE]}
-        self.transport.view.param.update(**wraps)
-        self._above = pn.Row(
-            self.transport.view, self._status, sizing_mode="stretch_width", margin=0, **wraps
-        )
+        self._above = pn.FlexBox(self.transport.view, self._status, margin=0)
         self._scene, self._plots = column("scene"), column("plots")
         self._timeline = pn.Row(
             self.transport.play_button, sizing_mode="stretch_width", min_height=56, margin=0
         )
         self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
-        self.view = self._arranged()
-        said = ["running", "message", "refusal", "is_costly"]
-        state.param.watch(lambda *events: self._write(), said)
+        words = self._sentence, self._figures
+        below = pn.FlexBox(*words, justify_content="space-between", margin=0)
+        parts = self._above, below, self._scene, self._timeline, self._plots
+        self.view = column("live", *parts)
+        state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -92,12 +89,13 @@ class Live:
         state, self._kinds = self.state, kinds
         self._cards = self._all
         if kinds is not None:
-            self._cards = [Card((kind,), state, self.look) for kind in kinds]
+            self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":
             self._cards = self._all[:PRESENTED]
         self._above.visible = not state.is_asked and state.view != "embed"
         self._figures.visible = not state.is_asked
-        self._plots.visible = bool(self._cards)
+        # Without plots the scene has all the height.
+        self._plots.css_classes = ["plots"] if self._cards else []
         # What they hold first: of tabs that change while they are being shown some are lost.
         self._fit()
         if self._is_open:
@@ -106,24 +104,20 @@ class Live:
         size = LARGE if state.view == "present" else TEXT
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
-        self.view.css_classes = ["live", *([state.view] if state.view != "page" else [])]
+        self.view.css_classes = ["live", state.view]
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
         seen: list[View] = []
         if self._is_open and self.state.tab == TABS[0]:
             seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
-        self.display.views = seen
+        self.display.look_at(seen)
 
     def _fit(self) -> None:
         if self._is_open:
             for card in self._cards:
                 card.fit()
             self.look()
-
-    def _arranged(self) -> pn.Column:
-        below = column("words", self._sentence, self._figures)
-        return column("live", self._above, below, self._scene, self._timeline, self._plots)
 
     def _write(self) -> None:
         """Bring the words up to the frame."""
@@ -135,12 +129,10 @@ class Live:
 
 
 class Card:
-    """Views that share a place as tabs, of which one is in sight; `changed` follows each turn."""
+    """Views that share a place as tabs, of which the one that the state names is in sight."""
 
-    def __init__(
-        self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
-    ) -> None:
-        self._state, self._changed = state, changed
+    def __init__(self, kinds: tuple[type[View], ...], state: PageState) -> None:
+        self._state = state
         self.views = [kind(state) for kind in kinds]
         self.seen: View | None = None
         self._offered: list[View] = []
@@ -164,7 +156,6 @@ class Card:
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
             self.view[:] = [self.tabs, self._pane(seen)] if seen is not None else [self.tabs]
-            self._changed()
 
     def _choose(self, place: int) -> None:
         """Have the state name the view of a tab; the first that is offered needs no name."""
@@ -173,7 +164,6 @@ class Card:
             mine = {view.name for view in self.views}
             names = [name for name in self._state.plots.split(",") if name and name not in mine]
             self._state.plots = ",".join([*names, view.name] if place else names)
-            self.fit()
 
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; it is made when it is first seen."""

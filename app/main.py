@@ -3,10 +3,9 @@
 import sys
 from pathlib import Path
 
-root = str(Path(__file__).resolve().parents[1])
-if root not in sys.path:
-    sys.path.insert(0, root)
+# It is as it was again once this has run.
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from app.page import open_page  # noqa: E402  # the root is on the path only from here on
+from app.page import open_page  # the root is on the path only from here on
 
 open_page().servable()

@@ -17,13 +17,14 @@ WHOLE = -1.0
 class Start:
     """Start a run at a pace, in iterations a second: 0 waits, infinity is as fast as it can.
 
-    One that is dragged hurries to its end before it is shown; one that is agreed to may take long
-    or much memory.
+    One that waits does some steps first, at least one. One that is dragged hurries to its end
+    before it is shown; one that is agreed to may take long or much memory.
     """
 
     number: int
     settings: Settings
     pace: float
+    steps: int = 0
     is_dragged: bool = False
     is_agreed: bool = False
 
@@ -82,11 +83,10 @@ class Began:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A frame, and whether the run goes on."""
+class NewFrame:
+    """The newest iterate of the run."""
 
     frame: Frame
-    goes_on: bool
 
 
 @dataclass(frozen=True)
@@ -117,4 +117,4 @@ class Alive:
     """A sign of life."""
 
 
-Report = Began | Shown | Costly | Failed | Computed | Alive
+Report = Began | NewFrame | Costly | Failed | Computed | Alive

@@ -10,16 +10,15 @@ import panel_material_ui as pmui
 
 from app import glossary
 from app.browser import listen
-from app.classroom import ClassDialog, Member
+from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.export import TakeAway
 from app.lessons.panel import LessonPanel
-from app.link import Link, read, show, wait_at
+from app.link import Link, read, show
 from app.live import STYLE, Live, column
-from app.messages import Pace
 from app.reports import Reports
 from app.server import FULL, PAGES
-from app.state import PACES, TABS, PageState
+from app.state import TABS, PageState
 from app.supervisor import Supervisor
 from app.whatif import WhatIf
 from solver.settings import Settings
@@ -63,18 +62,16 @@ class Page:
         if not state.room:
             # The first picture is there once the browser is.
             self._supervisor.begin()
-            if iteration:
-                wait_at(state, iteration)
-            else:
-                state.open()
+            state.reset(iteration or 1)
+            state.running = not iteration
         self._live = Live(state, document)
-        self._member = Member(state, self._supervisor, document)
+        self._member = ClassMember(state, self._supervisor, document)
         self._lesson = LessonPanel(
-            state, self._live.transport, self._on_lesson, self._member.open_counts
+            state, self._live.transport, self._dress, self._member.open_counts
         )
         self._class = ClassDialog(self._member)
         self._lesson.view.stylesheets = self._class.view.stylesheets = [STYLE]
-        self._beside = column("beside", self._live.view)
+        self._beside = pn.FlexBox(self._live.view, margin=0)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         take_away, self._words = TakeAway(state, self._live.display), glossary.dialog()
@@ -92,7 +89,7 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda *events: self._lesson.update(), ["frame", "selection"])
+        state.param.watch(lambda event: self._lesson.update(), "frame")
         self._turn(state.tab)
         self._lesson.show()
 
@@ -102,7 +99,7 @@ class Page:
         self._live.open()
         if not self.state.room:
             if not self._iteration:
-                self.state.send(Pace(PACES[self.state.pace]))
+                self.state.param.trigger("pace")
         elif not self._member.enter(self.state.room):
             self._supervisor.begin()
             self.state.run()
@@ -115,21 +112,20 @@ class Page:
 
     def _header(self, take_away: TakeAway) -> pn.Row:
         actions = {
-            "Lessons": ("school", self._lesson.offer),
-            "A class": ("groups", self._class.open),
-            "Presenter view (p)": ("slideshow", self._present),
-            "Take away": ("download", take_away.open),
-            "Keys and words (?)": ("help_outline", self._help),
+            "Lessons": ("school", lambda event: self._lesson.offer()),
+            "A class": ("groups", lambda event: self._class.open()),
+            "Presenter view (p)": ("slideshow", lambda event: self._present()),
+            "Take away": ("download", lambda event: take_away.open()),
+            "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
             self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
         )
-        buttons = []
-        for title, (icon, action) in actions.items():
-            button = pmui.IconButton(icon=icon, description=title, margin=0, sx=WHITE)
-            button.on_click(lambda event, action=action: action())
-            buttons.append(button)
-        space = pn.layout.HSpacer()
+        space, look = pn.layout.HSpacer(), {"margin": 0, "sx": WHITE}
+        buttons = [
+            pmui.IconButton(icon=icon, description=title, on_click=action, **look)
+            for title, (icon, action) in actions.items()
+        ]
         return pn.Row(tabs, space, *buttons, sizing_mode="stretch_width", align="center")
 
     def _present(self) -> None:
@@ -152,17 +148,11 @@ class Page:
         self.state.tab = TABS[0]
         self.state.adopt(settings)
 
-    def _on_lesson(self) -> None:
-        """Give a lesson the room of the controls: it has those that it speaks of."""
-        self._place()
-        self._dress()
-
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
         # What comes in front is appended, and put there by the style sheet: a column whose children
         # change their order loses some of them.
         lesson, line = self._lesson.view, self._class.view
-        self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
         views = (
             (self._beside, [self._live.view] + [lesson] * lesson.visible),
             (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
@@ -172,7 +162,11 @@ class Page:
                 place[:] = objects
 
     def _dress(self) -> None:
-        """Have the plots that belong here, and in a view for a projector or a frame no more."""
+        """Have the plots that belong here, and the controls where there is room for them.
+
+        A lesson has those that it speaks of; a view for a projector, or a frame, shows a run alone.
+        """
+        self._place()
         is_bare = self.state.view != "page"
         self._live.arrange(self._lesson.kinds)
         self.template.param.update(

@@ -1,21 +1,23 @@
-"""The server that pages come from: their number, compressed files, refused addresses, the log."""
+"""The server that pages come from: their number and address, compressed files, and the log."""
 
 from __future__ import annotations
 
 import logging
 import os
+import socket
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
+from urllib.parse import SplitResult, urlsplit
 
+import panel as pn
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.routing import Matcher, Rule
 from tornado.web import Application, ErrorHandler, GZipContentEncoding
 from tornado.websocket import WebSocketClosedError
 
-VARIABLE = "SLIPFRONT_PAGES"
-"""Environment variable with the most pages that may be open."""
 OF_A_PAGE = 150_000_000
 """Bytes that a page may need, most of them in its worker and its history."""
 SHARE = 0.8
@@ -28,6 +30,8 @@ LONGEST = 16_000
 """Characters of an address; what is longer is refused (414)."""
 RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
+DOCUMENTATION = "192.0.2.1"
+"""An address that is nobody's (RFC 5737)."""
 QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
 
@@ -54,13 +58,56 @@ PAGES = Pages()
 
 def most_pages() -> int:
     """The most pages that may be open, as set, or as the machine's or container's memory allows."""
-    if text := os.environ.get(VARIABLE):
+    if text := os.environ.get("SLIPFRONT_PAGES"):
         return max(int(text), 1)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     limit = Path("/sys/fs/cgroup/memory.max")
     if limit.exists() and (text := limit.read_text(encoding="ascii").strip()) != "max":
         memory = min(memory, float(text))
     return max(int(SHARE * memory / OF_A_PAGE), 1)
+
+
+def address_for_others() -> str:
+    """Address of this page without its query, as other machines reach it; "" if they cannot."""
+    here = _address()
+    if not is_local(here.hostname or ""):
+        return here.geturl()
+    port = f":{here.port}" if here.port else ""
+    allowed = os.environ.get("BOKEH_ALLOW_WS_ORIGIN", "").split(",")
+    names = [f"{name}{port}" for name in names_of_machine()]
+    reached = next((name for name in names if "*" in allowed or name in allowed), "")
+    return here._replace(netloc=reached).geturl() if reached else ""
+
+
+def how_to_open() -> str:
+    """What whoever serves a page as localhost has to do that others reach it (HTML)."""
+    name, port = names_of_machine()[0], _address().port or 80
+    return (
+        "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start "
+        f"the server with <code>BOKEH_ALLOW_WS_ORIGIN={name}:{port}</code>, and open "
+        f"<b>http://{name}:{port}/app</b>."
+    )
+
+
+def _address() -> SplitResult:
+    """The address of this page without its query."""
+    location = pn.state.location
+    return urlsplit(location.href.partition("?")[0] if location is not None else "")
+
+
+def is_local(host: str) -> bool:
+    """Whether a name is what every machine calls itself."""
+    return host in ("", "localhost", "::1") or host.startswith("127.")
+
+
+def names_of_machine() -> tuple[str, ...]:
+    """What others call this machine: its name, and its address in the network."""
+    names = [socket.gethostname()]
+    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        # Nothing is sent: it only chooses the way that a packet would take.
+        probe.connect((DOCUMENTATION, 9))
+        names.append(probe.getsockname()[0])
+    return tuple(name for name in names if not is_local(name)) or ("THIS-MACHINE",)
 
 
 def configure() -> None:

@@ -6,26 +6,14 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import Any
 
 import param
 
+from app import messages
 from app.frame import Frame, Selection
-from app.messages import (
-    WHOLE,
-    Began,
-    Computed,
-    Costly,
-    Failed,
-    Needs,
-    Order,
-    Pace,
-    Ready,
-    Report,
-    Shown,
-    Start,
-    Step,
-)
+from app.messages import Needs, Order, Pace, Ready, Report, Start, Step
 from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -38,8 +26,10 @@ SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings with which one sees the search from nothing, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
 """Settings with which the answer is there at once."""
+RUNS = count(1)
+"""Numbers of the runs of all pages: one that joins a class, or leaves it, meets none twice."""
 PACES = {
-    "whole in 3 s": WHOLE,
+    "whole in 3 s": messages.WHOLE,
     "1 a second": 1.0,
     "5 a second": 5.0,
     "20 a second": 20.0,
@@ -71,9 +61,6 @@ class History:
     def __init__(self) -> None:
         self._frames: list[Frame] = []
 
-    def __len__(self) -> int:
-        return len(self._frames)
-
     @property
     def newest(self) -> Frame | None:
         """The last frame, the answer where the run has one."""
@@ -88,7 +75,7 @@ class History:
         ):
             self._frames.pop()
         self._frames.append(frame)
-        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self) > 2:
+        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2:
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:
@@ -179,18 +166,14 @@ class PageState(param.Parameterized):
         self.run()
 
     def choose_scene(self, scene: str) -> None:
-        """Go to a scene, as it was left."""
-        self.adopt(self._left.get(scene) or default_settings(scene))
+        """Go to another scene, as it was left."""
+        if scene != self.settings.scene:
+            self.adopt(self._left.get(scene) or default_settings(scene))
 
     def run(self, *, is_agreed: bool = False) -> None:
         """Run the settings from the start, at the pace."""
         self.running = True
         self._start(self.settings, is_agreed=is_agreed)
-
-    def open(self) -> None:
-        """Run the settings; a search waits after its first iteration until there is a browser."""
-        is_search = self.settings.finish == SEARCH["finish"]
-        self._start(self.settings, 0.0 if is_search else None)
 
     @property
     def is_over(self) -> bool:
@@ -227,10 +210,10 @@ class PageState(param.Parameterized):
         self.param.update(running=False, iteration=None)
         self.send(Step())
 
-    def reset(self) -> None:
-        """Begin anew, and wait after the first iteration."""
+    def reset(self, iteration: int = 1) -> None:
+        """Begin anew, and wait at an iteration."""
         self.running = False
-        self._start(self.settings, 0.0)
+        self._start(self.settings, 0.0, steps=iteration)
 
     def seek(self, iteration: int | None) -> None:
         """Show an earlier iterate of the run; None, and beyond the last, the newest."""
@@ -243,9 +226,9 @@ class PageState(param.Parameterized):
         place = None if is_newest else frame.iteration
         self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))
 
-    def _start(self, settings: Settings, pace: float | None = None, **how: bool) -> None:
+    def _start(self, settings: Settings, pace: float | None = None, **how: Any) -> None:
         """Order a run; `how` is that of `Start`."""
-        self.number += 1
+        self.number = next(RUNS)
         is_dragged = how.get("is_dragged", False)
         self.param.update(is_costly=False, message="", iteration=None, is_dragged=is_dragged)
         self.send(Start(self.number, settings, PACES[self.pace] if pace is None else pace, **how))
@@ -265,19 +248,19 @@ class PageState(param.Parameterized):
     def take(self, report: Report) -> None:
         """Take what the worker reports."""
         match report:
-            case Began(number):
+            case messages.Began(number):
                 self.began = number
-            case Shown(frame, _):
+            case messages.NewFrame(frame):
                 self._show(frame)
-            case Costly(number, text) if number == self.number:
+            case messages.Costly(number, text) if number == self.number:
                 self.is_costly = True
                 self.message = (
                     f"This run would take about {text}: press Run to run it anyway, or choose "
                     "fewer elements, instants or bodies."
                 )
-            case Failed(number, text) if number == self.number:
+            case messages.Failed(number, text) if number == self.number:
                 self.message = text
-            case Computed(result) if self._waiting:
+            case messages.Computed(result) if self._waiting:
                 self._waiting.pop(0)(result)
 
     def _show(self, frame: Frame) -> None:
@@ -304,8 +287,8 @@ class PageState(param.Parameterized):
     def send_needs(self, *, is_news: bool = True) -> None:
         """Have frames carry what is seen; a worker that is new is told in any case."""
         seen = self.selection
-        needs = Needs(self.needs, seen.interface, seen.substructure, seen.place, seen.stress)
-        needs = replace(needs, readings=tuple(self.readings), brought=self.brought)
+        looked_at = seen.interface, seen.substructure, seen.place, seen.stress
+        needs = Needs(self.needs, *looked_at, tuple(self.readings), self.brought)
         if is_news or needs != self._sent:
             self._sent = needs
             self.send(needs)

@@ -42,20 +42,20 @@ class Transport:
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
-        self._playing: tuple[Any, float, float, float] | None = None
+        self._playing: Any = None
         self._moved_at = -math.inf
         self._echoes = Echoes()
-        # Not IconButtons, which keep their first icon.
-        self._run = _button("pause", "Run or pause (space)", self._toggle, changes=True)
-        self.play_button = _button("play_circle", "Play through time (t)", self.play, changes=True)
+        self._run = _button("pause", "Run or pause (space)", self._toggle)
+        self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin)
-        self.view = pn.Row(
+        self.view = pn.FlexBox(
             self._run,
             _button("skip_next", "One iteration (s)", state.step),
             _button("replay", "From the start (r)", state.reset),
             self._pin,
             *self._choices(),
+            sizing_mode=None,
             margin=0,
         )
         shown = ["settings", "frame", "newest", "running", "is_costly", "pinned"]
@@ -122,22 +122,22 @@ class Transport:
         if self._playing is not None:
             self.stop()
             return
-        phase = self._state.selection.phase
-        callback = self._document.add_periodic_callback(self._play_on, TICK)
-        self._playing = callback, time.monotonic(), phase if phase < until else 0.0, until
+        began, phase = time.monotonic(), self._state.selection.phase
+        first = phase if phase < until else 0.0
+
+        def play_on() -> None:
+            share = (time.monotonic() - began) / PLAYED_IN
+            self._state.select(phase=(first + share) % until)
+
+        self._playing = self._document.add_periodic_callback(play_on, TICK)
         self.play_button.icon = "pause_circle"
 
     def stop(self) -> None:
         """Go through time no more."""
         if self._playing is not None:
-            self._document.remove_periodic_callback(self._playing[0])
+            self._document.remove_periodic_callback(self._playing)
             self._playing = None
             self.play_button.icon = "play_circle"
-
-    def _play_on(self) -> None:
-        assert self._playing is not None
-        _, began, phase, until = self._playing
-        self._state.select(phase=(phase + (time.monotonic() - began) / PLAYED_IN) % until)
 
     def _move(self, instants: int) -> None:
         """Select an instant so many later."""
@@ -193,12 +193,17 @@ class Transport:
         return 0 if newest is None else newest.iteration + newest.is_answer
 
 
-def _button(icon: str, description: str, act: Callable[[], None], *, changes: bool = False) -> Any:
-    """A round button; one whose icon changes is a plain one without a label."""
-    kind, style = pmui.IconButton, {}
-    if changes:
-        kind, style = pmui.Button, {"label": "", "variant": "text", "color": "default", "sx": ROUND}
-    style |= {"size": "small", "margin": (2, 2), "stylesheets": [PASSED]}
-    button = kind(icon=icon, description=description, **style)
-    button.on_click(lambda event: act())
-    return button
+def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button:
+    """A button with an icon alone; an IconButton would keep its first one."""
+    return pmui.Button(
+        label="",
+        icon=icon,
+        description=description,
+        on_click=lambda event: act(),
+        variant="text",
+        color="default",
+        size="small",
+        margin=2,
+        sx=ROUND,
+        stylesheets=[PASSED],
+    )

@@ -132,7 +132,8 @@ class Checked(param.Parameterized):
 
     def curve_units(self, name: str) -> tuple[str, str]:
         """Units of a curve's abscissa and ordinate under the present values."""
-        units: tuple[str, str] = self.param[name].units
+        # Of the class: param copies what is read of an instance to it, and no pipe takes that.
+        units: tuple[str, str] = type(self).param[name].units
         return units
 
     def applies(self, name: str) -> bool:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show, wait_at
-from app.messages import Needs, Pace, Start, Step
+from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
+from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -84,6 +85,12 @@ def test_a_part_that_is_refused_is_told_and_the_rest_holds(query: str, told: str
     assert (place.settings.peak, place.view) == (1100.0, "embed")
 
 
+def test_settings_whose_path_was_refused_go_to_the_worker_all_the_same() -> None:
+    place, refusal = read("?load=[[0,0],[0,1]]&peak=800")
+    assert refusal
+    assert pickle.loads(pickle.dumps(place.settings)).peak == 800.0
+
+
 def test_settings_that_hold_together_may_stand_in_any_order() -> None:
     place, refusal = read("?substructures=80&elements=100")
     assert not refusal
@@ -128,14 +135,14 @@ def test_an_address_with_an_iteration_runs_up_to_it() -> None:
     state.send = orders.append
     show(state, read("?instant=0.5")[0])
     assert state.selection.phase == 0.5
-    wait_at(state, 7)
+    state.reset(7)
     start = orders[-1]
     assert isinstance(start, Start)
-    assert start.pace == 0.0
     runner = Runner(start, ReferenceCache(), lambda: False)
-    runner.advance()
-    state._show(runner.frame(Needs()))
-    assert Step(6) in orders
+    while runner.rest() is not None:
+        runner.advance()
+    assert runner.status is None
+    assert runner.frame(Needs()).iteration == 7
     assert not any(isinstance(order, Pace) for order in orders)
 
 

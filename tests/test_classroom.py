@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from app import classroom
-from app.classroom import Member, find
+from app.classroom import ClassMember, find
 from app.frame import Frame
 from app.messages import Needs, Order, Ready, Start
 from app.state import History, PageState, default_settings
@@ -54,7 +54,7 @@ class Seat:
     def __init__(self, scene: str = "bar", address: str = "") -> None:
         self.state, self.document = PageState(default_settings(scene)), Document()
         self.worker: Any = Worker(self.state)
-        self.member = Member(self.state, self.worker, self.document)
+        self.member = ClassMember(self.state, self.worker, self.document)
         if not self.member.enter(address):
             self.worker.begin()
             self.state.run()

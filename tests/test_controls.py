@@ -8,7 +8,7 @@ from typing import Any
 import param
 import pytest
 
-from app.controls import POINTS, Control, Controls
+from app.controls import POINTS, Controls, SettingControl
 from app.files import FilesPanel
 from app.refusals import nearest_allowed
 from app.state import PageState, default_settings
@@ -37,7 +37,7 @@ def held(state: PageState, name: str) -> Any:
 def test_the_widget_of_every_setting_shows_its_value_and_takes_another(scene: str) -> None:
     for name in names(scene):
         state = of_scene(scene)
-        control, definition = Control(name, state), state.settings.definitions()[name]
+        control, definition = SettingControl(name, state), state.settings.definitions()[name]
         value = held(state, name)
         if control.slider is not None:
             unit = unit_of(definition)
@@ -61,7 +61,7 @@ def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(scene: str
     for name in names(scene):
         for end in ("start", "end"):
             state = of_scene(scene)
-            control = Control(name, state)
+            control = SettingControl(name, state)
             if control.slider is None:
                 break
             place = getattr(control.slider, end)
@@ -74,7 +74,7 @@ def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(scene: str
 
 def test_a_field_keeps_its_unit_whatever_is_typed() -> None:
     state = of_scene("incline")
-    control = Control("weight", state)
+    control = SettingControl("weight", state)
     assert control.field.label.endswith(", kN")
     for text, newtons in (("-5", -5e3), ("900", 9e5), ("0,25", 250.0), ("3 MN", 3e6), ("7 N", 7.0)):
         control.field.value = text
@@ -89,7 +89,7 @@ def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_hol
     None
 ):
     state = of_scene("bar")
-    young, parts = Control("young", state), Control("substructures", state)
+    young, parts = SettingControl("young", state), SettingControl("substructures", state)
     young.field.value = "-3"
     assert young.field.value == "210"
     assert young.field.error_state
@@ -120,7 +120,7 @@ def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words
 
 def test_an_empty_field_is_the_default() -> None:
     state = of_scene("bar")
-    control = Control("peak", state)
+    control = SettingControl("peak", state)
     control.field.value = "1200"
     control.field.value = ""
     control.update()
@@ -131,7 +131,7 @@ def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_
     state = of_scene("strand")
     told: list[str] = []
     state.param.watch(lambda event: told.append(event.new), "refusal")
-    control = Control("friction", state)
+    control = SettingControl("friction", state)
     assert control.slider is not None
     for place in (0.2, 0.1, 0.0):
         control.slider.value = place
@@ -148,7 +148,7 @@ def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_
 
 def test_a_slider_ends_where_another_setting_has_it_end() -> None:
     state = of_scene("strand")
-    control = Control("broken", state)
+    control = SettingControl("broken", state)
     assert control.slider is not None
     assert control.slider.end == ends_of(state.settings)["broken"]
     state.change(wires=7)
@@ -190,7 +190,7 @@ def test_each_scene_keeps_its_settings() -> None:
 
 def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_do() -> None:
     state = of_scene("bar")
-    control = Control("load", state)
+    control = SettingControl("load", state)
     control.field.value = POINTS
     dialog = control._dialog
     assert dialog is not None
@@ -216,7 +216,7 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> N
         if isinstance(state.settings.definitions()[name], CurveParameter):
             if not state.settings.applies(name):
                 continue
-            control = Control(name, state)
+            control = SettingControl(name, state)
             control.field.value = POINTS
             dialog = control._dialog
             assert dialog is not None

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import app.browser
-from app.controls import Control
+from app.controls import SettingControl
 from app.state import PageState, default_settings
 
 
 def test_a_value_that_a_field_showed_on_the_way_changes_nothing_when_it_comes_back() -> None:
     state = PageState(default_settings("bar"))
-    control = Control("peak", state)
+    control = SettingControl("peak", state)
     for peak in (1000.0, 1100.0):
         state.change(peak=peak)
         control.update()
@@ -20,7 +20,7 @@ def test_a_value_that_a_field_showed_on_the_way_changes_nothing_when_it_comes_ba
 def test_later_the_same_value_is_typed_by_hand(monkeypatch) -> None:
     monkeypatch.setattr(app.browser, "LASTS", 0.0)
     state = PageState(default_settings("bar"))
-    control = Control("peak", state)
+    control = SettingControl("peak", state)
     for peak in (1000.0, 1100.0):
         state.change(peak=peak)
         control.update()

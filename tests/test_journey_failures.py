@@ -115,7 +115,7 @@ def test_what_a_foolish_address_has_is_said_on_its_page(visit: Visit) -> None:
     page = visit("?friction=-1&moon=3&scene=bar&" + ANSWER)
     expect(page.locator(".status")).to_contain_text("From the address: ")
     expect(page.locator(".status")).to_contain_text("cannot be −1")
-    expect(page.locator(".status")).to_contain_text("there is no setting moon")
+    expect(page.locator(".status")).to_contain_text("moon: there is no such setting")
     is_solved(page)
 
 

@@ -58,7 +58,7 @@ def page(scene: str) -> TakeAway:
     kinds = [kind for card in CARDS for kind in card if kind.applies(state.settings)]
     views = [kind(state) for kind in (Scene, Timeline, *kinds)]
     assert all(view.figure is not None for view in views)
-    display.views = views
+    display.look_at(views)
     return TakeAway(state, display)
 
 

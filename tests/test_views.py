@@ -253,7 +253,7 @@ def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -
 
 def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> None:
     state = PageState(default_settings("strand"))
-    card = Card(CARDS[0], state, lambda: None)
+    card = Card(CARDS[0], state)
     card.fit()
     assert isinstance(card.seen, ContactForce)
     card.tabs.active = 1
@@ -268,8 +268,9 @@ def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> 
 def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     frame = frames_of("bar")[1]
     state = PageState(frame.run.settings, frame=frame, newest=frame)
-    card = Card((ContactForce, HysteresisLoop), state, lambda: None)
+    card = Card((ContactForce, HysteresisLoop), state)
     card.fit()
     card.tabs.active = 1
+    card.fit()
     assert isinstance(card.seen, HysteresisLoop)
     assert len(card.seen.sources["LATIN"].data["x"]) == len(frame.run.instants)

@@ -11,7 +11,7 @@ from app.state import SEARCH
 from app.units import number, percent, unit_for
 from app.views.catalogue import CARDS
 from app.views.view import View
-from solver.lessons.lesson import SUBJECTS, Control, Lesson, Value, pieces
+from solver.lessons.lesson import SUBJECTS, Control, Lesson
 from solver.lessons.reading import lesson_from_file
 from solver.settings import Settings
 from solver.study.quantities.quantities import reading
@@ -22,6 +22,8 @@ LESSONS = {
     for lesson in sorted(_READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order))
 }
 """By name, in order, those of one subject together."""
+VALUE = re.compile(r"\{value:(.*?)\}")
+"""A quantity in what a lesson says."""
 PENDING = "…"
 """What only the rest of the run will tell."""
 _KINDS = {kind.name: kind for card in CARDS for kind in card}
@@ -48,23 +50,14 @@ def place_of(lesson: Lesson) -> str:
 
 def readings_of(lesson: Lesson) -> list[str]:
     """Names of the quantities in what a lesson says."""
-    every = (piece for text in (*lesson.text, *lesson.explanation) for piece in pieces(text))
-    return list(dict.fromkeys(piece.reading.name for piece in every if isinstance(piece, Value)))
+    return list(dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))))
 
 
 def parts_of(paragraph: str) -> list[str | Control]:
     """A paragraph, split where a control stands; the rest is Markdown with `{value:NAME}` in it."""
-    parts: list[str | Control] = [""]
-    for piece in pieces(paragraph):
-        if isinstance(piece, Control):
-            parts += [piece, ""]
-        else:
-            parts[-1] += f"{{value:{piece.reading.name}}}" if isinstance(piece, Value) else piece
     # A sentence ends with its control: its full stop would stand alone.
-    return [
-        part.lstrip(" .:") if isinstance(part, str) and place else part
-        for place, part in enumerate(parts)
-    ]
+    parts = re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
+    return [Control(part) if place % 2 else part for place, part in enumerate(parts)]
 
 
 def without_controls(paragraph: str) -> str:
@@ -75,7 +68,7 @@ def without_controls(paragraph: str) -> str:
 
 def filled(text: str, frame: Frame | None) -> str:
     """Markdown in which every quantity is that of a frame."""
-    text = re.sub(r"\{value:(.*?)\}", lambda match: f"**{_value(frame, match[1])}**", text)
+    text = VALUE.sub(lambda match: f"**{_value(frame, match[1])}**", text)
     return re.sub(r"\^(\d+)", r"<sup>\1</sup>", text)
 
 

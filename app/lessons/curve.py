@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from bokeh.models import FixedTicker, FreehandDrawTool, Range1d
+from bokeh.models import FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
@@ -16,28 +16,28 @@ from solver.lessons.lesson import Lesson
 class DrawnCurve:
     """A figure over a setting on which the expected curve is drawn, and then the measured one.
 
-    `drawn` and `measured` are the sources of what was drawn by hand, and of what the lesson's
-    checkpoints measure.
+    `drawn` and `measured` are the sources of what was drawn by hand, and of what the checkpoints
+    of the `lesson` measure.
     """
 
     def __init__(self, lesson: Lesson) -> None:
-        self._curve = lesson.curve
-        places = [place for place, _ in self._curve]
-        finite = [value for _, value in self._curve if math.isfinite(value)]
+        self.lesson = lesson
+        places, values = zip(*lesson.curve, strict=True)
+        finite = filter(math.isfinite, values)
         self._top = 10.0 ** math.ceil(math.log10(max(finite)))
         made = figure(
             x_axis_type="log",
             y_axis_type="log",
             x_axis_label=about(lesson.settings.definitions()[lesson.draw]).title,
             y_axis_label=lesson.drawn_quantity.split(" to ")[0],
-            x_range=Range1d(places[0] / 2.0, places[-1] * 2.0),
-            y_range=Range1d(1.0, self._top),
+            x_range=(places[0] / 2.0, places[-1] * 2.0),
+            y_range=(1.0, self._top),
             height=200,
             sizing_mode="stretch_width",
             toolbar_location=None,
             tools="",
         )
-        made.xaxis.ticker = FixedTicker(ticks=places)
+        made.xaxis.ticker = list(places)
         made.xaxis.major_label_overrides = {place: f"{place:g}" for place in places}
         made.min_border = 4
         self.drawn, self.measured = source("xs", "ys"), source("x", "y", "text")
@@ -54,8 +54,9 @@ class DrawnCurve:
     def reveal(self) -> None:
         """Show what was measured; nothing is drawn any more."""
         self.figure.toolbar.active_drag = None
+        places, values = zip(*self.lesson.curve, strict=True)
         self.measured.data = {
-            "x": [place for place, _ in self._curve],
-            "y": [min(value, 0.85 * self._top) for _, value in self._curve],
-            "text": ["" if math.isfinite(value) else "never" for _, value in self._curve],
+            "x": places,
+            "y": [min(value, 0.85 * self._top) for value in values],
+            "text": ["" if math.isfinite(value) else "never" for value in values],
         }

@@ -12,9 +12,9 @@ from bokeh.resources import INLINE, Resources
 from jinja2 import Template
 from markdown_it import MarkdownIt
 
-from app.addresses import address_for_others
 from app.lessons.catalogue import filled, kinds_of, place_of, without_controls
 from app.lessons.curve import DrawnCurve
+from app.server import address_for_others
 from app.state import PageState
 from app.views.scene import Scene
 from app.views.view import View

@@ -10,7 +10,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.controls import Control
+from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.catalogue import (
     LESSONS,
@@ -26,14 +26,12 @@ from app.lessons.handout import handout
 from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
-from solver.lessons.lesson import SUBJECTS, Lesson
-from solver.lessons.lesson import Control as ControlPlace
+from solver.lessons.lesson import SUBJECTS, Control, Lesson
 
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""
-SENTENCE = {"& .MuiButton-label": {"textAlign": "left"}, "&": {"textTransform": "none"}}
-LEFT = {**SENTENCE, "&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
+LEFT = {"&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
 
 
 class LessonPanel:
@@ -54,9 +52,9 @@ class LessonPanel:
         self._state, self._transport = state, transport
         self._changed, self._open_counts = changed, open_counts
         self._texts: list[tuple[pn.pane.Markdown, str]] = []
-        self._controls: list[Control] = []
+        self._controls: list[SettingControl] = []
         self._curve: DrawnCurve | None = None
-        self._choices, self._class = pn.Column(margin=0), pn.Column(margin=0)
+        self._choices = pn.Column(margin=0)
         self._shown: tuple[str, bool] | None = None
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
         self.dialog = pmui.Dialog(
@@ -107,13 +105,10 @@ class LessonPanel:
         state, lesson = self._state, self.lesson
         shown = state.lesson, state.is_asked
         if shown != self._shown:
-            if self._shown is None or state.lesson != self._shown[0]:
-                self._curve = None
             self._shown = shown
             self._build(lesson)
         if lesson is not None:
-            self._choices[:] = self._choices_of(lesson, state.poll)
-            self._class[:] = self._of_class(state.poll)
+            self._choices[:] = [*self._choices_of(lesson, state.poll), *self._of_class(state.poll)]
 
     def _offers(self, subject: str) -> pn.Column:
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
@@ -142,14 +137,13 @@ class LessonPanel:
             self._changed()
             return
         state.readings = readings_of(lesson)
-        if lesson.draw and (state.is_asked or self._curve is None):
-            self._curve = DrawnCurve(lesson)
-        if lesson.draw and not state.is_asked:
+        if state.is_asked or self._curve is None or self._curve.lesson is not lesson:
+            self._curve = DrawnCurve(lesson) if lesson.draw else None
+        if self._curve is not None and not state.is_asked:
             # A figure's own models change under the document's lock, which a click does not have.
             pn.state.execute(self._curve.reveal, schedule=True)
-        parts = self._question(lesson) if state.is_asked else self._answer(lesson)
         title = f"<small>{place_of(lesson)}</small>\n\n### {lesson.title}"
-        self.view.param.update(objects=[self._markdown(title), *parts], visible=True)
+        self.view.param.update(objects=[self._markdown(title), *self._parts(lesson)], visible=True)
         self._changed()
         self._look(lesson)
 
@@ -163,55 +157,46 @@ class LessonPanel:
             state.select(phase=Selection.phase if lesson.until == 1.0 else 0.0)
             self._transport.play(lesson.until)
 
-    def _question(self, lesson: Lesson) -> list[Any]:
-        """What is shown before the choice."""
-        return [
-            *self._paragraphs(lesson.text),
-            *self._figures(),
-            self._markdown(f"**{lesson.question}**"),
-            self._choices,
-            self._class,
-            _button("Explore freely", self._end, variant="text"),
-        ]
+    def _parts(self, lesson: Lesson) -> list[Any]:
+        """The question, and after the choice the answer with what explains it."""
+        figures = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
+        question = [self._markdown(f"**{lesson.question}**"), self._choices]
+        explore = _button("Explore freely", self._end, variant="text")
+        if self._state.is_asked:
+            return [*self._paragraphs(lesson.text), *figures, *question, explore]
+        explanation = self._paragraphs(lesson.explanation)
+        buttons = pn.FlexBox(*self._onward(lesson), explore, margin=(8, 0))
+        return [*question, self._verdict(lesson), *figures, *explanation, buttons]
 
-    def _answer(self, lesson: Lesson) -> list[Any]:
-        """What is shown after the choice."""
+    def _verdict(self, lesson: Lesson) -> pmui.Alert:
+        """The right choice and why, in the colour of whether it was predicted."""
         prediction, choice = self._state.prediction, lesson.choices[lesson.right]
         is_right, is_open = prediction == lesson.right, prediction in (None, WITHOUT)
         text = f"{'Right: ' if is_right else ''}{choice}. {lesson.why}"
         severity = "info" if is_open else "success" if is_right else "warning"
-        buttons = [
-            pmui.FileDownload(
-                callback=lambda: handout(self._state, lesson, self._curve),
-                filename=f"{lesson.name}.html",
-                label="Handout",
-                size="small",
-            ),
-            _button("Explore freely", self._end, variant="text"),
-        ]
-        following = dict(pairwise(LESSONS)).get(lesson.name)
-        poll = self._state.poll
-        if following is not None and (poll is None or poll.leads):
-            buttons.insert(0, _button("Next lesson", lambda: self.open(following)))
-        return [
-            self._markdown(f"**{lesson.question}**"),
-            self._choices,
-            self._class,
-            pmui.Alert(object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"),
-            *self._figures(),
-            *self._paragraphs(lesson.explanation),
-            pn.FlexBox(*buttons, margin=(8, 0)),
-        ]
+        return pmui.Alert(
+            object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"
+        )
 
-    def _figures(self) -> list[Any]:
-        return [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
+    def _onward(self, lesson: Lesson) -> list[Any]:
+        """The way to the next lesson, which a follower waits for, and the handout."""
+        on_paper = pmui.FileDownload(
+            callback=lambda: handout(self._state, lesson, self._curve),
+            filename=f"{lesson.name}.html",
+            label="Handout",
+            size="small",
+        )
+        following, poll = dict(pairwise(LESSONS)).get(lesson.name), self._state.poll
+        if following is None or not (poll is None or poll.leads):
+            return [on_paper]
+        return [_button("Next lesson", lambda: self.open(following)), on_paper]
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
         """Panes of text, with controls where they are named."""
         shown: list[Any] = []
         for part in (part for text in paragraphs for part in parts_of(text)):
-            if isinstance(part, ControlPlace):
-                self._controls.append(Control(part.setting, self._state))
+            if isinstance(part, Control):
+                self._controls.append(SettingControl(part.setting, self._state))
                 shown.append(self._controls[-1].view)
             elif part:
                 shown.append(self._markdown(part))
@@ -267,5 +252,5 @@ class LessonPanel:
 
 
 def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
-    style = {"variant": "contained", "size": "small", "margin": (3, 0), "sx": SENTENCE, **more}
+    style = {"variant": "contained", "size": "small", "margin": (3, 0), **more}
     return pmui.Button(label=label, on_click=lambda event: act(), **style)

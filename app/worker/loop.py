@@ -65,8 +65,7 @@ class Loop:
             runner.advance()
         if self._is_ready and runner.is_presentable:
             self._is_ready, self._shown_at = False, time.monotonic()
-            goes_on = runner.status is None and runner.pacing.goes_on
-            self._send(messages.Shown(runner.frame(self._needs), goes_on))
+            self._send(messages.NewFrame(runner.frame(self._needs)))
 
     def _rest(self) -> float | None:
         """Seconds to wait for an order."""

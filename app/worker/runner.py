@@ -33,8 +33,8 @@ LATE = 0.1
 class Pacing:
     """The pace of a run, as in `Start`, and the steps that were asked for."""
 
-    def __init__(self, pace: float) -> None:
-        self._pace, self._steps, self._done = pace, 0, 0
+    def __init__(self, pace: float, steps: int = 0) -> None:
+        self._pace, self._steps, self._done = pace, steps, 0
         self._due = time.monotonic()
 
     def change(self, pace: float) -> None:
@@ -58,11 +58,6 @@ class Pacing:
         if self._steps:
             return 0.0
         return None if self._pace == 0.0 else max(self._due - time.monotonic(), 0.0)
-
-    @property
-    def goes_on(self) -> bool:
-        """Whether it does not wait."""
-        return self._pace != 0.0 or self._steps > 0
 
     def _interval(self) -> float:
         if self._pace == WHOLE:
@@ -103,7 +98,7 @@ class Runner:
         self.history: list[Record] = []
         self.status: Status | None = None
         self.has_news = False
-        self.pacing = Pacing(start.pace)
+        self.pacing = Pacing(start.pace, start.steps)
         self._iterates = judged(problem, latin, spent=spent, resumable=False)
         self._references, self._interrupted = references, interrupted
         self._is_compared = False
