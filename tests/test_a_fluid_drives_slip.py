@@ -147,8 +147,3 @@ def test_what_would_open_the_fault_is_refused(
         FaultSettings.checked(changes)
     assert name in str(refused.value)
     assert words in str(refused.value)
-
-
-def test_a_single_instant_is_that_at_the_end() -> None:
-    many, one = solved(instants=2), solved(instants=1)
-    assert one[2].friction_force[:, -1] == pytest.approx(many[2].friction_force[:, -1], rel=1e-6)

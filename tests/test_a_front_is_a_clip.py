@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import islice, pairwise
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,16 +11,11 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from solver.arrays import Array
-from solver.files import scene_settings
-from solver.latin import Iterate, iterations
 from solver.reduction.clips import Clips, clips_of, monotone
-from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reference.choice import reference_of
 from solver.scenes import discretise, structure_of
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
-from solver.settings import Settings
-from solver.study.quantities.clip_measures import clips_in, products_in
+from solver.study.quantities.clip_measures import clips_in
 from solver.study.quantities.finished import finished_run
 from solver.study.quantities.quantities import reading
 
@@ -42,12 +37,6 @@ def solved(**changes) -> Clips:
         lengths,
         problem.time_weights * problem.scales.time,
     )
-
-
-def iterate_of(number: int, scene: str = "bar", **changes) -> tuple[Settings, Iterate]:
-    settings = scene_settings(scene).checked({"finish": "none", **changes})
-    search = iterations(discretise(settings), method_of(settings))
-    return settings, next(islice(search, number - 1, None))
 
 
 @pytest.mark.parametrize("elements", [50, 200, 800])
@@ -149,66 +138,6 @@ def test_branches_go_one_way_and_are_as_few_as_can_be(load):
     assert all(not {-1.0, 1.0} <= set(own) for own in ways)
     last = [own[own != 0.0][-1] for own in ways if own.any()]
     assert all(one != other for one, other in pairwise(last))
-
-
-def test_reversals_are_remembered_and_those_that_are_undone_are_forgotten():
-    """Loaded again to where it turned, the rod is as if it had never turned."""
-    bound = np.full(10, 100.0)
-    inner = np.array([0, 300, 600, 500, 400, 500, 600, 700.0])
-    plain = np.array([0, 300, 600, 600, 600, 600, 600, 700.0])
-    ones = np.ones(10), np.ones(len(inner))
-    turned, straight = (clips_of(play_of(one, bound), bound, one, *ones) for one in (inner, plain))
-    assert (len(turned.branches), len(straight.branches)) == (3, 1)
-    assert turned.field[:, -2:] == pytest.approx(straight.field[:, -2:], abs=1e-9)
-    assert np.abs(turned.field[:, 4] - straight.field[:, 4]).max() > 99.0
-
-
-def test_without_their_memory_clips_miss():
-    clips = solved(load="triangle", peak=1200.0)
-    forgetful = clips_of(
-        clips.given[:, 50:] - clips.given[:, [50]],
-        clips.bound,
-        clips.load[50:] - clips.load[50],
-        clips.space_weights,
-        clips.time_weights[50:],
-    )
-    assert clips.errors[0] < EXACT < 0.01 < forgetful.errors[0]
-
-
-def test_as_iterates_come_nearer_so_do_their_clips():
-    missed = [clips_in(*iterate_of(number)).errors[0] for number in (1, 5, 20, 60)]
-    assert np.all(np.diff(missed) < 0.0)
-    assert missed[0] > 0.03
-    assert missed[-1] < 3e-4
-
-
-@pytest.mark.parametrize("scene", ["bar", "strand"])
-def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers(scene):
-    changes = {"linear_stage": "pgd", "substructures": 1, "relaxation": 1.0}
-    _, iterate = iterate_of(8, scene, **changes)
-    assert iterate.reduction is not None
-    own, best = of_bases(iterate, iterate.reduction), in_pieces(iterate)
-    assert own.errors[-1] < 1e-9
-    assert np.all(np.diff(own.numbers) > 0)
-    assert np.all(own.errors >= best.errors[: len(own.errors)] - EXACT)
-    assert own.within(0.1) >= best.within(0.1)
-
-
-def test_a_bar_in_one_piece_is_kept_in_pieces_as_it_is_as_a_whole():
-    settings, iterate = iterate_of(8, substructures=1)
-    pieces, whole = in_pieces(iterate), products_in(clips_in(settings, iterate))
-    assert np.array_equal(pieces.numbers, whole.numbers)
-    assert pieces.errors == pytest.approx(whole.errors, abs=1e-9)
-
-
-def test_numbers_are_those_of_what_has_to_be_kept():
-    clips = solved(load="sine", elements=50, instants=101)
-    vectors, places, load, bound = 3 * 2 * 51, 3, 101, 51
-    assert clips.numbers == vectors + places + load + bound
-    changing = solved(load="ramp", pressure_load="loosening")
-    assert changing.numbers == 2 * 51 + 1 + 101 + (51 + 101)
-    assert of_clips(clips).within(EXACT) == clips.numbers
-    assert Sizes(np.array([0, 9]), np.array([1.0, 0.5])).within(0.1) == np.inf
 
 
 def test_quantities_of_a_run_say_the_same():

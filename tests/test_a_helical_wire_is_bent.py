@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solver import Latin, Rods, solve
+from solver import Rods
 from solver.arrays import Array
 from solver.discrete.rope.helical_wire import HelicalWire
-from solver.latin import Accuracy, Auto, Iterations
-from solver.reference.choice import incremental_solver
 from solver.reference.closed_forms.bent_wire import BentWire
 from solver.reference.incremental import incremental
 from solver.refusal import RefusedError
@@ -48,35 +46,12 @@ def to_and_fro(peak: float, steps: int = 60) -> Array:
     return np.concatenate([up, down[1:], back[1:]])
 
 
-def test_first_bending_meets_the_closed_form() -> None:
-    curvature = BENT.first_slip * np.linspace(0.0, 1.8, 91)
-    exact = BENT.moment(curvature)
-    assert np.abs(moments(curvature) - exact).max() < 0.005 * exact[-1]
-
-
 def test_it_comes_nearer_with_order_two() -> None:
     curvature = BENT.first_slip * np.linspace(0.0, 1.4, 15)
     exact = BENT.moment(curvature)
     off = [np.abs(moments(curvature, n) - exact).max() for n in (20, 40, 80, 160)]
     orders = np.log2(np.array(off[:-1]) / np.array(off[1:]))
     assert np.mean(orders) == pytest.approx(2.0, abs=0.3)
-
-
-def test_bent_back_it_follows_masings_rule() -> None:
-    peak = 1.3 * BENT.first_slip
-    curvature = to_and_fro(peak)
-    back = slice(60, 181)
-    exact = BENT.after_return(peak, curvature[back])
-    assert np.abs(moments(curvature)[back] - exact).max() < 0.005 * exact.max()
-
-
-@pytest.mark.parametrize("share", [1.2, 1.5])
-def test_a_cycle_loses_the_energy_of_masings_rule(share: float) -> None:
-    peak = share * BENT.first_slip
-    curvature = to_and_fro(peak)
-    moment = moments(curvature)
-    loop = np.trapezoid(moment[60:], curvature[60:])
-    assert abs(loop) == pytest.approx(BENT.energy(peak), rel=0.01)
 
 
 def test_what_friction_dissipates_is_what_the_loop_encloses() -> None:
@@ -106,24 +81,6 @@ def test_the_closed_form_has_its_landmarks() -> None:
     assert BENT.energy(0.9 * BENT.first_slip) == pytest.approx(0.0, abs=1e-9 * first)
 
 
-def test_latin_finds_the_same_and_certifies_it() -> None:
-    curvature = to_and_fro(1.3 * BENT.first_slip, 20)
-    scene = rods(curvature)
-    problem = scene.discretise()
-    method = Latin(direction=Auto(), stop=Accuracy(0.001) | Iterations(400))
-    solution = solve(problem, method)
-    found = solution.iterate
-    assert solution.is_certified
-    exact = incremental_solver(problem).march()
-    scale = np.abs(exact.contact_force).max()
-    inner = slice(1, -1)
-    assert np.abs(found.contact_force - exact.contact_force)[inner].max() < 0.01 * scale
-    assert (
-        np.abs(found.displacement - exact.displacement).max()
-        < 0.01 * np.abs(exact.displacement).max()
-    )
-
-
 def test_cuts_change_nothing() -> None:
     curvature = to_and_fro(1.3 * BENT.first_slip, 10)
     whole, cut = (rods(curvature, 40, n).discretise() for n in (1, 7))
@@ -148,23 +105,6 @@ def test_a_uniform_field_is_a_uniform_body_force() -> None:
     other = incremental(Rods(**own, body_force=np.tile(load, (21, 1))).discretise())
     np.testing.assert_array_equal(one.displacement, other.displacement)
     np.testing.assert_array_equal(one.contact_force, other.contact_force)
-
-
-def test_a_coarser_mesh_has_the_same_body_force_at_its_nodes() -> None:
-    scene = rods(BENT.first_slip * np.linspace(0.0, 1.2, 7))
-    coarser = scene.coarser()
-    assert coarser is not None
-    assert coarser.body_force is not None
-    assert scene.body_force is not None
-    np.testing.assert_allclose(coarser.body_force, scene.body_force[::2], rtol=1e-12)
-
-
-def test_its_body_force_is_drawn_where_it_acts() -> None:
-    scene = rods(BENT.first_slip * np.linspace(0.0, 1.2, 7))
-    (act,) = (one for one in scene.described().acts if one.where == "body")
-    assert act.values.shape == (len(act.places), 7)
-    assert scene.body_force is not None
-    np.testing.assert_array_equal(act.values[0], scene.body_force[4])
 
 
 def test_a_body_force_of_another_shape_is_refused() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.latin import Accuracy, Ending, Indicator, Iterations, Latin, Seconds, iterations, solve
+from solver.latin import Accuracy, Ending, Latin, Seconds, iterations, solve
 from solver.latin.criteria.estimate import ErrorEstimate
 from solver.latin.finish import status_step
 from solver.latin.start.nested import Nested
@@ -21,12 +21,6 @@ SMALL = {"elements": 40, "instants": 21, "substructures": 4}
 
 def bar() -> Any:
     return discretise(CATALOGUE["bar"].settings.checked(SMALL))
-
-
-def test_of_criteria_either_of_which_ends_a_run_the_shortest_limit_counts() -> None:
-    assert (Accuracy(0.01) & Indicator(1e-3) | Iterations(5)).seconds == np.inf
-    assert (Accuracy(0.01) | Seconds(3.0) | Seconds(2.0)).seconds == 2.0
-    assert (Accuracy(0.01) & Seconds(3.0)).seconds == np.inf
 
 
 def test_a_run_ends_with_its_iterate_and_says_what_helps() -> None:
@@ -53,17 +47,6 @@ def test_a_status_step_that_would_take_too_long_is_not_begun(
     estimate.deadline = time.perf_counter()
     monkeypatch.setattr(status_step, "incremental_solver", lambda *_: pytest.fail("begun"))
     assert not estimate.try_step(iterate, patience=1000.0)
-
-
-def test_a_status_step_is_given_up_on_its_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    iterate = next(iterations(bar(), Latin()))
-    estimate = ErrorEstimate(0.01)
-    assert estimate.try_step(iterate, patience=1000.0)
-    estimate = ErrorEstimate(0.01)
-    estimate.deadline = 0.0
-    monkeypatch.setattr(estimate, "_is_in_time", lambda _: True)  # by a wrong estimate
-    assert not estimate.try_step(iterate, patience=1000.0)
-    assert estimate.certificate is None
 
 
 def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(

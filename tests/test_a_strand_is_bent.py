@@ -13,14 +13,13 @@ from ropes import exact_of, moment_of, settings_of, solved
 from solver import Rods, solve
 from solver.definitions import SettingError
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
-from solver.discrete.rope.rope import Rope
 from solver.files import result_arrays
 from solver.latin import Accuracy, Auto, Iterations, Latin
 from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod, incremental
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 from solver.scenes.constructions import CONSTRUCTIONS, seven_wire
 from solver.scenes.method import method_of
 from solver.scenes.rope import rope
@@ -66,19 +65,6 @@ def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose
     assert section.stuck_bending > 20.0 * section.slipping_bending
 
 
-def test_the_order_of_the_wires_means_nothing() -> None:
-    scene = rope(settings_of(**CHANGING))
-    order = np.random.default_rng(3).permutation(len(scene.wires))
-    other = replace(scene, wires=[scene.wires[place] for place in order])
-    one, two = (incremental(each.discretise()) for each in (scene, other))
-    np.testing.assert_allclose(moment_of(scene, one), moment_of(other, two), rtol=1e-12, atol=1e-9)
-    for name in one.problem.rubbing:
-        mine, theirs = one.contact(name), two.contact(name)
-        np.testing.assert_array_equal(mine.status, theirs.status)
-        np.testing.assert_allclose(mine.slip, theirs.slip, atol=1e-15)
-        np.testing.assert_allclose(mine.tangential_force, theirs.tangential_force, atol=1e-6)
-
-
 def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
     scene = rope(settings_of(**{**CLAMPED, "layers": 1}))
     turn = 2.0 * np.pi / len(scene.wires)
@@ -88,14 +74,6 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
     ]
     turned = replace(scene, wires=wires)
     moments = [moment_of(one, incremental(one.discretise())) for one in (scene, turned)]
-    np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
-
-
-def test_layers_may_be_laid_either_way_round() -> None:
-    scene = rope(settings_of(**CLAMPED))
-    wires = [replace(wire, helix=replace(wire.helix, lay=-wire.helix.lay)) for wire in scene.wires]
-    mirrored = replace(scene, wires=wires)
-    moments = [moment_of(one, incremental(one.discretise())) for one in (scene, mirrored)]
     np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
 
 
@@ -124,18 +102,6 @@ def test_a_wire_of_it_is_a_bar_alone_under_its_body_force(changes: dict[str, Any
         largest = np.abs(alone.displacement).max()
         np.testing.assert_allclose(own, alone.displacement, atol=1e-9 * largest)
         np.testing.assert_array_equal(found.contact(wire.name).status, alone.status[1:-1])
-
-
-def test_a_wire_is_in_equilibrium() -> None:
-    """What its force changes by from end to end, friction has taken up."""
-    scene = rope(settings_of(**CHANGING))
-    found = incremental(scene.discretise())
-    size = scene.elements + 1
-    for place, wire in enumerate(scene.wires):
-        slip = found.displacement[place * size : (place + 1) * size]
-        force = wire.helix.force(wire.arc, slip, wire.curvature)
-        friction = found.contact(wire.name).tangential_force
-        np.testing.assert_allclose(np.diff(force, axis=0), -friction, atol=1e-7 * np.ptp(force))
 
 
 def test_all_forces_grow_with_tension_and_curvature() -> None:
@@ -182,12 +148,6 @@ def test_wires_carry_the_tension_and_lie_beside_each_other(construction: str) ->
     for layer, radius in zip(section.layers, section.radii, strict=True):
         room = 2.0 * np.pi * radius * np.cos(layer.lay)
         assert layer.wires * layer.diameter <= 1.005 * room
-
-
-def test_a_strand_of_prestressing_steel_has_the_area_of_its_standard() -> None:
-    section = seven_wire()
-    area = section.core.area + 6 * section.layers[0].area
-    assert area == pytest.approx(150e-6, rel=0.01)
 
 
 @pytest.mark.parametrize(
@@ -252,16 +212,6 @@ def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_ev
     assert arrays["status"].shape == (len(problem.rubbing) * shape[0], shape[1])
 
 
-@pytest.mark.parametrize(("construction", "kinds"), [("mooring", 1), ("conductor", 3)])
-def test_wires_that_are_alike_share_their_operator(construction: str, kinds: int) -> None:
-    """The wires of a mooring strand are alike in all layers, those of a conductor in none."""
-    settings = settings_of(**{**CLAMPED, "substructures": 3, "construction": construction})
-    problem = discretise(settings)
-    operators = {id(part.elasticity) for part in problem.substructures}
-    assert len(problem.substructures) == 3 * settings.n_wires
-    assert len(operators) == 3 * kinds
-
-
 def test_without_friction_only_the_wires_themselves_are_bent() -> None:
     settings = settings_of(friction=0.0, curvature=0.2)
     scene, found = solved(settings)
@@ -297,19 +247,3 @@ def test_what_is_no_strand_is_refused() -> None:
 def test_settings_that_cannot_be_are_refused(changes: dict[str, Any], name: str) -> None:
     with pytest.raises(SettingError, match=name):
         settings_of(**changes)
-
-
-def test_a_coarser_strand_is_bent_alike() -> None:
-    scene = rope(settings_of(**CLAMPED))
-    coarse = scene.coarser()
-    assert isinstance(coarse, Rope)
-    for one, other in zip(scene.wires, coarse.wires, strict=True):
-        np.testing.assert_allclose(one.curvature[::2], other.curvature, rtol=1e-12)
-    assert coarse.coarser() is None or coarse.elements >= 12
-
-
-def test_the_sentence_says_how_many_wires_there_are() -> None:
-    said = CATALOGUE["rope"].words
-    assert "37 wires" in said(settings_of(layers=3))
-    assert "seven wires" in said(settings_of(construction="seven-wire"))
-    assert "clamp" in said(settings_of(**CLAMPED))

@@ -12,7 +12,6 @@ from solver.latin import Ending, iterations
 from solver.latin.acceleration.mixing import Mixing
 from solver.latin.direction.rules import sliding_share
 from solver.latin.start.prolong import prolong
-from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -32,11 +31,6 @@ def within(solution, level: float) -> int:
 @pytest.mark.parametrize("load", PRESETS)
 def test_all_together_reach_one_percent_of_friction_force_early(load):
     assert within(measured(options(load=load, max_iterations=30)), 0.01) <= 30
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_and_so_on_random_paths(seed):
-    assert within(measured(options(load="random", seed=seed, max_iterations=30)), 0.01) <= 30
 
 
 @pytest.mark.parametrize("load", ["sine", "decaying"])
@@ -64,33 +58,6 @@ def test_the_limit_is_the_same(change):
     assert solution.records[-1].error_displacement < 1e-8
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"elements": 1, "substructures": 1},
-        {"elements": 13, "substructures": 13},
-        {"instants": 1},
-        {"peak": 0.0},
-        {"friction": 0.0},
-        {"friction": 1e6},
-        {"peak": 5000.0},
-        {"multiscale": False},
-        {"relaxation": 1.0},
-        {"elements": 53, "body_force": 700.0, "peak": 300.0},
-        {"support_displacement": 1e-4},
-        {"pressure_profile": "gap"},
-        {"linear_stage": "pgd"},
-    ],
-    ids=str,
-)
-def test_on_every_kind_of_input_it_ends_well(change):
-    solution = measured(options(max_iterations=300, tolerance=1e-14, **change))
-    assert solution.status.ending is not Ending.DIVERGED
-    assert np.isfinite(solution.iterate.friction_force).all()
-    if change.get("linear_stage") != "pgd":
-        assert solution.records[-1].error_displacement < 1e-3
-
-
 def test_a_run_goes_on_from_a_checkpoint_to_the_bit(monkeypatch):
     monkeypatch.setattr("solver.latin.acceleration.anderson.MEMORY", 4)
     chosen = options()
@@ -104,28 +71,6 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit(monkeypatch):
         )
         assert again.number == straight[29].number
         assert np.array_equal(again.outgoing, straight[29].outgoing)
-
-
-def by_point(**changes: object):
-    chosen = options(**changes)
-    problem = discretise(chosen)
-    return problem.friction.by_point(
-        method_of(chosen).direction.of(problem)[problem.friction.tangent.above]
-    )
-
-
-def test_the_automatic_direction_does_not_know_the_cuts():
-    found = by_point(substructures=1)
-    for substructures in (2, 10, 50):
-        assert np.allclose(by_point(substructures=substructures), found, rtol=1e-12)
-
-
-@pytest.mark.parametrize("peak", [300.0, 900.0, 2400.0])
-def test_it_is_between_the_stiffness_of_what_slides_and_that_of_an_element(peak):
-    for elements in (50, 200):
-        share = sliding_share(discretise(options(elements=elements, peak=peak)))
-        inside = by_point(elements=elements, peak=peak)[1:-1]
-        assert np.allclose(inside, FRICTION_FACTOR * np.sqrt(elements / share))
 
 
 @pytest.mark.parametrize(
@@ -157,15 +102,6 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
         mix(state)
     exact = np.linalg.solve(np.eye(6) - matrix, shift)
     assert np.allclose(state[0][:, 0, 0], exact, atol=1e-5)
-
-
-def test_the_memory_is_given_up_when_the_residual_grows():
-    mix = Mixing([np.ones((2, 1, 1))], memory=5)
-    for size in (1.0, 0.5, 0.4, 0.41):
-        mix.start([np.zeros((2, 1, 1))])
-        mix([np.full((2, 1, 1), size)])
-    assert mix.seen == 1
-    assert mix.count == 0
 
 
 def test_what_is_linear_is_carried_over_exactly():

@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.files import result_arrays, summary
-from solver.latin import Iterations, Record, Solution, StatusStep, iterations, solve
-from solver.reduction.basis import Reduction, ReductionRecord
+from solver.latin import Iterations, Solution, StatusStep, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -36,12 +34,6 @@ def bar() -> Solution:
     return ended(options(pgd_modes=2))
 
 
-def bases_of(entry: Record | Solution) -> Any:
-    found = entry.iterate.reduction if isinstance(entry, Solution) else entry.reduction
-    assert found
-    return found
-
-
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_two_modes_find_the_solution_of_every_scene(scene: str) -> None:
     solution = ended(options(scene, pgd_modes=2))
@@ -51,13 +43,6 @@ def test_two_modes_find_the_solution_of_every_scene(scene: str) -> None:
     assert last.iteration == before.iteration + 1
 
 
-def test_the_bases_of_the_search_stay_and_the_step_does_nothing_to_them(bar: Solution) -> None:
-    shown: Reduction = bases_of(bar)
-    assert [own.n_modes for own in shown.modes] == [one.modes for one in bar.records[-2].reduction]
-    assert shown.records == tuple(ReductionRecord.idle(own.n_modes) for own in shown.modes)
-    assert bar.records[-1].reduction == shown.records
-
-
 def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
     left = bar.records[-2].error_force
     assert "status step" in bar.status.advice
@@ -65,26 +50,6 @@ def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
     full = ended(options(linear_stage="full"))
     assert full.is_certified
     assert "bases" not in full.status.advice
-
-
-def test_files_hold_the_bases_of_the_search(bar: Solution) -> None:
-    settings = options(pgd_modes=2)
-    arrays = result_arrays(settings, bar)
-    assert arrays["certified"]
-    assert arrays["pgd_modes"].shape == (len(bar.records), settings.n_substructures)
-    assert np.array_equal(arrays["pgd_modes"][-1], arrays["pgd_modes"][-2])
-    assert not arrays["pgd_added"][-1].any()
-    assert summary(settings, bar)["modes_largest"] == arrays["pgd_modes"][-1].max()
-
-
-def test_a_run_goes_on_from_the_solution_and_not_from_the_bases(bar: Solution) -> None:
-    iterate = bar.iterate
-    generous = options(pgd_modes=40, pgd_tolerance=1e-12)
-    problem = iterate.problem
-    method = replace(method_of(generous), finish=None)
-    first = next(iterations(problem, method, iterate.checkpoint))
-    distance = distance_to(reference_of(problem), problem)
-    assert distance.of_friction_force(first) < 1e-6
 
 
 def test_a_run_that_only_iterates_stays_approximate_and_names_the_step() -> None:

@@ -18,7 +18,6 @@ from solver.scenes.method import method_of
 from solver.study.benchmarks import cycles
 from solver.study.benchmarks.ahead import GOAL
 from solver.study.benchmarks.cycles_problems import FEW, GROUPS, MANY, PROBLEMS, CyclesProblem
-from solver.study.benchmarks.cycles_report import speed_up_panels
 
 BLOCK = PROBLEMS[0]
 TINY = replace(BLOCK, label="tiny", changes={"elements": 16, "elements_up": 8, "substructures": 2})
@@ -68,16 +67,6 @@ def row(number: int, *seconds: float) -> cycles.Cycles:
     return cycles.Cycles(number, 8.0, taken)
 
 
-def test_speed_ups_are_ratios_of_times() -> None:
-    one = row(1, 4.0, 2.0, 1.0, math.nan)
-    assert one.over("", "LATIN-PGD") == 4.0
-    assert one.over("LATIN", "LATIN-PGD") == 2.0
-    assert math.isnan(one.over("LATIN", "LATIN-PGD in slabs"))
-    (panel,) = speed_up_panels({"block": [one, row(10, 8.0, 2.0, 1.0, 1.0)]})
-    drawn = {curve.label: list(curve.y) for curve in panel.curves}
-    assert drawn["LATIN-PGD over LATIN"] == [2.0, 4.0]
-
-
 def test_the_command_prints_rows_and_writes_them_with_a_chart(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -116,16 +105,3 @@ def test_every_problem_is_allowed_for_any_number_of_cycles() -> None:
 def test_other_groups_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["benchmark", "--cycles", "--only", "layers"]) == 2
     assert " or ".join(GROUPS) in capsys.readouterr().err
-
-
-def test_one_row_is_measured_in_a_process_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[Any] = []
-
-    def alone(module: str, what: Any) -> Any:
-        asked.append((module, what["ways"]))
-        return {"incremental": 1.0, "taken": {}}
-
-    monkeypatch.setattr(cycles, "alone", alone)
-    one = cycles.cycles_of(TINY, 1, 3, ["LATIN"])
-    assert asked == [(cycles.__name__, ["LATIN"])]
-    assert all(math.isnan(own.seconds) for own in one.taken.values())

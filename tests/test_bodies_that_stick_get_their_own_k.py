@@ -9,7 +9,6 @@ import pytest
 
 from solver.latin import iterations, solve
 from solver.latin.direction.sticking import LOOK
-from solver.latin.iterate import Checkpoint
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -55,12 +54,6 @@ def test_k_changes_once_and_only_on_what_touches():
 def test_k_stays_where_anything_slips():
     found = iterates(LOOK + 9, **SLIPPING)
     assert np.any(np.abs(found[LOOK - 1].contact("contact 1-2").status) == 1)
-    assert all(one.k is found[0].k for one in found)
-
-
-def test_k_stays_in_a_run_from_the_fields_of_another():
-    near = iterates(30, **THIN)[-1]
-    found = iterates(LOOK + 3, Checkpoint(0, 0.0, near.outgoing), **THIN)
     assert all(one.k is found[0].k for one in found)
 
 

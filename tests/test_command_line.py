@@ -46,15 +46,6 @@ def test_run_prints_the_key_figures_and_exits_0_when_converged(capsys):
     assert err == ""
 
 
-def test_what_rounding_leaves_of_an_error_is_printed_as_0(capsys):
-    assert main(["run", "block", "--set", "elements=12", "--set", "elements_up=6"]) == 0
-    figures = printed_figures(capsys.readouterr().out)
-    for name in ("indicator", "behaviour", "error_displacement", "error_force"):
-        assert figures[name] == "0" or float(figures[name]) > 2e-16, name
-    assert figures["indicator"] == "0"
-    assert float(figures["residual"]) > 0.0
-
-
 def test_the_papers_method_ends_where_its_indicator_says_and_gives_no_certificate(capsys):
     assert main(["run", "bar", *SMALL, *PAPER]) == 0
     figures = printed_figures(capsys.readouterr().out)
@@ -92,16 +83,6 @@ def test_json_is_strict_and_says_the_same_as_the_text(capsys):
     assert BarSettings.checked(found["settings"]).tolerance == 1e-6
 
 
-def test_a_bar_without_load_is_reported_in_strict_json(capsys):
-    for method, iterations in (("paper", 1), ("fast", 2)):
-        changes = ["--set", f"method={method}", "--set", "peak=0"]
-        assert main(["run", "bar", *SMALL, *changes, "--json"]) == 0
-        found = json.loads(capsys.readouterr().out)
-        # The certified solution comes after the iterate that it was found from.
-        assert found["iterations"] == iterations
-        assert found["indicator"] == found["error_force"] == found["estimated_error"] == 0.0
-
-
 def test_scenes_lists_all_scenes_with_their_source(capsys):
     assert main(["scenes"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -129,30 +110,6 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
         assert (f"(method=paper: {json.dumps(paper.get(name))})" in head) == differs
         assert head.endswith(allowed(definition))
         assert text.strip() == definition.doc
-
-
-def test_the_names_of_the_contract_are_settings_of_the_bar_with_their_defaults():
-    values = BarSettings().values()
-    promised = {
-        "elements": 50,
-        "instants": 101,
-        "substructures": 10,
-        "friction": 0.3,
-        "pressure": 5000.0,
-        "multiscale": True,
-        "k_scale": 1.0,
-        "linear_stage": "full",
-        "k_update": "none",
-        "method": "fast",
-        "accuracy": 0.01,
-    }
-    assert {name: values[name] for name in promised} == promised
-    papers = BarSettings.checked({"method": "paper"}).values()
-    assert (papers["search_direction"], papers["acceleration"]) == ("paper", "none")
-    assert (papers["start"], papers["tolerance"]) == ("zero", 1e-10)
-    others = {"young", "section", "length", "duration", "load", "peak", "k_friction_scale"}
-    others |= {"relaxation", "tolerance", "max_iterations"}
-    assert others <= set(values)
 
 
 def test_a_file_saved_by_one_front_is_run_by_the_other(tmp_path, capsys):

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.laws import Component, Contact, Sliders, Unilateral
-from solver.laws.play import play
 
 ANY = settings(max_examples=100)
 ROUNDING = 1e-12
@@ -81,48 +79,3 @@ def test_forces_between_two_bodies_are_opposite(case):
         for above, below in law.components:
             size = np.abs(k[:, None] * incoming).max()
             np.testing.assert_allclose(force[above], -force[below], atol=ROUNDING * size, rtol=1e-9)
-
-
-@pytest.mark.parametrize("opens", [True, False])
-def test_a_very_stiff_body_below_is_a_rigid_support(opens):
-    random = np.random.default_rng(5)
-    rows = np.arange(12).reshape(4, 3)
-    common = {"points": np.arange(3), "positions": np.arange(3.0), "weights": np.ones(3)}
-
-    def law(below):
-        normal, tangent = (Component(rows[n], rows[n + 2] if below else None) for n in (0, 1))
-        if not opens:
-            return Contact(tangential=Sliders.of_known_bound(tangent, np.full(3, 0.4)), **common)
-        return Contact(
-            normal=Unilateral(component=normal, gap=np.full(3, 0.1)),
-            tangential=Sliders.of_contact(tangent, np.full(3, 0.3)),
-            **common,
-        )
-
-    incoming = random.normal(size=(12, 20))
-    incoming[6:] = 0.0
-    k = np.ones(12)
-    k[6:] = 1e14
-    free, held = (
-        local_stage(law(below=True), k, incoming),
-        local_stage(law(below=False), k, incoming),
-    )
-    for one, other in zip(free, held, strict=True):
-        np.testing.assert_allclose(one[3:6], other[3:6], atol=1e-10)
-
-
-def test_the_only_pair_of_friction_between_two_bodies_follows_the_play_operator():
-    random = np.random.default_rng(3)
-    along = Component(np.array([1]), np.array([0]))
-    law = Contact(
-        tangential=Sliders.of_known_bound(along, np.array([0.7])),
-        points=np.array([0]),
-        positions=np.zeros(1),
-        weights=np.ones(1),
-    )
-    k, incoming = np.array([2.0, 5.0]), random.normal(size=(2, 30))
-    moved, force = local_stage(law, k, incoming)
-    soft = 1.0 / 2.0 + 1.0 / 5.0
-    wanted = play((incoming[1] - incoming[0])[None], np.array([0.7 * soft]))
-    np.testing.assert_allclose((moved[1] - moved[0])[None], wanted, atol=1e-12)
-    np.testing.assert_allclose(force[0], -force[1], atol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 from contact_problems import block
 
 from solver.discrete.stack.data import Given, Side
-from solver.latin import Ending, iterations, solve
+from solver.latin import iterations
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
@@ -57,22 +57,6 @@ def test_the_tilted_block_lifts_off_and_comes_back():
     status = reference.contact("support").status
     opened, closed = np.diff((status == OPEN).astype(int), axis=1) > 0, status[:, -1] != OPEN
     assert (opened[:, 3:].any(axis=1) & closed).sum() > 3
-
-
-def test_a_reference_is_no_distance_from_itself(case):
-    problem, reference, _ = case
-    distance = distance_to(reference, problem)
-    assert distance.of_displacement(reference) == 0.0
-    assert distance.of_friction_force(reference) == 0.0
-
-
-def test_a_solve_records_its_errors_and_ends_by_its_rules():
-    problem = block().discretise()
-    distance = distance_to(reference_of(problem), problem)
-    settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9, tolerance=1e-14)
-    solution = solve(problem, method_of(settings), distance=distance)
-    assert solution.status.ending is Ending.CONVERGED
-    assert solution.records[-1].error_force < 1e-4 < 1e-2 < solution.records[0].error_force
 
 
 def test_only_forces_that_a_support_does_not_share_are_compared():

@@ -68,19 +68,6 @@ def test_the_fast_method_finds_the_solution_of_a_hard_command(command):
     assert outcome.error_force < 1e-9
 
 
-@pytest.mark.parametrize("elements", [59, 60])
-def test_a_block_whose_solution_nobody_else_finds_is_called_converged_only_if_certified(elements):
-    outcome = outcome_of(
-        from_words(BLOCK.replace("height=0.321", "height=0.32"), elements=elements)
-    )
-    if outcome.doubt:
-        # Friction is large: an iterate's statuses may lead where those of an instant before do not.
-        assert outcome.ending != Ending.CONVERGED or outcome.certified
-        assert not outcome.certified or outcome.residual <= AT_ROUNDING
-    else:
-        assert outcome.error_force <= 0.01
-
-
 @pytest.mark.parametrize(
     "command",
     [
@@ -102,28 +89,6 @@ def test_a_step_that_needs_more_systems_gets_them_in_time(command):
     outcome = outcome_of(from_words(command))
     assert outcome.certified, outcome
     assert outcome.error_force < 1e-9
-
-
-def test_a_few_small_changes_after_a_nested_start_are_no_convergence():
-    settings = from_words(
-        "strand substructures=10 search_direction=paper "
-        "tolerance=0.06794181529902267 "
-        "instants=4 wires=8 break_position=0.18720674155082684 elements=332 max_iterations=12 "
-        "load=[[0,5.829812280248028],[0.333333333333333,17.112683269926748],"
-        "[0.666666666666667,40.55250457554996],[1,42.465815872553954]]"
-    )
-    assert judge(outcome_of(settings), settings.accuracy) is not Verdict.WRONG
-
-
-def test_a_slender_stack_is_certified_up_to_the_rounding_of_its_own_forces():
-    settings = from_words(
-        "layers substructures=40 instants=9 plane=stress elements=93 pressure=6338757 "
-        "pull=-115201152 deflection=0.91 bend_load=cycle layers=3 thickness=0.00044665 "
-        "accuracy=1e-6"
-    )
-    outcome = outcome_of(settings)
-    assert outcome.certified, outcome
-    assert judge(outcome, settings.accuracy) is Verdict.RIGHT
 
 
 def test_a_contact_force_that_all_but_stands_still_far_from_the_solution_is_not_believed():
@@ -159,34 +124,3 @@ def test_contacts_that_never_close_carry_a_force_that_is_known(method):
     solution = solve(problem, method_of(settings), distance=distance_to(reference, problem))
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-7
-
-
-def test_a_body_that_lifts_off_a_clamped_side_is_known_to_by_the_papers_method():
-    settings = from_words(
-        "block method=paper substructures=5 multiscale=false instants=76 elements=7 "
-        "elements_up=8 substructures_up=4 top_normal_displacement=-1.4529e-7 "
-        "top_tangential_displacement=-2.671e-8 radius=104641 height=0.099 body_force_y=419012679"
-    )
-    outcome = outcome_of(settings)
-    assert outcome.ending == Ending.CONVERGED, outcome
-    assert outcome.error_force < 1e-4
-
-
-def test_a_step_that_costs_next_to_nothing_need_not_wait_until_the_force_is_near():
-    settings = from_words(
-        "layers substructures=1 multiscale=false k_friction_scale=0.37 instants=6 elements=12 "
-        "elements_up=4 pressure=404851 deflection=8.3e-4 bend_load=cycle layers=6 "
-        "thickness=0.002665"
-    )
-    outcome = outcome_of(settings)
-    assert outcome.certified, outcome
-    assert outcome.iterations < 150
-
-
-def test_a_run_whose_k_was_changed_is_not_called_stalled_while_its_indicator_falls():
-    settings = from_words(
-        "bar method=paper k_update=status relaxation=0.51 k_scale=0.53 substructures=4 peak=-3085 "
-        "body_force=-11584 friction=1.234 elements=428 instants=17 max_iterations=400"
-    )
-    outcome = outcome_of(settings)
-    assert outcome.ending == Ending.EXHAUSTED, outcome

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.loads import BEGINS, INJECTIONS, PRESETS, PRESSURES, PULLS
 from solver.scenes import CATALOGUE
-from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, ends_of, turning_points
+from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, turning_points
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantities import QUANTITIES, reading
 from solver.study.quantities.shakedown import fate_of
@@ -117,11 +116,6 @@ def test_nothing_is_said_of_what_never_slips_or_of_cycles_that_differ() -> None:
     assert word(of([[2, 2, 2]], is_repeated=False)) is None
 
 
-def test_the_first_cycle_without_slip_is_told() -> None:
-    fates = [fate_of(of([slip])) for slip in ([0, 0, 0], [1, 0, 0], [0, 1, 0])]
-    assert [fate and fate.since for fate in fates] == [1, 2, 3]
-
-
 @pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])
 def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> None:
     run = ran("bar", peak=peak, **TIMES)
@@ -165,13 +159,6 @@ def test_the_lesson_on_shakedown_shows_slip_that_dies_and_slip_that_does_not() -
     assert fate_of(cut(lesson(friction=0.6))) is None
 
 
-def test_a_block_sheared_within_its_friction_shakes_down_after_one_cycle() -> None:
-    changes = {"gap": "flat", "top_tangential_load": "cycles", "instants": 121}
-    fate = fate_of(cut(ran("block", **changes, elements=16, elements_up=8, substructures=1)))
-    assert fate is not None
-    assert (fate.word, fate.since, fate.slip) == ("elastic shakedown", 2, 0.0)
-
-
 def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
     """Below its friction at every instant, and yet farther in each cycle, at all points alike."""
     moved = []
@@ -208,13 +195,6 @@ def test_friction_that_still_hardens_gets_no_word_until_it_has_hardened() -> Non
     assert words == [None, "steady slip"]
 
 
-@pytest.mark.parametrize("presets", [PRESETS, PULLS, PRESSURES, INJECTIONS])
-def test_what_is_repeated_goes_on_where_it_ended(presets: Any) -> None:
-    for name in set(BEGINS) & set(presets):
-        values = presets[name](np.array([BEGINS[name], 1.0]), 1)
-        assert values[0] == pytest.approx(values[1], abs=1e-12), name
-
-
 COMES_BACK = {"fault": {"injection_load": "pulses"}}
 """Of scenes whose usual load does not, one that does."""
 
@@ -230,15 +210,6 @@ def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
     assert counted[2] == counted[0] + 7 * more
 
 
-def test_repeated_cycles_of_a_bar_take_the_same_each() -> None:
-    """A repeated sine: from one peak to the next, 2 F^3 / (3 ES mu p) each."""
-    cycles = cut(ran("bar", cycles=4, instants=161))
-    assert len(cycles) == 3
-    exact = 2.0 * 900.0**3 / (3.0 * STIFFNESS * BOUND)
-    np.testing.assert_allclose(cycles.energy, exact, rtol=5e-3)
-    assert word(cycles) == "steady slip"
-
-
 def test_what_does_not_come_back_is_not_repeated() -> None:
     bar = CATALOGUE["bar"].settings
     for load in ("ramp", "hold", "random"):
@@ -247,25 +218,11 @@ def test_what_does_not_come_back_is_not_repeated() -> None:
         np.testing.assert_array_equal(*paths)
 
 
-def test_more_cycles_than_instants_are_all_there() -> None:
-    bar = CATALOGUE["bar"].settings
-    counted = [cycles_in(bar.checked({"cycles": 300, "instants": n})) for n in (11, 101, 1201)]
-    assert counted == [299] * 3
-
-
 def test_a_load_that_stands_still_has_no_cycles() -> None:
     """Rounding makes a constant weight swing by a few digits of the last place."""
     path = 1e3 + np.array([0.0, 1e-13, 0.0, -1e-13] * 5)
     assert not turning_points(path)
     assert cycles_in(CATALOGUE["incline"].settings.checked({})) == 0
-
-
-def test_of_several_loads_the_one_that_turns_most_makes_the_cycles() -> None:
-    bar = CATALOGUE["bar"].settings
-    assert cycles_in(bar.checked({})) == 0
-    assert cycles_in(bar.checked(TIMES)) == 5
-    assert ends_of(bar.checked(TIMES)) == ends_of(bar.checked({**TIMES, "body_force": 5.0}))
-    assert cycles_in(bar.checked({**TIMES, "load": "hold", "pressure_load": "shaken"})) == 5
 
 
 def test_a_load_that_grows_or_wanders_is_not_repeated() -> None:
@@ -279,19 +236,6 @@ def test_the_share_that_slides_is_how_far_the_front_comes(peak: float, share: fl
     run = ran("bar", peak=peak, elements=100, substructures=2, **TIMES)
     found = reading("sliding_share")(run)
     assert found == (share if share == 1.0 else pytest.approx(share, abs=0.02))
-
-
-def test_what_gives_way_may_stick_in_all_cycles() -> None:
-    law = {"friction_law": "compliant", "contact_stiffness": 1.0}
-    assert reading("sliding_share")(ran("bar", peak=300.0, **law, **TIMES, **SMALL)) == 0.0
-
-
-def test_energies_of_cycles_are_compared() -> None:
-    assert reading("cycle_energy_ratio")(ran("bar", peak=900.0, **TIMES)) == pytest.approx(1.0)
-    found = lesson()
-    energy = [reading(f"dissipation@{n}")(found) for n in (2, 5)]
-    assert reading("cycle_energy_ratio")(found) == pytest.approx(energy[1] / energy[0])
-    assert math.isnan(reading("cycle_energy_ratio")(lesson(friction=0.6)))
 
 
 NAMES = "cycle_energy_ratio", "ratchet", "sliding_share", "shakedown_factor"

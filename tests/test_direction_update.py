@@ -66,21 +66,6 @@ def test_fields_do_not_jump_when_k_does():
     assert np.allclose(after.local_incoming, kept, atol=1e-15)
 
 
-def test_points_that_slip_more_have_a_smaller_k_and_cuts_do_not_see_it():
-    chosen = options(**FAST)
-    first, last = (sample(chosen, 40)[place] for place in (0, -1))
-    law = last.problem.friction
-    others = np.setdiff1d(np.arange(last.problem.n_rows), law.tangent.above)
-    assert np.array_equal(first.k[others], last.k[others])
-    share = np.mean(last.status != 0, axis=1)
-    factor = (last.k / first.k)[law.tangent.above]
-    stuck, sliding = share[law.points] == 0.0, share[law.points] > 0.9
-    assert stuck.any()
-    assert sliding.any()
-    assert np.allclose(factor[stuck], 1.0)
-    assert np.all(factor[sliding] < 0.35)
-
-
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
     monkeypatch.setattr(update, "SLIDING", 1e-9)
@@ -122,15 +107,3 @@ def test_separated_bases_keep_their_k():
     chosen = options(linear_stage="pgd")
     assert not chosen.applies("k_update")
     assert sample(chosen, 30)[-1].course is None
-
-
-def test_a_compliant_point_below_its_bound_sticks_though_it_moves():
-    chosen = options(**FAST, friction_law="compliant", contact_stiffness=100.0, peak=300.0)
-    found = sample(chosen, 2)[-1]
-    law = found.problem.friction
-    moves = np.diff(law.by_point(law.tangent.jump(found.local_displacement)), axis=1) != 0.0
-    below = np.abs(found.boundary_local_force[law.tangent.above]) < 0.99 * law.tangential.bound
-    below = law.by_point(~below) == 0
-    assert np.count_nonzero(moves & below[:, 1:]) > 100
-    assert np.array_equal(found.course.status, found.status)
-    assert not found.course.status[below].any()

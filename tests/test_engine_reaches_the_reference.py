@@ -68,17 +68,6 @@ def test_every_load_path_reaches_the_reference(load, peak):
     assert_reached(options(**SMALL, load=load, peak=peak))
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_random_tables_of_points_reach_the_reference(seed):
-    forces = np.random.default_rng(seed).uniform(-1800.0, 1800.0, 9)
-    assert_reached(options(**SMALL, load=table(forces)))
-
-
-@pytest.mark.parametrize("seed", [2, 3])
-def test_random_walks_reach_the_reference(seed):
-    assert_reached(options(**SMALL, load="random", seed=seed, peak=1300.0))
-
-
 @pytest.mark.parametrize(
     "change",
     [
@@ -107,22 +96,12 @@ def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     assert relative(sample(chosen, 5).displacement, sample(other, 5).displacement) > 1e-3
 
 
-@pytest.mark.parametrize("substructures", [4, 10])
-def test_substructures_of_unequal_size_reach_the_reference(substructures):
-    assert_reached(options(elements=33, substructures=substructures, instants=31))
-
-
 @pytest.mark.parametrize("k_scale", [0.3, 3.0])
 def test_k_changes_the_path_and_not_the_limit(k_scale):
     chosen = options(**SMALL, k_scale=k_scale)
     assert_reached(chosen)
     plain = options(**SMALL)
     assert relative(sample(chosen, 5).displacement, sample(plain, 5).displacement) > 1e-3
-
-
-@pytest.mark.parametrize("relaxation", [0.5, 0.95])
-def test_relaxation_does_not_change_the_limit(relaxation):
-    assert_reached(options(**SMALL, relaxation=relaxation))
 
 
 @pytest.mark.parametrize("substructures", [3, 6])
@@ -134,18 +113,6 @@ def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(subst
     assert relative(sample(mono, 5).displacement, sample(multi, 5).displacement) > 1e-3
     ends = [assert_reached(chosen) for chosen in (multi, mono)]
     assert relative(ends[1].displacement, ends[0].displacement) < 1e-9
-
-
-def test_one_substructure_has_neither_cuts_nor_a_coarse_problem():
-    multi, mono = (
-        options(**{**SMALL, "substructures": 1}, multiscale=multiscale)
-        for multiscale in (True, False)
-    )
-    problem = discretise(multi)
-    assert not problem.has_cuts
-    assert set(problem.interfaces) == {"friction", "support", "load"}
-    for number in (1, 5):
-        assert np.array_equal(sample(multi, number).outgoing, sample(mono, number).outgoing)
 
 
 def test_the_bar_remembers_its_return_points():

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from solver.latin import (
@@ -22,8 +20,6 @@ from solver.latin import (
     iterations,
 )
 from solver.latin.linear import coarse, response
-from solver.latin.linear.full import FullGroup
-from solver.latin.linear.response import Responses
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -64,20 +60,3 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
 def test_a_part_refuses_its_own_numbers(make: Callable[[], object], name: str) -> None:
     with pytest.raises(RefusedError, match=rf"^{name} = .* is refused; allowed: a number"):
         make()
-
-
-@pytest.mark.parametrize("without", [0, 2, 3])
-def test_a_body_force_in_some_of_alike_substructures_stays_theirs(without: int) -> None:
-    problem = discretise(BarSettings.checked({**SMALL, "body_force": 100.0}))
-    parts = list(problem.substructures)
-    force = parts[without].body_force
-    assert force is not None
-    parts[without] = replace(parts[without], body_force=None)
-    missing = FullGroup(problem, parts, problem.direction, Responses())
-    parts[without] = replace(parts[without], body_force=np.zeros_like(force))
-    zero = FullGroup(problem, parts, problem.direction, Responses())
-    assert missing.body is not None
-    assert np.array_equal(missing.body, zero.body)
-    assert [bool(missing.body[:, place].any()) for place in range(4)] == [
-        place != without for place in range(4)
-    ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
-from itertools import islice, pairwise
+from itertools import islice
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,9 +15,7 @@ import pytest
 from solver.cli import main
 from solver.latin import Ending, StopRules, iterations, judged, solve, stop
 from solver.latin.criteria.changes import ForceChanges
-from solver.latin.criteria.estimate import ROOM, SETTLED, ErrorEstimate
-from solver.latin.finish.cost import Costs, costs_of, moving_share
-from solver.latin.finish.status_step import states_of
+from solver.latin.criteria.estimate import SETTLED, ErrorEstimate
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -66,24 +64,6 @@ def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
 
 @pytest.mark.parametrize("scene", SMALL)
 @pytest.mark.parametrize("method", METHODS)
-def test_a_certificate_is_the_solution_of_the_incremental_solver(scene: str, method: str) -> None:
-    settings = small(scene, method=method, max_iterations=400)
-    problem = discretise(settings)
-    reference = reference_of(problem)
-    found = next(
-        verdict.certificate
-        for _, verdict in judged(problem, method_of(settings))
-        if verdict.certificate is not None or verdict.status is not None
-    )
-    assert found is not None
-    assert found.residual < 1e-8
-    distance = distance_to(reference, problem)
-    assert distance.of_friction_force(found) < ROUNDING
-    assert distance.of_displacement(found) < ROUNDING
-
-
-@pytest.mark.parametrize("scene", SMALL)
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("accuracy", [1e-1, 1e-6])
 def test_a_run_that_converges_is_as_accurate_as_was_asked(
     scene: str, method: str, accuracy: float
@@ -96,16 +76,6 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
     last = solution.records[-1]
     assert last.error_force <= accuracy / LOW
     assert last.estimated_error <= accuracy
-
-
-def test_a_smaller_accuracy_takes_more_iterations() -> None:
-    settings = small("bar", finish="none")
-    problem = discretise(settings)
-    counts = [
-        solve(problem, method_of(settings.replace(accuracy=accuracy))).iterate.number
-        for accuracy in (1e-1, 1e-3, 1e-6)
-    ]
-    assert counts == sorted(set(counts))
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -149,41 +119,6 @@ def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     assert ("incremental solver's answer" in advice) == is_by_increments
 
 
-@pytest.mark.parametrize(("distance", "said"), [(0.05, "5"), (0.5, "50"), (130.0, "more than 100")])
-def test_a_certified_answer_is_not_called_wrong_by_how_far_its_start_was(
-    distance: float, said: str
-) -> None:
-    settings = CATALOGUE["bar"].settings()
-    answer = solve(discretise(settings), method_of(settings), watch=False).iterate
-    advice = stop.proven(answer, None, 0.0, distance).status.advice
-    assert advice.endswith(f" {said} % away from it.")
-    assert "wrong" not in advice
-
-
-def test_a_limit_comes_near_when_there_is_time_for_one_step() -> None:
-    problem = discretise(small("block"))
-    first = next(iterations(problem, method_of(small("block", start="zero"))))
-    step = costs_of(problem, moving_share(states_of(first))).step
-    found = []
-    for times in (math.inf, 2.0 * ROOM, 0.5 * ROOM):
-        estimate = ErrorEstimate(0.01)
-        estimate.deadline = times * step
-        estimate._left = lambda estimate=estimate: estimate.deadline  # type: ignore[method-assign]
-        found.append(estimate.is_last_chance(first))
-    assert found == [False, False, True]
-
-
-@pytest.mark.parametrize("finish", ["at-once", "none"])
-def test_at_its_last_chance_a_run_that_may_end_with_a_step_tries_one(
-    finish: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(ErrorEstimate, "is_last_chance", lambda *_: True)
-    monkeypatch.setattr(Costs, "afford", lambda _, iterations, least=0.0: math.isinf(least))
-    settings = small("block", finish=finish, start="zero")
-    _, verdict = next(judged(discretise(settings), method_of(settings)))
-    assert (verdict.certificate is not None) == (finish == "at-once")
-
-
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])
 @pytest.mark.parametrize("has_certificate", [False, True])
 def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
@@ -203,14 +138,6 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     assert f"stopped being finite at iteration {number + 1}" in verdict.status.advice
     assert math.isnan(verdict.estimated_error)
     assert verdict.finished is None
-
-
-@pytest.mark.parametrize("scene", SMALL)
-@pytest.mark.parametrize("method", METHODS)
-def test_seconds_increase_from_record_to_record(scene: str, method: str) -> None:
-    settings = small(scene, method=method, max_iterations=10)
-    solution = solve(discretise(settings), method_of(settings))
-    assert all(one.seconds < other.seconds for one, other in pairwise(solution.records))
 
 
 def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -253,14 +180,3 @@ def test_the_result_file_says_what_is_known_of_its_error(
     # The clamped end shares its force with the support; all other points have their own.
     assert not arrays["determinate"][0].any()
     assert arrays["determinate"][1:].all()
-
-
-def test_without_a_reference_the_estimate_is_still_there(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    for method in METHODS:
-        words = ["--set=elements=30", "--set", f"method={method}", "--no-reference", "--json"]
-        assert main(["run", "bar", *words]) == 0
-        told = json.loads(capsys.readouterr().out)
-        assert told["error_force"] is None
-        assert told["estimated_error"] <= 0.01

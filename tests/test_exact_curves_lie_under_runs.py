@@ -9,11 +9,8 @@ import numpy as np
 import pytest
 
 from app.link import read
-from solver.discrete.rods.rods import Rods
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.half_plane import HalfPlane
-from solver.reference.closed_forms.masing import masing
-from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
@@ -88,26 +85,6 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
             pairs = [(curve.up, own / weights)]
         for exact, ours in pairs:
             assert np.abs(exact - ours).mean() <= APART[curve.of] * np.abs(exact).mean()
-
-
-def test_masings_rule_gives_the_bar_on_any_path_that_does_not_slide_throughout():
-    load = np.cumsum(np.random.default_rng(3).uniform(-400.0, 400.0, 200))
-    load *= 1400.0 / np.abs(load).max()
-    instants = np.linspace(0.0, 1.0, 200)
-    bar = Rods(
-        length=1.0,
-        stiffness=659_400.0,
-        elements=20,
-        substructures=1,
-        bound=np.full(21, 1500.0),
-        load=load,
-        instants=instants,
-        duration=1.0,
-    )
-    exact = closed_form(bar)
-    assert exact is not None
-    found = masing(load, lambda force: force**2 / (2.0 * 659_400.0 * 1500.0))
-    assert found == pytest.approx(exact.end_displacement, abs=1e-6 * np.abs(found).max())
 
 
 def test_traction_of_a_shear_that_turns_begins_as_cattaneos_and_carries_the_force():

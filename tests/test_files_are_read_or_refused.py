@@ -5,22 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from valid_settings import DEFINITIONS, refusal
+from valid_settings import refusal
 
 from app.link import read as read_address
-from solver.curves import GivenCurve, curve_of
-from solver.definitions import SettingError
 from solver.files import settings_from_command, settings_from_toml
-from solver.tables import read_table
-
-
-def read(data: bytes | str, name: str = "load") -> GivenCurve:
-    definition = DEFINITIONS[name]
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError(name, "load.csv", "a table", remedy)
-
-    return curve_of(read_table(data, refuse), definition, name, definition.units)
 
 
 def test_a_csv_is_found_beside_the_settings_file_or_in_the_working_folder(tmp_path, monkeypatch):
@@ -39,21 +27,6 @@ def test_a_csv_may_have_quoted_names_in_capitals_and_empty_lines(tmp_path):
     file.write_text('"Time", Force\n\n0,0\n , \n1,"700"\n\n', encoding="utf-8")
     settings, _ = settings_from_command("bar", [f"load={file}"])
     assert settings.load == ((0.0, 0.0), (1.0, 700.0))
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "0;0\n0,5;1200\n",
-        "Zeit [s];Kraft [kN]\n0,0;0\n0,5;1,2\n",
-        "t\tF\n0\t0\n0.5\t1.2e3\n",
-        "Bench 3, second try\ntime (ms),force / N\n0,0\n500,1200\n",
-        "t;F\ns;kN\n\n0;0\n0,5;1,2\n;\n",
-    ],
-    ids=repr,
-)
-def test_a_csv_is_read_as_spreadsheets_write_it_with_its_units(text):
-    assert read(text).points == [[0.0, 0.0], [0.5, 1200.0]]
 
 
 @pytest.mark.parametrize(

@@ -87,16 +87,6 @@ def test_the_local_stage_obeys_the_bound_that_its_slip_has_left(seed, opens, two
     assert law.behaviour(moved, force, 1e-14).violation(1.0).max() < 1e-7
 
 
-def test_a_ratio_of_one_is_coulombs_law():
-    load = {"load": "random", "peak": 1200.0, "elements": 20, "instants": 31}
-    fields = []
-    for law in ({}, {**CHANGING, "friction_ratio": 1.0}):
-        chosen = CATALOGUE["bar"].settings.checked({**load, **law})
-        fields.append(solve(discretise(chosen), method_of(chosen)).iterate)
-    one, other = fields
-    np.testing.assert_allclose(one.displacement, other.displacement, rtol=0.0, atol=1e-15)
-
-
 @pytest.mark.parametrize("ratio", [0.0, 0.5, 2.0])
 def test_a_point_on_a_spring_moves_as_in_closed_form(ratio):
     first, spring, length = 0.5 * BOUND, AXIAL, 2.0 * BOUND / AXIAL
@@ -169,19 +159,6 @@ def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
     assert "jumps" in run.status.advice
 
 
-def test_a_displaced_end_goes_on_beyond_the_largest_load():
-    length, forces = 4e-4, []
-    largest = BOUND / gamma(0.0, length)
-    end = np.linspace(0.0, 1.2 * length, 61)
-    for elements in (50, 200):
-        found = reference_of(bar(SlipDependent(0.0, length), end * AXIAL, elements, displaced=True))
-        assert found.converged.all()
-        force = (found.displacement[-1] - found.displacement[-2]) * AXIAL * elements
-        assert force.argmax() < 60 or force[-1] <= force.max()
-        forces.append(abs(force.max() / largest - 1.0))
-    assert forces[1] < min(forces[0], 5e-3)
-
-
 @pytest.mark.parametrize("length", [1e-6, 1e-5, 1e-4])
 @pytest.mark.parametrize("displaced", [False, True])
 def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(length, displaced):
@@ -252,19 +229,6 @@ def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(len
     assert np.abs(apart).max() < 0.01 * exact[1][-1]
     # All of it slides on, with the last friction.
     assert pulled[jumps_at:] == pytest.approx(0.3 * 0.3e6, rel=1e-9)
-
-
-def test_what_a_run_advises_where_its_iterates_stall_finds_the_solution():
-    path = [[0.0, 0.0], [0.25, 0.0], [1.0, 6e-5]]
-    values = {**STRIP, "elements": 20, "instants": 31, "slip_length": 1e-5}
-    values |= {"right_normal_load": path, "finish": "none"}
-    chosen = CATALOGUE["block"].settings.checked(values)
-    problem = discretise(chosen)
-    run = solve(problem, method_of(chosen))
-    assert run.status.ending is Ending.STALLED
-    assert "finish=at-once" in run.status.advice
-    assert "jumps" in run.status.advice
-    assert solve(problem, method_of(chosen.replace(finish="at-once"))).is_certified
 
 
 @pytest.mark.parametrize(("ratio", "jumps"), [(0.7, False), (0.75, True), (0.8, False)])

@@ -146,9 +146,3 @@ def test_friction_summed_along_the_contact_approaches_two_square_roots():
         errors.append(np.abs(gap).max() / (FRICTION * contact.total))
     assert errors[0] > errors[1] > errors[2]
     assert errors[-1] < 0.03
-
-
-def test_before_the_reversal_friction_is_at_its_bound_everywhere():
-    fields = reversed_(40).fields
-    pressing, friction = fields.normal_force[:, 2], fields.tangential_force[:, 2]
-    np.testing.assert_allclose(friction, FRICTION * pressing, atol=1e-6 * pressing.max())

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options, sample
 
-from solver.latin import Iterate, solve
+from solver.latin import Iterate
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Contact, Dirichlet, Neumann
-from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.method import method_of
@@ -82,16 +81,3 @@ def test_the_behaviour_indicator_sees_no_k(number):
     assert found[1] > 0.0
     for other in (found[0], found[2]):
         assert other == pytest.approx(found[1], rel=1e-9, abs=1e-12)
-
-
-def test_the_behaviour_indicator_falls_with_the_error():
-    chosen = options(**SMALL)
-    problem = discretise(chosen)
-    solution = solve(
-        problem, method_of(chosen), distance=distance_to(incremental(problem), problem)
-    )
-    behaviour = np.array([entry.behaviour for entry in solution.records])
-    error = np.array([entry.error_force for entry in solution.records])
-    assert np.all(behaviour > 0.0)
-    assert behaviour[-1] < 1e-10
-    assert np.corrcoef(np.log(behaviour), np.log(error))[0, 1] > 0.9

@@ -15,9 +15,7 @@ from solver.study.mesh import (
     LEAST_ORDER,
     Refinement,
     answer,
-    instants_around,
     meshes_around,
-    which_to_refine,
 )
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
@@ -89,16 +87,6 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     assert lines[7].startswith("Refine elements first")
 
 
-def test_instants_are_halved_and_doubled_between_the_same_ends() -> None:
-    bar = CATALOGUE["bar"].settings.checked({"instants": 21})
-    runs, own = instants_around(bar)
-    assert [one.instants for one in runs] == [11, 21, 41]
-    assert runs[own].values() == bar.values()
-    odd, own = instants_around(bar.replace(instants=12))
-    assert [one.instants for one in odd] == [12, 23, 45]
-    assert own == 0
-
-
 @pytest.mark.parametrize(
     ("scene", "asked", "refined"),
     [
@@ -119,13 +107,6 @@ def test_it_is_said_which_to_refine(
     name, *changes = scene.split()
     assert main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
     assert f"Refine {refined} first" in capsys.readouterr().out
-
-
-def test_where_neither_changes_a_value_neither_is_to_be_refined() -> None:
-    same = Refinement((2.0, 2.0, 2.0 + 1e-9), 1)
-    assert which_to_refine(same, same).startswith("Neither")
-    assert "elements first" in which_to_refine(power(2.0, 1.0, 0.5), same)
-    assert which_to_refine(same, Refinement((1.0, math.nan, 1.0), 1)) == ""
 
 
 @pytest.mark.parametrize("asked", ["seconds", "peak_pressure", "nonsense"])

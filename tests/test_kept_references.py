@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from ropes import SMALL_ROPE
 
-from app.worker.references import ENTRIES, ReferenceCache
+from app.worker.references import ReferenceCache
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.fingerprint import fingerprint
@@ -96,11 +96,6 @@ def test_what_the_method_does_leaves_the_fingerprint(scene: str) -> None:
         assert fingerprint(made(scene, **{name: value})[1]) == own
 
 
-def test_cuts_of_a_bar_leave_the_fingerprint() -> None:
-    found = {fingerprint(made("bar", substructures=count)[1]) for count in (1, 2, 4, 5, 20)}
-    assert len(found) == 1
-
-
 @pytest.mark.parametrize(
     ("scene", "name"), [(scene, name) for scene, all_ in OF_THE_PHYSICS.items() for name in all_]
 )
@@ -157,10 +152,3 @@ def test_what_is_kept_keeps_no_problem_alive() -> None:
     gc.collect()
     assert watched() is None
     assert references.of(*made("block", k_scale=2.0), never) is not None
-
-
-def test_the_references_used_last_are_kept() -> None:
-    references = ReferenceCache()
-    for count in range(ENTRIES + 1):
-        references.of(*made("bar", peak=900.0 + count), never)
-    assert len(references._kept) == ENTRIES

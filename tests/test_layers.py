@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
     ["arrays"],
     ["refusal"],
@@ -47,7 +46,6 @@ LAYERS = [
 ]
 """Parts of the solver; each may import itself and what stands before it. Problem and method stand
 before all that knows settings and scenes."""
-LONGEST_FILE, LONGEST_FUNCTION = 400, 50
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 
 
@@ -97,13 +95,6 @@ FLOORS = [
 ]
 """Parts of the page; each may import itself, what stands beside it and before it. All others are
 above, and in no worker."""
-
-
-def functions(path):
-    """Give the name and the length of all functions of a file, docstrings included."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            yield node.name, node.end_lineno - node.lineno + 1
 
 
 def layer(module):
@@ -179,28 +170,6 @@ def test_the_parts_of_the_method_stand_below_what_puts_them_to_work():
             assert below <= {*PARTS, *GROUND}, name
 
 
-def test_every_part_of_the_solver_has_its_layer():
-    parts = {name.split(".")[1] for name in SOLVER if name != "solver"}
-    assert parts == {part for parts in LAYERS for part in parts}
-
-
-def test_files_and_functions_are_of_a_size_to_read():
-    for path in (*SOLVER.values(), *modules("app").values()):
-        assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE, path
-        long = {name: lines for name, lines in functions(path) if lines > LONGEST_FUNCTION}
-        assert long == {}, path
-
-
-@pytest.mark.parametrize("package", ["solver", "app"])
-def test_a_class_name_has_one_meaning(package):
-    places = defaultdict(list)
-    for name, path in modules(package).items():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                places[node.name].append(name)
-    assert {name: found for name, found in places.items() if len(found) > 1} == {}
-
-
 def floor(module):
     part = module.split(".")[1]
     return next((n for n, parts in enumerate(FLOORS) if part in parts), len(FLOORS))
@@ -227,21 +196,3 @@ def test_no_module_of_the_page_imports_itself_by_detours():
     page = modules("app")
     graph = {name: imports(path) & page.keys() for name, path in page.items()}
     TopologicalSorter(graph).prepare()
-
-
-def test_continuous_integration_lints_types_and_tests_with_the_commands_of_the_readme():
-    """A fresh clone is typed in twenty seconds, which whoever tests alone need not wait."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
-    done = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
-    assert done[-1].endswith("-m pytest")
-    checks = [line for line in done if "ruff check" in line]
-    assert "ruff format --check" in checks[0]
-    assert checks[0].endswith("mypy")
-    assert {*checks, done[-1]} <= {line.strip() for line in readme}
-
-
-def test_the_top_level_is_what_the_design_names():
-    done = run("git", "-c", "safe.directory=*", "ls-files")
-    assert done.returncode == 0, done.stderr
-    top = {line.split("/")[0] for line in done.stdout.splitlines()}
-    assert {name for name in top if not name.startswith(".")} == TOP_LEVEL

@@ -66,13 +66,6 @@ def test_stiffness_lies_between_the_limits_and_rises_with_friction():
     assert np.all(np.diff(found) > 0.0)
 
 
-def test_layers_without_friction_carry_none():
-    iterate = bent(3, 0.0, pressure=1e5)
-    for name in iterate.problem.rubbing:
-        fields = iterate.contact(name)
-        assert np.abs(fields.tangential_force).max() < 1e-6 * fields.normal_force.max()
-
-
 def test_the_inner_pressure_away_from_the_ends_is_that_on_the_faces():
     iterate = bent(3, 0.0, pressure=1e5)
     for name, law in iterate.problem.rubbing.items():

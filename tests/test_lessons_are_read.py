@@ -10,7 +10,7 @@ import pytest
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.lessons.lesson import Claim, Control, Value, pieces
+from solver.lessons.lesson import Control, Value, pieces
 from solver.lessons.reading import lesson_from_file
 
 FOLDER = Path(__file__).resolve().parents[1] / "app" / "lessons"
@@ -155,26 +155,6 @@ def test_what_is_no_lesson_at_all_is_refused_in_a_line(tmp_path: Path) -> None:
         lesson_from_file(tmp_path / "none.toml")
 
 
-@pytest.mark.parametrize(
-    ("claim", "holds", "fails"),
-    [
-        ({"expected": "3", "tolerance": "0.1"}, [2.71, 3.0, 3.29], [2.69, 3.31, math.nan]),
-        ({"expected": "-2", "tolerance": "0.5"}, [-3.0, -1.0], [-3.1, -0.9, 2.0]),
-        ({"expected": "[1, 2]"}, [1.0, 2.0], [0.99, 2.01, math.inf]),
-        ({"expected": '"never"'}, [math.inf], [1e300, math.nan, -math.inf]),
-    ],
-)
-def test_a_value_holds_within_what_is_expected_and_not_beyond(
-    tmp_path: Path, claim: dict[str, str | None], holds: list[float], fails: list[float]
-) -> None:
-    path = tmp_path / "small.toml"
-    path.write_text(written({}, claim), encoding="utf-8")
-    (one,) = lesson_from_file(path).checkpoints
-    assert isinstance(one, Claim)
-    assert all(one.expected.holds(value) for value in holds)
-    assert not any(one.expected.holds(value) for value in fails)
-
-
 def run(folder: Path, capsys: pytest.CaptureFixture[str], **claim: Any) -> tuple[int, str, str]:
     path = folder / "small.toml"
     path.write_text(written({}, claim), encoding="utf-8")
@@ -193,20 +173,6 @@ def test_the_command_prints_what_it_measures_and_says_whether_all_holds(
     assert code == 1
     assert printed.splitlines()[1].startswith("  - It ends.")
     assert printed.endswith("expected never\n")
-
-
-def test_a_claim_of_one_instant_has_to_hold_where_the_plots_stand(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    settings = '{ load = "ramp", elements = 40, instants = 5, substructures = 2 }'
-    claim = {"quantity": '"end_displacement"', "expected": "4.1e-4", "tolerance": "0.01"}
-    claim |= {"settings": "{}"}
-    path = tmp_path / "small.toml"
-    for instant, code, words in (("1", 0, "  + It"), ("0.75", 1, "0.0002303 m at the instant")):
-        parts = {"settings": settings, "instant": instant}
-        path.write_text(written(parts, claim), encoding="utf-8")
-        assert main(["lesson", str(path)]) == code
-        assert words in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("words", "code"), [("not known to be accurate", 0), ("Certified", 1)])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import re
 from pathlib import Path
 
 import pytest
@@ -23,7 +22,6 @@ CHECKPOINTS = [
     for number, one in enumerate(lesson.checkpoints)
 ]
 each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
-PAIRED = re.compile(r"\*\*[^*]+\*\*|\*[^*]+\*")
 
 
 @functools.cache
@@ -60,14 +58,3 @@ def test_every_control_stands_in_a_sentence_of_the_explanation(lesson: Lesson) -
 def test_nothing_before_the_choice_can_be_moved(lesson: Lesson) -> None:
     places = [piece for paragraph in lesson.text for piece in pieces(paragraph)]
     assert not [one for one in places if isinstance(one, Control)]
-
-
-@each
-def test_the_markdown_of_a_lesson_is_emphasis_alone(lesson: Lesson) -> None:
-    for paragraph in (*lesson.text, *lesson.explanation):
-        assert "*" not in PAIRED.sub("", paragraph)
-        assert not re.match(r"[#>|-]|\d+\.", paragraph)
-
-
-def test_lessons_have_places_of_their_own() -> None:
-    assert sorted(one.order for one in LESSONS.values()) == list(range(1, len(LESSONS) + 1))

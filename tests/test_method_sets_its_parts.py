@@ -7,11 +7,11 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from app.link import Place, query_of, read
-from app.state import SEARCH, default_settings
+from app.link import read
+from app.state import SEARCH
 from solver.checked import dump
 from solver.cli import main
-from solver.files import settings_from_command, settings_from_toml
+from solver.files import settings_from_command
 from solver.latin import iterations
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
@@ -89,12 +89,6 @@ def test_another_method_brings_its_parts_and_all_else_stays(method, change):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_same_method_again_changes_nothing(method):
-    settings = BarSettings.checked({"method": method, **BY_HAND})
-    assert settings.replace(method=method).values() == settings.values()
-
-
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("method_first", [True, False])
 def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first, tmp_path):
     named = {"method": method}
@@ -111,36 +105,6 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
     saved.write_text(f'scene = "bar"\nmethod = "{method}"\n', encoding="utf-8")
     assert parts(settings_from_command(str(saved), words)[0]) == expected
     assert parts(BarSettings.checked(named).replace(**BY_HAND)) == expected
-
-
-def test_what_is_set_beside_a_method_is_kept_where_something_else_is_refused():
-    place, complaint = read("?start=zero&method=paper&acceleration=anderson&a=1")
-    settings = place.settings
-    assert (settings.start, settings.acceleration, settings.method) == ("zero", "anderson", "paper")
-    assert "a" in complaint
-    together = "?acceleration=anderson&elements=5&method=paper&substructures=9"
-    place, complaint = read(together)
-    settings = place.settings
-    assert (settings.acceleration, settings.method, settings.start) == ("anderson", "paper", "zero")
-    assert complaint
-
-
-@pytest.mark.parametrize("scene", list(CATALOGUE))
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("by_hand", [{}, {"acceleration": "none"}, {"tolerance": 1e-7}], ids=str)
-def test_files_and_addresses_give_the_same_settings_again(scene, method, by_hand):
-    settings = CATALOGUE[scene].settings.checked({"method": method, **by_hand})
-    assert settings_from_toml(dump(settings)).values() == settings.values()
-    again, complaint = read(query_of(Place(settings)))
-    assert (again.settings.values(), complaint) == (settings.values(), "")
-
-
-def test_an_address_names_the_method_and_only_what_differs_from_it():
-    assert query_of(Place(default_settings("bar"))) == "?scene=bar"
-    paper = Place(BarSettings.checked({"method": "paper"}))
-    assert query_of(paper) == "?scene=bar&method=%22paper%22"
-    mixed = BarSettings.checked({"method": "paper", "acceleration": "anderson"})
-    assert mixed.changed() == {"method": "paper", "acceleration": "anderson"}
 
 
 def test_another_method_over_a_saved_file_brings_its_parts(tmp_path):

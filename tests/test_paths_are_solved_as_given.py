@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.instants import instants_of, thinned
 from solver.latin import Ending, solve
-from solver.loads import INJECTIONS, PRESETS, PRESSURES, PULLS, Preset
+from solver.loads import PRESSURES
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.diffusion import spread
-from solver.scenes import CATALOGUE, discretise, left_out, points_of
+from solver.scenes import CATALOGUE, discretise, left_out
 from solver.scenes.base import EVERY_POINT, LARGEST_FIELD, THINNED
 from solver.scenes.method import method_of
 
@@ -95,28 +93,6 @@ def test_instants_on_which_all_presets_turn_stay_evenly_spread(scene):
     np.testing.assert_array_equal(settings.times(), even)
 
 
-@pytest.mark.parametrize("shapes", [PRESETS, PULLS, PRESSURES, INJECTIONS])
-def test_the_corners_of_a_preset_are_all_that_it_has(shapes: dict[str, Preset]) -> None:
-    """Between them it is straight, or goes one way."""
-    for name, preset in shapes.items():
-        for seed in (1, 2, 5):
-            ends = np.concatenate([[0.0], preset.corners(seed), [1.0]])
-            for a, b in pairwise(ends):
-                inside = preset(np.linspace(a, b, 50)[1:-1], seed)
-                ways = np.sign(np.round(np.diff(inside), 12))
-                assert not (np.any(ways > 0.0) and np.any(ways < 0.0)), (name, a, b)
-
-
-@pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
-def test_the_table_that_stands_for_a_preset_has_its_extremes(scene, name):
-    for preset in CATALOGUE[scene].settings.definitions()[name].presets:
-        settings = of_preset(scene, name, preset)
-        given, table = settings.path(name), np.array(points_of(settings, name))[:, 1]
-        size = np.abs(given).max()
-        assert table.max() == pytest.approx(given.max(), abs=1e-5 * size), preset
-        assert table.min() == pytest.approx(given.min(), abs=1e-5 * size), preset
-
-
 def friction_of(changes: dict[str, Any]) -> float:
     """Solve the bar; give what friction takes, J."""
     settings = CATALOGUE["bar"].settings.checked(changes)
@@ -153,12 +129,6 @@ def noisy(points: int) -> list[list[float]]:
     return [[float(a), float(b)] for a, b in zip(times, wave, strict=True)]
 
 
-def test_a_small_problem_has_every_point_of_a_long_table():
-    settings = CATALOGUE["bar"].settings.checked({"load": noisy(20_001)})
-    assert settings.n_instants == 20_001
-    assert left_out(settings) == []
-
-
 def test_a_large_problem_keeps_the_peaks_of_a_long_table_and_says_what_it_leaves_out():
     table = noisy(60_001)
     settings = CATALOGUE["bar"].settings.checked({"load": table})
@@ -171,17 +141,6 @@ def test_a_large_problem_keeps_the_peaks_of_a_long_table_and_says_what_it_leaves
     (message,) = left_out(settings)
     assert message.startswith("load: 5")
     assert "of 60001 points are left out" in message
-
-
-def test_what_is_thinned_is_within_what_is_allowed():
-    random = np.random.default_rng(4)
-    for allowed in (0.0, 0.03, 0.3):
-        table = np.column_stack([np.cumsum(random.exponential(size=400)), random.normal(size=400)])
-        kept = thinned(table, allowed)
-        assert (kept[0], kept[-1]) == (0, 399)
-        assert {table[:, 1].argmax(), table[:, 1].argmin()} <= set(kept.tolist())
-        line = np.interp(table[:, 0], *table[kept].T)
-        assert np.abs(line - table[:, 1]).max() <= allowed + 1e-12
 
 
 def test_memory_is_checked_for_the_instants_that_there_are():
@@ -206,11 +165,3 @@ def test_a_fluid_spreads_alike_on_even_and_uneven_instants():
     some = np.sort(np.concatenate([[0, 60, 70, 200], np.arange(3, 200, 11)]))
     uneven = spread(place, even[some], given[some], 0.5)
     np.testing.assert_allclose(uneven, spread(place, even, given, 0.5)[:, some], atol=1e-9)
-
-
-def test_no_instant_is_there_twice():
-    """Corners of two presets that rounding sets apart are one."""
-    corners = np.array([0.3, 0.3 + 1e-16, 0.7])
-    times = instants_of(1.0, 11, np.array([0.31]), corners)
-    assert np.diff(times).min() > 1e-3
-    assert np.isin([0.31, 0.7], times).all()

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver.files import result_arrays, summary
 from solver.latin import Ending, iterations, solve
 from solver.reduction.basis import SeparatedBasis
 from solver.reduction.enrichment import Enrichment
@@ -98,27 +97,6 @@ def test_every_mode_is_admissible():
         assert np.abs(residual).max() < 1e-10 * np.abs(shown.force_modes).max()
 
 
-def test_the_bases_hold_the_iterate():
-    chosen = options(substructures=4)
-    problem, iterate = discretise(chosen), sample(chosen, 12)
-    for part, shown in zip(problem.substructures, iterate.bases, strict=True):
-        displacement = shown.displacement_modes @ shown.time_functions
-        force = shown.force_modes @ shown.time_functions
-        assert np.allclose(displacement, iterate.boundary_displacement[part.rows], atol=1e-12)
-        assert np.allclose(force, iterate.boundary_force[part.rows], atol=1e-12)
-
-
-def test_a_basis_given_the_exact_solution_needs_no_enrichment():
-    chosen = options(**SMALL, tolerance=1e-22, max_iterations=20_000)
-    exact = solve(
-        discretise(chosen), method_of(chosen.replace(linear_stage="full")), watch=False
-    ).iterate.checkpoint
-    tight = chosen.replace(**GENEROUS, tolerance=1e-30).replace(pgd_tolerance=1e-9)
-    for iterate in islice(iterations(discretise(chosen), method_of(tight), exact), 5):
-        assert iterate.reduction is not None
-        assert [entry.added for entry in iterate.reduction.records] == [0] * 5
-
-
 @pytest.mark.parametrize("change", [{}, {"pgd_sharing": 0.5}], ids=str)
 def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
     chosen = options(substructures=5, **change)
@@ -129,16 +107,6 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
     assert again.reduction is not None
     assert straight.reduction is not None
     assert again.reduction.records == straight.reduction.records
-
-
-def test_the_records_account_for_the_residual():
-    for iterate in islice(iterations(discretise(options()), method_of(options())), 30):
-        assert iterate.reduction is not None
-        for entry in iterate.reduction.records:
-            assert 0.0 <= entry.updated <= 1.0
-            assert 0.0 <= entry.enriched <= 1.0
-            assert entry.updated + entry.enriched <= 1.0 + 1e-6
-            assert entry.modes <= 10
 
 
 @pytest.mark.parametrize("scene", ["bar", "strand"])
@@ -153,60 +121,6 @@ def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
         stored.append(iterate.reduction.stored)
     assert errors[0] == pytest.approx(errors[1], rel=0.01)
     assert stored[0] < 0.75 * stored[1]
-
-
-def test_shared_bases_store_fewer_modes():
-    chosen = options(substructures=5, max_iterations=150, pgd_sharing=0.0)
-    own, shared = run(chosen), run(chosen.replace(pgd_sharing=0.5, pgd_modes=13))
-    assert own.iterate.reduction is not None
-    assert shared.iterate.reduction is not None
-    assert own.iterate.reduction.saved == 0
-    assert shared.iterate.reduction.saved > 0
-    assert shared.records[-1].error_displacement < 0.02
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"elements": 10, "substructures": 10},
-        {"instants": 1},
-        {"instants": 2},
-        {"peak": 0.0},
-        {"friction": 1e6},
-        {"peak": 4000.0},
-        {"friction": 0.0},
-        {"substructures": 1},
-        {"multiscale": False},
-        {"elements": 53, "body_force": 500.0},
-        {"relaxation": 1.0},
-        {"support_displacement": 1e-4},
-        {"pgd_modes": 1},
-        {"pgd_tolerance": 1.0},
-    ],
-    ids=str,
-)
-def test_degenerate_input_gives_finite_fields(change):
-    chosen = options(max_iterations=40, **change)
-    solution = run(chosen)
-    assert solution.status.ending is not Ending.DIVERGED
-    assert np.isfinite(solution.iterate.displacement).all()
-    assert np.isfinite(solution.iterate.friction_force).all()
-
-
-def test_without_load_no_mode_is_made():
-    solution = run(options(peak=0.0))
-    assert solution.iterate.reduction is not None
-    assert solution.iterate.reduction.stored == 0
-
-
-@pytest.mark.parametrize("change", [{"friction": 1e6}, {"peak": 4000.0}], ids=str)
-def test_without_and_with_nothing_but_sliding_the_generous_basis_is_exact(change):
-    chosen = options(**SMALL, tolerance=1e-14, max_iterations=30_000, **change)
-    full = run(chosen.replace(linear_stage="full"))
-    reduced = run(chosen.replace(**GENEROUS))
-    assert reduced.records[-1].error_displacement == pytest.approx(
-        full.records[-1].error_displacement, rel=0.1, abs=1e-9
-    )
 
 
 fields = st.tuples(
@@ -241,16 +155,6 @@ def test_downsizing_drops_no_more_than_its_tolerance(drawn):
     assert np.all(np.diff(kept) <= 0.0)
 
 
-@given(fields)
-def test_the_modes_of_a_field_are_orthonormal_and_hold_it(drawn):
-    rows, columns, seed, _ = drawn
-    basis, field = random_basis(rows, columns, seed)
-    gram = basis.modes.T @ (basis.k[:, None] * basis.modes)
-    assert np.allclose(gram, np.eye(basis.n_modes), atol=1e-12)
-    assert np.allclose(basis.field(), field, atol=1e-10 * np.abs(field).max())
-    assert basis.outside(basis) < 1e-6
-
-
 def test_the_fixed_point_finds_the_singular_pair(monkeypatch):
     monkeypatch.setattr("solver.reduction.enrichment.STEPS", 200)
     monkeypatch.setattr("solver.reduction.enrichment.STAGNATION", 0.0)
@@ -261,24 +165,3 @@ def test_the_fixed_point_finds_the_singular_pair(monkeypatch):
     root = np.sqrt(k)[:, None] * residual * np.sqrt(weights)
     leading = np.linalg.svd(root)[0][:, 0]
     assert abs(found @ leading) == pytest.approx(np.linalg.norm(found), rel=1e-9)
-
-
-def test_the_search_direction_is_the_full_stage_s():
-    chosen = options(k_friction_scale=3.0)
-    problem = discretise(chosen)
-    k = method_of(chosen).direction.of(problem)
-    iterate = sample(chosen, 3)
-    for part, shown in zip(problem.substructures, iterate.bases, strict=True):
-        assert np.array_equal(shown.k, k[part.rows])
-
-
-def test_results_hold_what_the_bases_went_through():
-    chosen = options(max_iterations=12, tolerance=1e-30)
-    solution = run(chosen)
-    arrays = result_arrays(chosen, solution)
-    for name in ("modes", "added", "updated", "enriched", "dropped"):
-        assert arrays[f"pgd_{name}"].shape == (12, 10)
-    figures = summary(chosen, solution)
-    assert figures["modes_stored"] + figures["modes_saved"] == arrays["pgd_modes"][-1].sum()
-    assert figures["modes_largest"] == arrays["pgd_modes"][-1].max()
-    assert figures["modes_saved"] > 0

@@ -9,7 +9,6 @@ from plane import lengths, reaction, solved, stress
 from solver.discrete.stack.equilibrium import wrench
 from solver.discrete.stack.rest import rigid_rest
 from solver.latin import Ending, solve
-from solver.reference.choice import reference_of
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings, block
 from solver.scenes.method import method_of
@@ -168,17 +167,6 @@ def test_a_body_falls_on_its_support_and_stands_there_as_if_it_had_been_there(ga
     np.testing.assert_allclose(found, wanted, atol=1e-3 * wanted.max())
 
 
-def test_before_anything_acts_a_body_hovers_where_it_was():
-    settings = BlockSettings.checked(
-        {"gap": ((0.0, 1e-2),), "top": "traction", "top_normal_traction": -PRESSURE, "instants": 5}
-    )
-    problem = discretise(settings)
-    for field in (solve(problem, method_of(settings)).iterate, reference_of(problem)):
-        openings = field.contact("support").opening
-        np.testing.assert_allclose(openings[:, 0], 1e-2, atol=1e-12)
-        assert np.abs(openings[:, 1:]).min() < 1e-9
-
-
 def test_a_rigid_body_rests_under_its_load_and_a_roller_keeps_it_upright():
     values = {"gap": "parabola", "top": "traction", "top_normal_traction": -PRESSURE}
     level, tilted, held = (
@@ -205,36 +193,6 @@ def test_a_body_that_rocks_on_a_few_points_rests_where_these_hold_its_loads(elem
     np.testing.assert_allclose(total / total[-1], force / force[-1], rtol=1e-6)
     centre = (pressed * x).sum(axis=0) / total
     np.testing.assert_allclose(centre, moment / force, atol=1e-6 * scene.length)
-
-
-def test_a_body_that_rocks_on_two_points_is_solved():
-    settings = BlockSettings.checked({**ROCKING, "accuracy": 1e-4})
-    problem = discretise(settings)
-    assert reference_of(problem).converged.all()
-    solution = solve(problem, method_of(settings))
-    assert solution.is_certified
-    assert solution.iterate.number < 200
-
-
-def test_a_wedge_of_gap_only_turns_the_block():
-    flat, wedge = (
-        solved(
-            "block",
-            gap=gap,
-            length=0.1,
-            height=0.1,
-            elements=12,
-            elements_up=12,
-            instants=1,
-            top="traction",
-            top_normal_traction=-PRESSURE,
-            violation=1e-10,
-        ).contact("support")
-        for gap in ("flat", [[0.0, 0.0], [0.1, 1e-4]])
-    )
-    scale = flat.normal_force.max()
-    np.testing.assert_allclose(wedge.normal_force, flat.normal_force, atol=1e-7 * scale)
-    np.testing.assert_allclose(wedge.tangential_force, flat.tangential_force, atol=1e-7 * scale)
 
 
 @pytest.mark.parametrize("interpolation", INTERPOLATIONS)

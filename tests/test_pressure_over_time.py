@@ -77,16 +77,6 @@ def test_shaken_once_is_shaken_for_good():
     np.testing.assert_allclose(end[first:], end[first], rtol=1e-12)
 
 
-def test_where_the_middle_of_a_bar_slips_there_is_no_closed_form():
-    scene = rod(load="triangle", peak=900.0, pressure_load="loosening")
-    assert closed_form(scene) is None
-    found = reference_of(scene.discretise())
-    at = int(scene.load.argmax()) + 8
-    status = found.status[:, at]
-    assert status[-1] == -1  # from the end, as the load falls
-    assert status[20] == 1  # and on in the middle, as the pressure does
-
-
 @DRAWN
 @given(st.lists(st.floats(-1500.0, 1500.0), min_size=8, max_size=8), FACTORS)
 def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, factors):
@@ -120,15 +110,6 @@ def test_latin_and_both_incremental_solvers_find_the_same(path, law, method):
     assert distance_to(found, problem).of_friction_force(iterate) < 1e-3
 
 
-@pytest.mark.parametrize("grip", ["force", "displacement"])
-def test_a_strand_is_certified_under_a_pressure_that_changes(grip):
-    own = {"load": "hold", "peak": 250.0, "pressure_load": "shaken", "grip": grip, "pressure": 5e3}
-    problem = discretise(CATALOGUE["strand"].settings.checked(own))
-    found = solve(problem, Latin())
-    assert found.is_certified
-    assert distance_to(reference_of(problem), problem).of_friction_force(found.iterate) < 1e-6
-
-
 def test_the_broken_wire_is_pulled_out_as_the_pressure_falls():
     own = {"load": "hold", "peak": 250.0, "pressure_load": "loosening", "elements": 200}
     chosen = CATALOGUE["strand"].settings.checked(own)
@@ -140,17 +121,6 @@ def test_the_broken_wire_is_pulled_out_as_the_pressure_falls():
     rows = found.displacement
     wire = rows[201 : 201 + 202]
     np.testing.assert_allclose(wire[101] - wire[100], opened, atol=5e-3 * opened.max())
-
-
-def test_a_table_whose_instants_are_alike_is_a_bound_that_stays():
-    scene = rod(peak=1100.0, elements=20, substructures=4)
-    same = replace(scene, bound=np.outer(scene.bound, np.ones(101)))
-    for one, other in ((Latin(), Latin()), (Latin(finish=None), Latin(finish=None))):
-        first, second = solve(scene.discretise(), one), solve(same.discretise(), other)
-        assert first.iterate.number == second.iterate.number
-        np.testing.assert_allclose(
-            first.iterate.displacement, second.iterate.displacement, rtol=1e-9, atol=1e-16
-        )
 
 
 def test_a_bound_may_travel_along_the_bar():

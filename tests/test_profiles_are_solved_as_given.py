@@ -9,7 +9,7 @@ import pytest
 
 from solver.cli import main
 from solver.latin import Ending, solve
-from solver.profiles import gap_at, harmonic_means, means, shares_of, unseen
+from solver.profiles import gap_at, unseen
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise, left_out, structure_of
 from solver.scenes.method import method_of
@@ -81,14 +81,6 @@ def test_a_notch_between_nodes_stretches_the_bar():
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
 
 
-def test_a_mean_of_nothing_is_nothing_and_one_of_the_same_is_that():
-    nodes = np.linspace(0.0, 1.0, 7)
-    hole = ((0.0, 1e8), (0.3, 1e8), (0.31, 0.0), (0.7, 0.0), (0.71, 1e-8))
-    assert means([hole], shares_of(nodes))[3] == 0.0
-    assert means([((0.2, 3.0),)], shares_of(nodes)) == pytest.approx(3.0, rel=1e-15)
-    assert harmonic_means(((0.0, 3.0), (1.0, 3.0)), nodes) == pytest.approx(3.0, rel=1e-15)
-
-
 def pressed(elements: int) -> tuple[float, list[str]]:
     """Press the block on an asperity; give the force, and what is said."""
     values = {**PRESSED, "gap": ASPERITY, "elements": elements}
@@ -116,12 +108,6 @@ def test_a_smooth_gap_in_many_points_is_that_of_its_nodes(points):
     nodes = np.linspace(0.0, 0.1, 49)
     assert gap_at(table, nodes) == pytest.approx((nodes - 0.05) ** 2 / 10.0, abs=2e-8)
     assert unseen("gap", table, 0.1, 48, 1) is None
-
-
-def test_a_step_in_a_gap_is_not_lowered():
-    nodes = np.linspace(0.0, 1.0, 5)
-    step = ((0.0, 1.0), (0.4, 1.0), (0.41, 0.0), (1.0, 0.0))
-    assert gap_at(step, nodes).tolist() == [1.0, 1.0, 0.0, 0.0, 0.0]
 
 
 def test_the_command_says_what_its_mesh_does_not_see(capsys):

@@ -6,33 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.other_programs import public_solvers
 from solver.study.other_programs.public_solvers import PUBLIC, solve_by
 from solver.study.speed.error_against_time import Peer, PeerError, error_against_time
-
-WHAT_THEY_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
-
-
-@pytest.mark.parametrize("public", PUBLIC, ids=lambda public: public.name)
-@pytest.mark.parametrize(
-    "changes",
-    [{}, {"pressure_profile": "gap"}, {"support_displacement": 1e-4}, {"body_force": 500.0}],
-    ids=str,
-)
-def test_public_solvers_agree_with_the_incremental_solver(public, changes):
-    if not public.installed:
-        pytest.skip(f"{public.module} is not installed")
-    problem = discretise(
-        BarSettings.checked({"method": "paper", "elements": 20, "instants": 21, **changes})
-    )
-    distance = distance_to(incremental(problem), problem)
-    fields = solve_by(public, problem, public.tolerances[-1])
-    assert distance.of_friction_force(fields) < WHAT_THEY_REACH[public.name]
-    assert distance.of_displacement(fields) < WHAT_THEY_REACH[public.name]
 
 
 def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):

@@ -38,8 +38,3 @@ def test_the_code_is_linted_for_the_oldest_and_the_readme_names_it() -> None:
 def test_the_container_has_one_of_them() -> None:
     (version,) = re.findall(r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M)
     assert version in PROMISED
-
-
-def test_continuous_integration_tries_the_others_too_and_runs_the_reports() -> None:
-    lines = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
-    assert {".ci/other_pythons", ".ci/reports"} <= set(lines)

@@ -46,15 +46,6 @@ def test_the_end_of_the_bar_moves_as_the_closed_form_says(peak: float) -> None:
     assert taken("peak_slip", run) == pytest.approx(exact, rel=1e-6)
 
 
-@pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])
-def test_a_full_cycle_of_the_bar_dissipates_what_the_closed_form_says(peak: float) -> None:
-    run = ran("bar", load="cycle", peak=peak, instants=41)
-    exact = 2.0 * peak**3 / (3.0 * STIFFNESS * BOUND)
-    assert taken("dissipation@1", run) == pytest.approx(exact, rel=2e-3)
-    # The first pull takes a quarter of a full cycle: a front half as long, over half the way.
-    assert taken("dissipation", run) == pytest.approx(1.25 * exact, rel=2e-3)
-
-
 def test_the_energy_of_a_cycle_converges_with_the_mesh() -> None:
     exact = 2.0 * 900.0**3 / (3.0 * STIFFNESS * BOUND)
     errors = [
@@ -62,13 +53,6 @@ def test_the_energy_of_a_cycle_converges_with_the_mesh() -> None:
         for n in (25, 50, 100)
     ]
     assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2]
-
-
-def test_unloading_and_loading_again_is_a_cycle_of_half_the_amplitude() -> None:
-    """Masing's rule."""
-    run = ran("bar", load=((0.0, 0.0), (1.0, 900.0), (2.0, 0.0), (3.0, 900.0)), duration=3.0)
-    exact = 2.0 * 450.0**3 / (3.0 * STIFFNESS * BOUND)
-    assert taken("dissipation@1", run) == pytest.approx(exact, rel=0.02)
 
 
 def test_unloading_the_bar_leaves_half_of_its_displacement() -> None:
@@ -143,12 +127,6 @@ def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     assert taken("iterations", run) == 40
 
 
-def test_a_run_without_errors_has_none() -> None:
-    run = ran("bar", **SMALL)
-    for text in ("iterations_to_force@0.1", "seconds_to_displacement@0.1", "error_force"):
-        assert math.isnan(taken(text, run)), text
-
-
 def test_more_instants_take_more_memory_and_a_field_of_them_is_the_least_of_it() -> None:
     found = [taken("memory", ran("bar", elements=200, instants=instants)) for instants in (51, 801)]
     field = 8.0 * 201 * (801 - 51)
@@ -168,13 +146,6 @@ def test_modes_are_those_of_the_largest_basis_and_a_smooth_field_needs_fewer() -
     assert displacement == sorted(displacement)
     assert force == sorted(force)
     assert displacement[1] < force[1] <= 21
-
-
-def test_a_pressed_block_carries_what_presses_it() -> None:
-    pressed = {"gap": "flat", "top": "traction", "top_normal_traction": -1e7}
-    run = ran("block", **pressed, **SMALL_BLOCK)
-    assert taken("peak_pressing", run) == pytest.approx(1e7 * 0.1, rel=1e-6)
-    assert math.isnan(taken("peak_pressing", ran("bar", **SMALL)))
 
 
 def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() -> None:
@@ -214,12 +185,6 @@ def test_compliant_friction_dissipates_by_slip_alone() -> None:
     assert abs(taken("dissipation", run)) < 1e-12 * size
 
 
-def test_a_loop_over_an_angle_has_no_displacement() -> None:
-    run = ran("incline", elements=6, elements_up=4, instants=9, substructures=1)
-    for name in ("end_displacement", "residual_displacement", "first_slip_displacement"):
-        assert math.isnan(taken(name, run)), name
-
-
 @pytest.mark.parametrize(
     ("path", "turns"),
     [
@@ -234,25 +199,6 @@ def test_a_loop_over_an_angle_has_no_displacement() -> None:
 )
 def test_turning_points_are_where_a_path_turns_back(path: list[float], turns: list[int]) -> None:
     assert turning_points(np.array(path, dtype=float)) == turns
-
-
-def test_there_are_no_cycles_beyond_those_of_the_load() -> None:
-    run = ran("bar", load="cycle", peak=900.0, instants=41)
-    assert math.isnan(taken("dissipation@2", run))
-
-
-def test_every_quantity_can_be_taken_of_every_scene() -> None:
-    for scene in CATALOGUE:
-        run = ran(
-            scene, errors=True, **(SMALL_BLOCK if CATALOGUE[scene].kind == "plane" else SMALL)
-        )
-        for name, quantity in QUANTITIES.items():
-            if name == "memory" and scene != "bar":  # it takes a process of its own
-                continue
-            needed = quantity.parameter is not None and quantity.parameter.needed
-            found = reading(f"{name}@0.1" if needed else name)
-            assert isinstance(found(run), int | float), name
-            assert found.title
 
 
 @pytest.mark.parametrize(

@@ -66,18 +66,6 @@ def test_unloading_and_reloading_are_twice_as_stiff(peak):
     np.testing.assert_allclose(end[40:], reloading, rtol=0.0, atol=1e-6 * most)
 
 
-def test_friction_balances_the_normal_force_and_stays_within_the_bound():
-    base = scene(load="random", peak=2400.0, friction_profile="rising")
-    found = solved(base)
-    total = found.friction_force.sum(axis=0)
-    np.testing.assert_allclose(total, found.normal_force[0] - base.load, atol=1e-9)
-    share = np.full(51, 0.02)
-    share[[0, -1]] = 0.01
-    middle = slice(1, -1)
-    bound = (base.bound * share)[middle, None]
-    assert np.all(np.abs(found.friction_force[middle]) <= bound * (1.0 + 1e-9))
-
-
 def loop_area(force: np.ndarray, end: np.ndarray) -> float:
     return float(np.trapezoid(force, end))
 
@@ -119,16 +107,6 @@ def test_the_answer_does_not_depend_on_the_rate(corners, points):
 
 
 @EXACT
-@given(FORCES, st.floats(1e-3, 1e3))
-def test_scaling_load_and_pressure_scales_the_displacement(corners, factor):
-    base = under(scene(elements=10), corners)
-    scaled = replace(base, load=factor * base.load, bound=factor * base.bound)
-    for solve in (solved, lambda one: incremental(one.discretise())):
-        once, more = solve(base).displacement, solve(scaled).displacement
-        np.testing.assert_allclose(more, factor * once, rtol=1e-9, atol=1e-15 * factor)
-
-
-@EXACT
 @given(st.floats(-2400.0, 2400.0), st.floats(-2400.0, 2400.0), st.floats(0.0, 1.0))
 def test_a_closed_inner_loop_leaves_no_trace(first, turn, depth):
     inside = turn + depth * (first - turn)
@@ -162,8 +140,3 @@ def test_incremental_displacement_converges_with_order_two(profile, load, peak):
         errors.append(float(np.linalg.norm(discrete - exact) / np.linalg.norm(exact)))
     assert fitted_order(sizes, errors) > 1.8
     assert errors[-1] < 1e-4
-
-
-def test_there_is_no_closed_form_under_a_moving_support_or_body_forces():
-    assert closed_form(scene(support_displacement=1e-4)) is None
-    assert closed_form(scene(body_force=100.0)) is None

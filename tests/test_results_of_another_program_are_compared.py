@@ -18,7 +18,7 @@ from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
 from solver.study.other_programs.beside import Beside, weights_of
-from solver.study.other_programs.brought import Brought, read_brought
+from solver.study.other_programs.brought import read_brought
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -84,13 +84,6 @@ def test_a_field_times_a_factor_is_as_far_as_the_factor_says(scene: str, factor:
     x, t, values = own_friction(scene)
     brought = read_brought(table("friction force", x, t, factor * values), "a.csv", settings)
     assert Beside(brought, problem).of(reference) == pytest.approx(abs((factor - 1.0) / factor))
-
-
-def test_what_vanishes_everywhere_is_measured_by_the_run() -> None:
-    settings, problem, reference = solved("bar")
-    x, t, values = own_friction("bar")
-    brought = read_brought(table("friction force", x, t, 0.0 * values), "a.csv", settings)
-    assert Beside(brought, problem).of(reference) == pytest.approx(1.0)
 
 
 def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
@@ -215,24 +208,11 @@ def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str)
     assert "theirs.csv" in str(caught.value)
 
 
-@pytest.mark.parametrize("scene", ["strand", "block"])
-def test_displacements_are_of_a_single_rod(scene: str) -> None:
-    with pytest.raises(SettingError, match="give the friction force here"):
-        read_brought("x,t,u\n" + ROWS, "theirs.csv", settings_of(scene))
-
-
 def test_friction_of_bodies_in_the_plane_is_a_traction() -> None:
     with pytest.raises(SettingError, match="give it in Pa"):
         read_brought("x,t,friction [N/m]\n0.01,0,1\n", "theirs.csv", settings_of("block"))
     text = "x,t,friction [MPa]\n" + "0.01,0,1\n" * 4
     assert read_brought(text, "theirs.csv", settings_of("block")).values[0] == 1e6
-
-
-def test_what_is_drawn_at_an_instant_is_the_nearest_of_theirs() -> None:
-    rows = np.array([[0.3, 0.5, 3.0], [0.1, 0.0, 1.0], [0.2, 0.5, 2.0], [0.5, 0.0, 4.0]])
-    brought = Brought("displacement", *rows.T, "a.csv", "bar", "")
-    time, x, values = brought.nearest(0.4)
-    assert (time, list(x), list(values)) == (0.5, [0.2, 0.3], [2.0, 3.0])
 
 
 def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) -> None:

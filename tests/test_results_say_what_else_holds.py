@@ -74,10 +74,6 @@ def test_a_contact_that_grows_by_leaps_has_friction_in_a_saw_and_says_so() -> No
     assert saws[0] > 2.0 * saws[1]
 
 
-def test_a_contact_without_friction_may_grow_as_it_likes() -> None:
-    assert remarks(ran("block", **{**PRESSED, "friction": 0.0}, instants=11)) == []
-
-
 def test_the_command_prints_remarks_with_the_result(capsys: pytest.CaptureFixture[str]) -> None:
     changes = [text for name, value in TALL.items() for text in ("--set", f"{name}={value}")]
     command = ["run", "block", *changes, "--set", "friction=0.9", "--no-reference"]

@@ -61,16 +61,6 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
     assert solution.records[-1].error_force < 1e-8
 
 
-def test_started_where_it_ended_the_run_stops_at_once():
-    chosen = options(**SMALL)
-    problem = discretise(chosen)
-    ended = solve(problem, method_of(chosen)).iterate
-    again = solve(problem, method_of(chosen), start=ended.checkpoint)
-    assert again.status.ending is Ending.CONVERGED
-    assert again.iterate.number == ended.number + 1
-    assert again.iterate.seconds > ended.seconds
-
-
 def test_a_run_that_nobody_resumes_keeps_nothing_for_it_and_says_so():
     chosen = options(**SMALL, acceleration="anderson")
     problem = discretise(chosen)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver.scenes import CATALOGUE, words_of
-from solver.scenes.words import acting, counted
+from solver.scenes.words import acting
 
 LONGEST = 140
 """Letters that a line has room for across a page of 1280 pixels, beside its controls."""
@@ -57,8 +57,3 @@ def test_what_is_done_is_done_by_a_load_of_that_sign(path: list[float]) -> None:
     assert ("to and fro" in said) == (min(path) < 0.0 < max(path))
     assert ("pushed" in said) == (min(path) < 0.0 >= max(path))
     assert said.startswith("not") == (not any(path))
-
-
-def test_few_are_counted_in_words() -> None:
-    assert counted(2) == "two"
-    assert counted(20) == "20"

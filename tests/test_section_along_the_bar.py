@@ -8,7 +8,6 @@ import pytest
 from solver.definitions import SettingError
 from solver.latin import solve
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
@@ -55,28 +54,6 @@ def test_a_bar_without_friction_stretches_by_the_mean_compliance():
     assert np.mean(1.0 / scene.section) == pytest.approx(1.0)
 
 
-def test_the_paper_search_direction_follows_the_mean_stiffness_of_a_substructure():
-    even, uneven = (discretise(settings(section_profile=one)) for one in ("uniform", GRADED))
-    scene = bar(settings(section_profile=GRADED))
-    for part, other in zip(even.substructures, uneven.substructures, strict=True):
-        own = scene.section[part.dofs[:-1]]
-        harmonic = 1.0 / np.mean(1.0 / own)
-        assert other.elasticity.direction == pytest.approx(harmonic * part.elasticity.direction)
-
-
-@pytest.mark.parametrize("elements", [24, 25, 55])
-def test_coarser_meshes_are_as_compliant_between_their_nodes(elements):
-    scene = bar(settings(elements=elements, section_profile=GRADED))
-    coarse = scene.coarser()
-    assert len(coarse.section) == coarse.elements == elements // 2
-    whole, half = (
-        np.concatenate([[0.0], np.cumsum(1.0 / one.section) / one.elements])
-        for one in (scene, coarse)
-    )
-    assert half == pytest.approx(np.interp(coarse.nodes, scene.nodes, whole))
-    assert bar(settings()).coarser().section is None
-
-
 @pytest.mark.parametrize("options", [{}, {"search_direction": "auto", "start": "nested"}])
 @pytest.mark.parametrize("profile", ["rising", "falling", GRADED])
 def test_the_method_reaches_the_reference(options, profile):
@@ -88,11 +65,6 @@ def test_the_method_reaches_the_reference(options, profile):
     )
     assert solution.status.ending == "converged"
     assert solution.records[-1].error_force <= 1e-6
-
-
-def test_the_closed_form_is_for_one_section_alone():
-    assert closed_form(bar(settings())) is not None
-    assert closed_form(bar(settings(section_profile="rising"))) is None
 
 
 @pytest.mark.parametrize(

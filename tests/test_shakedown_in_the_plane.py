@@ -143,12 +143,6 @@ def test_a_block_pressed_by_displacement_slips_for_ever_from_rest_a_little_below
     assert taken == pytest.approx([energy, energy], rel=1e-2, abs=1e-6)
 
 
-def test_how_the_pressing_begins_is_no_part_of_the_factor() -> None:
-    """Only the last cycle counts: a push before it changes nothing of what could stay."""
-    pushed, not_pushed = (factor(ran("block", FREE, SHEAR, first)) for first in (PUSH, 0.0))
-    assert pushed == pytest.approx(not_pushed, rel=1e-9)
-
-
 @pytest.mark.parametrize(
     ("scene", "given", "swing"),
     [("layers", TWINS, 4e-3), ("block", FREE, SHEAR), ("block", ROLLER, 1e6)],
@@ -187,23 +181,6 @@ def test_a_corner_that_only_presses_ends_the_swing_where_it_opens() -> None:
         assert (beyond.iterate.status[0, last(beyond)] == OPEN).any()
 
 
-@pytest.mark.parametrize("given", [FREE, ROLLER, {**FREE, "friction": 0.6}])
-def test_with_the_slip_that_is_found_all_contacts_press_at_all_instants(
-    given: dict[str, Any],
-) -> None:
-    """Two planes of a point, added up, are its pressing force, within rounding."""
-    run = ran("block", given, 1e6)
-    space = slip_space(run.problem)
-    found, slip = largest_swing(space, last(run))
-    limit = space.limit[:, last(run)]
-    mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)[:, None]
-    room = mean + found * (limit - mean) - (space.matrix @ slip)[:, None]
-    count = space.matrix.shape[1]
-    pressing = np.concatenate([room[:count] + room[count : 2 * count], room[2 * count :]])
-    assert pressing.min() >= -1e-6 * np.abs(limit).max()
-    assert np.abs(room.min()) <= 1e-6 * np.abs(limit).max()
-
-
 @pytest.mark.parametrize(
     "changes",
     [
@@ -224,19 +201,6 @@ def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> N
 def last_of(settings: Any) -> slice:
     ends = ends_of(settings)
     return slice(ends[-2], ends[-1] + 1)
-
-
-def test_a_fault_whose_strength_alone_is_driven_has_no_factor_on_a_load() -> None:
-    fault = {
-        "elements": 8,
-        "elements_up": 4,
-        "instants": 81,
-        "cycles": 3,
-        "injection_load": "pulses",
-    }
-    settings = CATALOGUE["fault"].settings.checked(fault)
-    assert QUANTITIES["ratchet"].applies(settings)
-    assert not QUANTITIES["shakedown_factor"].applies(settings)
 
 
 def test_a_spring_that_catches_a_block_and_too_many_points_are_refused() -> None:

@@ -8,9 +8,6 @@ import numpy as np
 import pytest
 from plane import whole_force_error
 
-from solver.discrete.elements import elastic_matrix
-from solver.discrete.macro import HIGHEST_DEGREE, side_basis
-from solver.discrete.plane import Rectangle
 from solver.latin import iterations, solve
 from solver.latin.direction.rules import automatic
 from solver.reference.choice import reference_of
@@ -34,11 +31,6 @@ def error_after(most, settings, problem):
     reference = reference_of(problem)
     found = islice(iterations(problem, method_of(settings)), most - 3, most)
     return max(whole_force_error(reference, one) for one in found)
-
-
-def degree_of(columns, rows, **values):
-    rectangle = Rectangle(columns, rows, 1.0, 1.0, elastic_matrix(1.0, 0.3, "strain"))
-    return side_basis(rectangle, "top", columns + 1, **values).shape[1] - 1
 
 
 @pytest.mark.parametrize("ratio", [50, 200, 1000])
@@ -77,22 +69,6 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
     assert solve(problem, method_of(settings)).is_certified
 
 
-def test_the_macro_degree_grows_with_the_root_of_length_over_depth():
-    short, long, longer = (degree_of(columns, 2, degree=1) for columns in (4, 50, 200))
-    assert (short, long, longer) == (1, 3, 6)
-
-
-def test_a_long_side_keeps_a_degree_of_zero_and_what_its_points_and_the_most_allow():
-    assert degree_of(400, 1, degree=0) == 0
-    assert degree_of(400, 1, degree=2) == HIGHEST_DEGREE
-    assert degree_of(5, 1, degree=8) == 5
-
-
-def test_the_macro_basis_of_a_long_side_has_independent_columns():
-    rectangle = Rectangle(12, 1, 1.0, 0.01, elastic_matrix(1.0, 0.3, "strain"))
-    assert np.linalg.cond(side_basis(rectangle, "top", 13, 2)) < 100.0
-
-
 def test_k_between_bodies_knows_their_shape_and_not_their_cuts():
     def total(ratio, **values):
         _, problem = layers_of(ratio, **values)
@@ -106,23 +82,3 @@ def test_k_between_bodies_knows_their_shape_and_not_their_cuts():
     # no part of the contact.
     fine = total(200, elements=200)
     np.testing.assert_allclose(fine, np.sqrt(40 / 200) * np.array((7.0, 1.0)), rtol=1e-4)
-
-
-def test_k_of_a_support_is_at_least_the_stiffness_of_what_is_squeezed_on_it():
-    for height, expected in ((0.05, 7.0), (1e-3, 100.0)):
-        _, problem = problem_of("block", height=height)
-        law = problem.rubbing["support"]
-        k = automatic(problem)
-        np.testing.assert_allclose(k[law.normal.component.above].sum(), expected, rtol=1e-12)
-        np.testing.assert_allclose(k[law.tangent.above].sum(), expected, rtol=1e-12)
-
-
-def test_k_of_a_support_grows_with_the_cube_root_of_its_points_on_fine_meshes_of_deep_bodies():
-    def total(**values):
-        _, problem = problem_of("block", elements_up=4, substructures=8, **values)
-        law = problem.rubbing["support"]
-        return automatic(problem)[law.normal.component.above].sum()
-
-    np.testing.assert_allclose(total(elements=96), 7.0, rtol=1e-12)
-    np.testing.assert_allclose(total(elements=768), 14.0, rtol=1e-12)
-    np.testing.assert_allclose(total(elements=768, height=1e-3), 100.0, rtol=1e-12)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import re
 import shutil
 import socket
 import subprocess
@@ -12,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import NO_BROWSER, ROOT, chromium
+from browser import ROOT, chromium
 
 
 def test_a_port_in_use_is_named_in_a_line() -> None:
@@ -46,37 +44,3 @@ def test_a_browser_that_is_missing_skips_a_test_and_where_one_is_promised_fails_
     monkeypatch.setenv("CI", promised)
     with pytest.raises(outcome, match="apt-get install chromium"):
         chromium()
-
-
-def test_the_last_line_says_how_many_tests_were_skipped_for_want_of_a_browser(
-    tmp_path: Path,
-) -> None:
-    tests = tmp_path / "test_page.py"
-    tests.write_text(
-        "def test_page(chrome): pass\ndef test_other(chrome): pass\ndef test_none(): pass\n",
-        encoding="utf-8",
-    )
-    surroundings = {**os.environ, "PATH": "", "CI": "", "PYTHONPATH": f"{ROOT}:{ROOT / 'tests'}"}
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "conftest", f"--rootdir={tmp_path}"]
-    done = subprocess.run(
-        [*command, str(tests)], cwd=tmp_path, env=surroundings, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.splitlines()[-1] == f"2 tests skipped: {NO_BROWSER}"
-
-
-def test_the_readme_tries_to_install_a_browser_and_tests_without_one_too(tmp_path: Path) -> None:
-    """Without apt, and where it may not, the line before the tests ends well."""
-    (line,) = re.findall(r"^command -v chromium .*$", (ROOT / "README.md").read_text("utf-8"), re.M)
-    shell = shutil.which("sh")
-    assert shell is not None
-    for refusal in (None, "echo denied; exit 100", "echo installed"):
-        apt = tmp_path / "apt-get"
-        if refusal is not None:
-            apt.write_text(f"#!{shell}\n{refusal} $1\n", encoding="utf-8")
-            apt.chmod(0o755)
-        done = subprocess.run(
-            [shell, "-ec", line], env={"PATH": str(tmp_path)}, capture_output=True, text=True
-        )
-        assert done.returncode == 0
-        assert ("installed install" in done.stdout) == (refusal == "echo installed")

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from solver.cli import main
 from solver.latin import solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.scenes.block import BlockSettings
-from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
-from solver.study.speed.error_against_time import FORMS, GOAL, INCREMENTAL, error_against_time
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}
@@ -59,11 +54,6 @@ def test_only_the_four_forces_at_an_inner_break_balance_each_other(wires):
     np.testing.assert_array_equal(left_out[:, 0], np.concatenate(at_the_break))
 
 
-@pytest.mark.parametrize("change", [{"broken": 0}, {"broken": 1}, {"broken": 1, "wires": 2}])
-def test_at_an_edge_or_without_a_break_every_force_counts(change):
-    assert determinate_forces(discretise(options(**change))).all()
-
-
 @pytest.mark.parametrize("grip", ["force", "displacement"])
 def test_where_nothing_rubs_the_force_error_is_relative_to_what_pulls(grip):
     settings = options(broken=0, wires=4, grip=grip)
@@ -91,44 +81,3 @@ def test_without_any_load_the_error_is_absolute():
     reference = reference_of(problem)
     some = replace(reference, contact_force=reference.contact_force + 1.0)
     assert distance_to(reference, problem).of_friction_force(some) > 1.0
-
-
-@pytest.mark.parametrize("change", [{"substructures": 1}, {"substructures": 1, "broken": 0}])
-def test_wires_have_macro_forces_between_them_even_where_they_are_not_cut(change):
-    settings = options(wires=4, **change)
-    assert settings.applies("multiscale")
-    assert settings.n_substructures == len(discretise(settings).substructures)
-    assert discretise(settings).has_cuts
-
-
-@pytest.mark.parametrize(
-    "settings",
-    [
-        BarSettings.checked({"method": "paper", "substructures": 1}),
-        BarSettings.checked({"method": "paper", "substructures": 3}),
-        BlockSettings.checked({"substructures": 1, "substructures_up": 1}),
-        LayersSettings.checked({"substructures": 1, "layers": 2}),
-    ],
-    ids=lambda settings: f"{settings.scene} {settings.n_substructures}",
-)
-def test_multiscale_is_offered_where_there_are_macro_forces(settings):
-    problem = discretise(settings)
-    assert settings.n_substructures == len(problem.substructures)
-    assert settings.applies("multiscale") == problem.has_cuts
-
-
-@pytest.mark.parametrize("change", [{}, GRIPPED, {"broken": 0}, {"wires": 5, "substructures": 1}])
-def test_the_command_line_knows_the_errors_of_strands(change, capsys):
-    changes = [f"--set={name}={value}" for name, value in {**SMALL, **FAST, **change}.items()]
-    assert main(["run", "strand", *changes, "--json"]) == 0
-    printed = json.loads(capsys.readouterr().out)
-    assert printed["error_displacement"] < 2e-3
-    assert printed["error_force"] < 2e-2
-
-
-def test_a_study_of_strands_compares_all_forms_with_the_reference():
-    settings = options(elements=12, instants=7, peak=300.0)
-    study = error_against_time(settings, repeats=1)
-    assert [course.method for course in study.courses] == [*FORMS, INCREMENTAL]
-    best = min(course.error_force.min() for course in study.courses if course.kind == "latin")
-    assert best <= GOAL

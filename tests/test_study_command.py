@@ -7,9 +7,7 @@ import os
 import re
 import subprocess
 import sys
-import time
 from dataclasses import replace
-from itertools import count
 
 import numpy as np
 import pytest
@@ -19,7 +17,6 @@ from solver.cli import main
 from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.study.chart import HUES
 from solver.study.page import NO_CHARTS
 from solver.study.speed.error_against_time import (
     FORMS,
@@ -27,11 +24,9 @@ from solver.study.speed.error_against_time import (
     LEVELS,
     ErrorCurve,
     Study,
-    error_against_time,
 )
-from solver.study.speed.growth import MEASURED, Growth, Size, growth
-from solver.study.speed.study_panels import error_panels
-from solver.study.speed.study_report import growth_table, table, winners
+from solver.study.speed.growth import growth
+from solver.study.speed.study_report import table, winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
@@ -95,43 +90,6 @@ def test_the_curves_have_every_method_with_times_that_increase(measured):
         seconds = [float(row["seconds"]) for row in found if row["method"] == method]
         assert (np.diff(seconds) > 0.0).all()
         assert len(seconds) > 1
-
-
-def test_the_first_iteration_pays_for_the_set_up(measured):
-    for one in measured[1].courses:
-        assert one.seconds.min() > 0.0
-        if one.kind == "latin":
-            assert one.seconds[0] > one.seconds_per_iteration
-
-
-def test_accelerated_forms_end_below_a_millionth(measured):
-    for one in measured[1].courses:
-        if "Anderson" in one.method:
-            assert one.error_force[-1] <= 1e-6
-            assert one.error_displacement[-1] <= 1e-6
-
-
-def test_one_clock_bills_all_methods(monkeypatch):
-    seconds = map(float, count())
-    monkeypatch.setattr(time, "perf_counter", lambda: next(seconds))
-    monkeypatch.setattr("solver.study.speed.growth.MEASURED", MEASURED[:1])
-    settings = BarSettings.checked({"elements": 6, "instants": 6, "substructures": 3})
-    for one in error_against_time(settings, 1).courses:
-        assert (one.seconds >= 1.0).all()
-    sizes = [size for one in growth(settings) if one.setting == "instants" for size in one.sizes]
-    assert all(size.seconds >= 1.0 for size in sizes)
-
-
-def test_the_levels_agree_with_the_curves(measured):
-    curves = rows(measured[0] / "curves.csv")
-    for row in rows(measured[0] / "levels.csv"):
-        times = [
-            float(point["seconds"])
-            for point in curves
-            if point["method"] == row["method"]
-            and float(point["error_force"]) <= float(row["level"])
-        ]
-        assert row["seconds"] == (str(min(times)) if times else "")
 
 
 def test_the_table_names_the_first_of_the_levels(measured):
@@ -226,13 +184,6 @@ def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
     assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
 
 
-def test_the_exponent_is_the_slope_and_needs_two_sizes():
-    sizes = tuple(Size(n, 1e-6 * n**1.5, None, None) for n in (10, 20, 40))
-    assert Growth("elements", "a", sizes).exponent.value == pytest.approx(1.5)
-    assert Growth("elements", "a", sizes[:1]).exponent is None
-    assert growth_table([Growth("elements", "a", sizes)])[1][2] == "1.50 ± 0.00"
-
-
 def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     sizes = {"elements": (2, 8, 16), "substructures": (1, 4)}
     monkeypatch.setitem(CATALOGUE, "bar", replace(CATALOGUE["bar"], sizes=sizes))
@@ -261,13 +212,3 @@ def test_the_report_states_the_threads_that_the_command_line_sets(given, stated)
         check=True,
     )
     assert f"BLAS threads: {stated};" in done.stdout
-
-
-def test_every_method_of_a_study_has_a_color_of_its_own():
-    names = [(name, "latin") for name in FORMS]
-    names += [(INCREMENTAL, "incremental"), *((f"other {number}", "peer") for number in range(4))]
-    courses = tuple(course(name, kind, [0.1, 0.2], [0.1, 0.01]) for name, kind in names)
-    for panel in error_panels(Study(BarSettings.checked({"method": "paper"}), 1, "", courses, ())):
-        hues = [curve.hue for curve in panel.curves]
-        assert len(set(hues)) == len(hues) == len(names)
-        assert max(hues) <= len(HUES)

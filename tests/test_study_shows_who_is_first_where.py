@@ -74,12 +74,6 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     assert any("Wires 4" in line and "left out" in line for line in crossover_notes(found))
 
 
-def test_a_run_that_has_not_converged_is_no_answer() -> None:
-    duel = Duel(4, 41, 1.0, 2.0, "LATIN: exhausted")
-    assert math.isnan(duel.ratio)
-    assert Duel(4, 41, 1.0, 2.0).ratio == 0.5
-
-
 def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
     assert equal_at([4, 16, 64], [4.0, 2.0, 0.5]) == pytest.approx(32.0)
     assert equal_at([4, 16, 64], [4.0, math.nan, 0.25]) == pytest.approx(16.0)

@@ -19,9 +19,8 @@ from solver.reduction.svd import (
     friction_spectra,
     front_decay,
 )
-from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.scenes import discretise
-from solver.scenes.bar import BarSettings, bar
+from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
 DEGENERATE = {
@@ -104,35 +103,6 @@ def test_no_fewer_modes_than_counted_reach_the_error(case, share):
     assert count == 0 or found.errors[count - 1] > share
 
 
-def test_a_point_split_in_two_of_half_the_weight_changes_no_singular_value():
-    field = np.random.default_rng(0).normal(size=(6, 9))
-    space, time = np.linspace(0.5, 2.0, 6), np.linspace(1.0, 3.0, 9)
-    once = decompose(field, space, time, np.arange(6))
-    split = decompose(
-        np.vstack([field, field[2]]),
-        np.append(np.where(np.arange(6) == 2, 0.5, 1.0) * space, 0.5 * space[2]),
-        time,
-        np.arange(7),
-    )
-    np.testing.assert_allclose(split.values, [*once.values, 0.0], rtol=1e-12, atol=1e-12)
-
-
-def test_signs_are_fixed_by_the_largest_entry_and_not_by_the_sign_of_the_field():
-    field = np.random.default_rng(1).normal(size=(7, 5))
-    space, time = np.linspace(0.5, 2.0, 7), np.ones(5)
-    one, other = (decompose(sign * field, space, time, np.arange(7)) for sign in (1.0, -1.0))
-    np.testing.assert_allclose(one.space_modes, other.space_modes, atol=1e-12)
-    largest = np.argmax(np.abs(one.space_modes), axis=0)
-    assert np.all(one.space_modes[largest, range(5)] > 0.0)
-
-
-def test_correlation_knows_a_mode_by_its_direction_alone():
-    field = np.random.default_rng(2).normal(size=(7, 5))
-    found = decompose(field, np.linspace(0.5, 2.0, 7), np.ones(5), np.arange(7))
-    turned = found.space_modes[:, [1, 0, 2]] * [3.0, 3.0, -0.1]
-    np.testing.assert_allclose(found.correlations(turned), [0.0, 0.0, -1.0], atol=1e-12)
-
-
 def test_a_zero_field_has_rank_zero_and_needs_no_mode():
     found = decompose(np.zeros((4, 6)), np.ones(4), np.ones(6), np.arange(4))
     assert not found.values.any()
@@ -181,33 +151,8 @@ def test_singular_values_of_one_substructure_add_up_to_the_norm_in_si_units():
         assert np.sum(found.values**2) == pytest.approx(whole)
 
 
-def test_friction_spectra_do_not_see_the_elastic_modulus():
-    soft, hard = (friction_spectra(iterate_of(young=young)) for young in (1e3, 1e15))
-    for one, other in zip(soft, hard, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-9 * one[0])
-
-
 def test_a_front_sampled_finely_has_the_spectrum_of_an_integration():
     found = constant_speed_front(400, 400).values[:10]
     orders = np.arange(1, 11)
     np.testing.assert_allclose(found, 2.0 / ((2 * orders - 1) * np.pi), rtol=1e-3)
     np.testing.assert_allclose(found / found[0], front_decay(10), rtol=1e-3)
-
-
-def test_a_front_sampled_twice_as_finely_is_four_times_as_near():
-    misses = [
-        abs(constant_speed_front(cells, cells).values[4] - 2.0 / (9.0 * np.pi))
-        for cells in (50, 100, 200)
-    ]
-    np.testing.assert_allclose(np.diff(np.log2(misses)), -2.0, atol=0.1)
-
-
-def test_a_bar_that_a_steady_front_crosses_decays_like_that_front():
-    scene = bar(
-        BarSettings.checked({"method": "paper", "load": "ramp", "peak": 1500.0, "elements": 200})
-    )
-    lengths = np.full(201, 1.0 / 200)
-    lengths[[0, -1]] *= 0.5
-    force = closed_form(scene).friction_force / lengths[:, None]
-    found = decompose(force, lengths, np.full(101, 0.01), scene.nodes)
-    np.testing.assert_allclose(against_front(found.values)[:5], 1.0, rtol=0.05)

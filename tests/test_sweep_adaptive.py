@@ -103,11 +103,6 @@ def test_what_has_no_bend_is_sampled_evenly(value: float) -> None:
     assert apart.max() < 0.15
 
 
-def test_no_more_points_are_asked_for_than_there_are() -> None:
-    plan = tiny(["peak=1:900:7"], ["iterations"])
-    assert sorted(chosen(plan, np.arange(7.0) + 1.0, 50)) == list(range(7))
-
-
 @pytest.mark.parametrize(
     ("vary", "runs", "words"),
     [

@@ -6,7 +6,7 @@ import csv
 import json
 import sys
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -210,19 +210,6 @@ def holding(value: float, number: int = 0, ending: str = "converged") -> Row:
     return Row(number, ending, "", (value,))
 
 
-def test_progress_says_what_is_left(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sweep_command, "SELDOM", -1.0)
-    ticks = iter([0.0, 2.0, 4.0])
-    clock = SimpleNamespace(monotonic=lambda: next(ticks))
-    monkeypatch.setattr(sweep_command, "time", clock)
-    rows = [holding(1.0), holding(2.0, 1)]
-    assert list(sweep_command.told(rows, 5, 1)) == rows
-    lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
-    assert lines == ["2 of 5 runs, 6 s left", "3 of 5 runs, 4 s left"]
-
-
 def curves_of(chart: Chart) -> tuple[PanelCurve, ...]:
     """Give the curves through answers."""
     assert isinstance(chart, Panel)
@@ -301,19 +288,3 @@ def test_rows_become_points_whatever_came_of_them_and_say_it() -> None:
     (curve,) = curves_of(chart)
     assert curve.x.tolist() == [0.1, 0.2, 0.3, 0.5]
     assert np.isfinite(curve.y).tolist() == [False, False, False, True]
-
-
-def test_shares_are_drawn_in_per_cent() -> None:
-    chart = chart_of(tiny(["friction=0.1,0.2"], ["slipped_share"]), [holding(0.25)])
-    assert chart.runs is not None
-    assert chart.runs.values.tolist() == [25.0]
-    assert chart.y.unit == "%"
-    assert chart.runs.said[0].endswith(": 25 %")
-
-
-def test_names_alone_make_points_without_lines() -> None:
-    chart = chart_of(tiny(["load=sine,ramp"], ["iterations"]), [holding(1.0)])
-    assert chart.x.names == ("sine", "ramp")
-    assert all(len(curve.x) == 0 for curve in curves_of(chart))
-    assert chart.runs is not None
-    assert chart.runs.x.tolist() == [0.0]

@@ -6,31 +6,23 @@ import math
 import os
 import signal
 import time
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from multiprocessing import Pipe
-from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import PATIENCE, is_alive, wait_for
+from processes import is_alive, wait_for
 from sweeps import Here, rows_of, tiny
 
 from solver.definitions import SettingError
-from solver.latin.finish.cost import Costs
 from solver.latin.finish.status_step import states_of
 from solver.laws import OPEN
 from solver.reference.choice import incremental_solver, reference_of
-from solver.running import calls
 from solver.running.executors import Processes, opened
 from solver.running.pool import EndedError, OverdueError
-from solver.running.processes import start_process
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import finished_run
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 from solver.study.sweep.nearest import KEPT, Nearest
-from solver.study.sweep.point import field_file
 
 
 def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
@@ -108,18 +100,6 @@ def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of
     assert not any(row.was_warm for row in rows_of(plan))
 
 
-def test_a_run_that_fits_no_other_starts_alone() -> None:
-    for vary in ("elements=12,24", "instants=11,21"):
-        assert not any(row.was_warm for row in rows_of(tiny([vary], ["peak_displacement"])))
-
-
-def test_a_step_that_costs_more_than_a_run_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    plan = tiny(["friction=0.45:0.47:3"], ["peak_displacement"])
-    dear = Costs(condensing=1e3, system=1e-3, iteration=1e-3, n_instants=21)
-    monkeypatch.setattr("solver.study.quantities.finished.costs_of", lambda problem, moving: dear)
-    assert not any(row.was_warm for row in rows_of(plan))
-
-
 def test_the_nearest_run_is_the_start_and_the_oldest_are_forgotten() -> None:
     nearest = Nearest((3, 4000))
     assert nearest.to(5) is None
@@ -147,14 +127,6 @@ def test_a_foolish_start_costs_little_and_changes_nothing(scene: str) -> None:
             right.contact_force, abs=1e-9 * np.abs(right.contact_force).max()
         )
         assert found.steps <= right.steps + 3 * problem.n_instants
-
-
-def test_fields_are_kept_where_they_are_asked_for(tmp_path: Path) -> None:
-    plan = tiny(["peak=300,900"], ["peak_displacement"])
-    rows = rows_of(plan, fields=str(tmp_path))
-    for row in rows:
-        with np.load(tmp_path / field_file(row.number)) as found:
-            assert np.abs(found["displacement"]).max() == row.values[0]
 
 
 def test_a_process_that_is_killed_takes_no_row_with_it() -> None:
@@ -239,52 +211,6 @@ def test_an_executor_ends_with_all_that_it_does() -> None:
     assert all(call.done() for call in calls)
     with pytest.raises(RuntimeError, match="shut down"):
         pool.submit(int)
-
-
-def test_an_error_of_a_call_is_told() -> None:
-    with opened("processes:1") as pool:
-        with pytest.raises(ZeroDivisionError):
-            pool.submit(divmod, 1, 0).result()
-        assert pool.submit(divmod, 7, 2).result() == (3, 1)
-
-
-def test_a_call_whose_process_has_gone_keeps_nothing_of_what_was_sent(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    process, _ = start_process(calls.obey, preloaded=["solver.running.calls"])
-    ours, theirs = Pipe()
-    theirs.close()
-    monkeypatch.setattr(calls, "start_process", lambda *_, **__: (process, ours))
-    call = calls.Call(partial(int))
-    with pytest.raises(EndedError) as ended:
-        calls.ProcessSlot(None).do(call)
-    assert ended.value.__context__ is None
-
-
-def test_a_call_that_runs_nowhere_any_more_has_left_no_process(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    ended: list[int | None] = []
-    clear = calls.ProcessSlot.clear
-
-    def watched(slot: calls.ProcessSlot) -> None:
-        if slot._process is not None:
-            ended.append(call.pid)
-        clear(slot)
-
-    monkeypatch.setattr(calls.ProcessSlot, "clear", watched)
-    call = calls.Call(partial(time.sleep, 600.0))
-    slot = calls.ProcessSlot(None)
-    with ThreadPoolExecutor(1) as thread:
-        done = thread.submit(slot.do, call)
-        wait_for(lambda: call.pid is not None)
-        pid = call.pid
-        assert call.set_running_or_notify_cancel()
-        assert not call.cancel()
-        with pytest.raises(EndedError):
-            done.result(timeout=PATIENCE)
-    assert ended == [pid]
-    assert call.pid is None
 
 
 def test_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

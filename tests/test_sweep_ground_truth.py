@@ -55,31 +55,6 @@ def test_iterations_over_k_are_those_of_single_runs(capsys: pytest.CaptureFixtur
         assert json.loads(capsys.readouterr().out)["iterations"] == row.values[0]
 
 
-def test_slip_dies_out_below_a_limit_of_shear_and_goes_on_above_it() -> None:
-    """Shakedown, as in lesson 8; at 30 MPa, all that friction can carry, the block slides away."""
-    plan = tiny(
-        ["top_tangential_traction=1e7,1.4e7,1.8e7,2.2e7,2.4e7,2.6e7,2.8e7,3.1e7"],
-        ["dissipation@1", "dissipation@2", "dissipation@5"],
-        scene="block",
-        gap="flat",
-        top="traction",
-        top_normal_load=[[0, -1e8]],
-        top_tangential_load="cycles",
-        elements=16,
-        elements_up=8,
-        instants=65,
-        substructures=1,
-    )
-    *rows, slides = rows_of(plan)
-    assert slides.ending == "refused"
-    assert all(row.holds for row in rows)
-    for first, second, fifth in (row.values for row in rows[:4]):
-        assert first > 0.03
-        assert abs(fifth) < 0.05 * second + 1e-9 * first
-    for _, second, fifth in (row.values for row in rows[4:]):
-        assert 0.8 * second < fifth < second
-
-
 @pytest.mark.parametrize("power", [-2.0, 0.5, 1.0])
 def test_an_exponent_is_found_with_a_margin_that_holds_it(power: float) -> None:
     sizes = np.geomspace(50.0, 3200.0, 7)

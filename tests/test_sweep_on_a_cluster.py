@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -23,7 +22,7 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.running.cluster import Caller
 from solver.running.executors import opened
-from solver.running.pool import GoneError, Pool
+from solver.running.pool import Pool
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 
@@ -149,21 +148,6 @@ def test_a_sweep_waits_for_workers_and_a_scheduler_that_is_gone_is_told(
     assert "of 2000 runs" in said.out
 
 
-def test_a_client_that_has_given_up_its_scheduler_takes_calls_back_without_a_word(
-    cluster: Cluster, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    with opened(cluster.on) as pool:
-        calls = [pool.submit(time.sleep, 0.2) for _ in range(4)]
-        with monkeypatch.context() as patch:
-            patch.setattr(pool._client, "status", "closed")
-            for call in calls:
-                call.cancel()
-            with pytest.raises(GoneError):
-                pool.submit(time.sleep, 0.0)
-            pool.shutdown(cancel_futures=True)
-    assert not caplog.records
-
-
 def test_workers_of_other_versions_are_refused(pool: Pool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("solver.study.sweep.drive.versions", lambda: "numpy 1.0")
     with pytest.raises(VersionsDifferError, match=points.versions()):
@@ -190,14 +174,6 @@ def test_a_cluster_that_does_not_answer_is_refused_in_a_line(
     with pytest.raises(SettingError, match="a Dask scheduler that answers") as refusal:
         opened(on).__enter__()
     assert len(str(refusal.value).splitlines()) == 1
-
-
-def test_a_client_that_finds_no_scheduler_is_left_closed() -> None:
-    for address in ("127.0.0.1:9", "nowhere", ":x"):
-        client = Caller.__new__(Caller)
-        with pytest.raises((OSError, ValueError)):
-            client.__init__(f"tcp://{address}", timeout=0.5, set_as_default=False)
-        assert client.status in ("closed", "newly-created")
 
 
 def test_without_distributed_a_cluster_is_refused_in_a_line(

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
-from solver.study.sweep import Varied, plan_from_plain, plan_of
+from solver.study.sweep import plan_from_plain, plan_of
 from solver.study.sweep.order import snake
 from solver.study.sweep.plan import axis_of
 
@@ -93,13 +93,6 @@ def test_a_point_changes_what_varies_and_nothing_else() -> None:
     assert plan.settings_at(4).changed(plan.settings) == {"load": "ramp", "peak": 2.0}
 
 
-def test_a_method_that_varies_leaves_what_was_set_alone() -> None:
-    plan = plan_of(BAR.replace(finish="none"), ["method=fast,paper"], ["iterations"])
-    fast, paper = plan.settings_at(0), plan.settings_at(1)
-    assert (fast.finish, fast.acceleration) == ("none", "anderson")
-    assert (paper.finish, paper.acceleration) == ("none", "none")
-
-
 def test_a_plan_survives_as_json_and_another_has_another_digest() -> None:
     table = BAR.replace(load=((0.0, 0.0), (1.0, 900.0)))
     plan = plan_of(table, ["friction=0.1:0.6:3", "method=fast,paper"], ["dissipation@1", "modes"])
@@ -114,12 +107,6 @@ def test_a_plan_survives_as_json_and_another_has_another_digest() -> None:
         for of in (["iterations"], ["modes"])
     }
     assert len(digests) == 8
-
-
-def test_names_have_no_place_on_a_scale() -> None:
-    assert not Varied("load", ("sine",)).is_numeric
-    assert not Varied("multiscale", (True, False)).is_numeric
-    assert Varied("elements", (1, 2)).is_numeric
 
 
 @ANY

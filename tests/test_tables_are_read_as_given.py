@@ -16,7 +16,6 @@ from solver.cli import main
 from solver.curves import GivenCurve, curve_of
 from solver.definitions import SettingError
 from solver.scenes import CATALOGUE
-from solver.study.other_programs.brought import read_brought
 from solver.tables import read_table
 from solver.units import examples_of, size_in
 
@@ -220,19 +219,3 @@ def test_anything_else_is_read_or_refused_in_words(data: bytes | str) -> None:
     except SettingError:
         return
     assert np.isfinite(points).all()
-
-
-def test_results_of_another_program_are_read_by_the_same_rules() -> None:
-    text = (
-        "Löser 7;1,2\nStatus;Ort x [mm];Zeit_ms;Reibkraft in kN/m;\n"
-        "haftet;100;0;0,5;\nhaftet;200;500;1;\ngleitet;300;500;1,5;\ngleitet;400;1000;2;\n"
-    )
-    for encoding in ("utf-16", "cp1252"):
-        brought = read_brought(text.encode(encoding), "a.csv", CATALOGUE["bar"].settings())
-        np.testing.assert_allclose(brought.positions, [0.1, 0.2, 0.3, 0.4])
-        np.testing.assert_allclose(brought.times, [0.0, 0.5, 0.5, 1.0])
-        np.testing.assert_allclose(brought.values, [500.0, 1000.0, 1500.0, 2000.0])
-        assert brought.message == (
-            "Ort x in mm, Zeit in ms, Reibkraft in kN/m, 4 points, from 0.5 to 2 kN/m; "
-            "passed over: 'Status'"
-        )

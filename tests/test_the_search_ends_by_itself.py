@@ -10,7 +10,6 @@ import pytest
 
 from solver.files import settings_from_command, summary
 from solver.latin import Ending, Solution, solve
-from solver.latin.finish.status_step import StatusSolver
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -45,12 +44,6 @@ def test_the_search_ends_with_its_first_iterate_within_the_accuracy(scene: str) 
     assert answer.error_force < 1e-7
 
 
-def test_its_iterates_are_those_of_a_run_that_only_iterates() -> None:
-    alone = ended(options(finish="none"))
-    own = [one.error_force for one in searched("bar").records if not one.is_answer]
-    assert own == [one.error_force for one in alone.records[: len(own)]]
-
-
 def test_the_answer_is_no_iteration() -> None:
     solution = searched("bar")
     assert solution.is_certified
@@ -75,19 +68,6 @@ def test_a_search_that_gives_up_says_how_far_it_was_and_what_to_try() -> None:
     wrong = float(f"{100 * solution.records[-2].error_force:.2g}")
     assert f"{wrong:g} %" in solution.status.advice
     assert "Raise max_iterations" in solution.status.advice
-
-
-def test_without_an_answer_it_ends_as_a_run_that_only_iterates(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(StatusSolver, "__call__", lambda *given: None)
-    ends = []
-    for finish in ("accuracy", "none"):
-        settings = options("block", finish=finish)
-        solution = solve(discretise(settings), method_of(settings))
-        assert not solution.is_certified
-        ends.append((solution.iterate.number, solution.status))
-    assert ends[0] == ends[1]
 
 
 @pytest.mark.parametrize("said", ["at-once", "at once", "status"])

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from solver.latin import iterations
-from solver.latin.acceleration.mixing import SAMPLE, Mixing
 from solver.latin.blocks import MOST, VALUES, Blocks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -51,19 +50,3 @@ def test_blocks_cover_every_instant_once_and_pass_errors_on(threads):
 
     with pytest.raises(ArithmeticError):
         blocks.each(fail)
-
-
-def test_a_small_field_is_one_block():
-    assert Blocks(51, 101, 4).slices == [slice(0, 101)]
-
-
-def test_a_sample_of_the_residual_mixes_a_large_linear_iteration_as_well():
-    size, generator = 4 * SAMPLE, np.random.default_rng(3)
-    rates = generator.choice([0.9, -0.8, 0.5, 0.1], size)[:, None, None]
-    state = [np.zeros((size, 1, 1), order="F")]
-    mix = Mixing([np.ones((size, 1, 1))], memory=6)
-    for _ in range(7):
-        mix.start(state)
-        state[0] = np.asfortranarray(rates * state[0] + 1.0)
-        mix(state)
-    assert np.allclose(state[0], 1.0 / (1.0 - rates), rtol=1e-4)

@@ -63,10 +63,6 @@ def slips_for_ever(**changes: Any) -> bool:
     return bool(cycles_of(run.settings, run.iterate).slip[:, -1].any())
 
 
-def test_the_lesson_has_the_path_that_is_tested() -> None:
-    assert [tuple(point) for point in GIVEN[PATH]] == list(path(PUSH))
-
-
 @pytest.mark.parametrize("first", [0.0, 2.0 * SWING])
 def test_from_rest_or_the_right_it_ceases(first: float) -> None:
     run = ran(**{PATH: path(first)})
@@ -117,11 +113,6 @@ def test_above_the_program_all_starts_slip_and_below_it_the_best_does_not(
     factor, _ = largest_swing(slip_space(problem(**{PATH: path(first)})), last_cycle())
     assert slips_for_ever(**{PATH: path(first, share * factor * SWING)}) is goes_on
     assert slips_for_ever(**{PATH: path(PUSH, share * factor * SWING)})
-
-
-def test_small_cycles_cease_from_any_start() -> None:
-    for first in (0.0, -PUSH, PUSH, 1.5 * PUSH):
-        assert not slips_for_ever(**{PATH: path(first, 25e-6)})
 
 
 @pytest.mark.parametrize(

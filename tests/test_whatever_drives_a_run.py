@@ -125,10 +125,3 @@ def test_forces_that_rounding_of_a_fall_hides_are_not_called_found() -> None:
     values = {**PLANE, "top": "free", "body_force_y": -WEIGHT, "gap": gap(1e6, 1e6)}
     found = reference_of(discretise(CATALOGUE["block"].settings.checked(values)))
     assert not found.converged[1:].any()
-
-
-@pytest.mark.parametrize(("moved", "elements"), [(1e4, 50), (1.0, 1000), (1.0, 3000)])
-def test_a_bar_that_its_support_drags_far_is_certified(moved: float, elements: int) -> None:
-    values = {"peak": 0.0, "support_displacement": moved, "elements": elements, "instants": 21}
-    chosen = CATALOGUE["bar"].settings.checked(values)
-    assert solve(discretise(chosen), method_of(chosen)).is_certified
