@@ -9,18 +9,17 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from contact_problems import local_stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import SettingError
-from solver.discrete.stack.data import Spring
-from solver.discrete.stack.rest import rigid_slide
 from solver.latin import iterations, solve
 from solver.laws import Component, Contact, Frictionless, SlackSpring
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise, loop_of
-from solver.scenes.incline import InclineSettings, incline
+from solver.scenes.incline import InclineSettings
 from solver.scenes.method import method_of
 
 SMALL = {"elements": 12, "elements_up": 6, "instants": 41}
@@ -101,20 +100,6 @@ def test_a_slope_that_falls_below_the_horizontal_lets_the_block_go():
     assert InclineSettings.checked({**SMALL, "slope_load": [[0.0, 0.0], [1.0, -16.0]]})
 
 
-def test_a_rigid_block_slides_no_farther_than_friction_and_spring_let_it():
-    settings = InclineSettings.checked(SMALL)
-    place = rigid_slide(incline(settings), Spring(settings.slack, settings.spring))
-    angle = np.radians(settings.path("slope_load"))
-    pull = settings.spring * np.maximum(-place - settings.slack, 0.0)
-    left = settings.weight * np.sin(angle) - pull
-    most = 0.3 * settings.weight * np.cos(angle)
-    assert np.all(np.abs(left) <= most * (1.0 + 1e-9))
-    moves = np.diff(place, prepend=0.0)
-    assert np.all(left[moves < 0.0] == pytest.approx(most[moves < 0.0]))
-    assert np.all(left[moves > 0.0] == pytest.approx(-most[moves > 0.0]))
-    assert (moves < 0.0).sum() > 5 < (moves == 0.0).sum()
-
-
 @settings(max_examples=60)
 @given(st.integers(0, 2**31))
 def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(seed):
@@ -131,11 +116,7 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
         positions=np.arange(3.0),
         weights=np.ones(3),
     )
-    k = 10.0 ** random.uniform(-1.0, 1.0, 6)
-    incoming = random.normal(size=(6, 20))
-    moved = incoming.copy()
-    law.rule(k, 20)(incoming, moved, slice(None))
-    force = k[:, None] * (moved - incoming)
+    moved, force = local_stage(law, random, rows=6)
     overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
     np.testing.assert_allclose(force[:3], overlap / spring.softness[:, None], atol=1e-12)
     assert not force[3:].any()

@@ -142,15 +142,6 @@ def test_equal_wires_without_a_break_never_slip(wires, grip):
         assert not contact.status.any()
 
 
-@pytest.mark.parametrize("wires", [3, 6, 15])
-def test_every_section_carries_what_the_grip_gives_whatever_the_number_of_wires(wires):
-    scene, iterate = solved(
-        wires=wires, elements=24, substructures=4, instants=9, peak=400.0, load="triangle"
-    )
-    whole = axial_forces(scene, iterate.displacement).sum(axis=0)
-    assert relative(whole, wires * scene.load + 0.0 * whole) < 1e-6
-
-
 def strain_energy(scene, forces):
     """Give the energy of axial forces, shape (n_instants,), J."""
     element = scene.length / scene.elements

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +11,11 @@ from bars import SMALL, options, relative, sample, table
 
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import latin_indicator
+from solver.latin.iterate import Iterate
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
-from solver.scenes import discretise
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
 LOOK = 20
@@ -124,3 +127,29 @@ def test_the_bar_remembers_its_return_points():
         assert relative(displacement[:, closes], displacement[:, opened]) < 1e-9
         assert relative(friction[1:, closes], friction[1:, opened]) < 1e-7
     assert relative(displacement[:, 4], displacement[:, 2]) > 1e-2
+
+
+SCENES: dict[str, dict[str, Any]] = {
+    "bar": {},
+    "strand": {"elements": 20, "instants": 51},
+    "block": {"elements": 24, "elements_up": 8},
+}
+METHODS: tuple[dict[str, Any], ...] = ({"method": "paper"}, {"linear_stage": "pgd"})
+
+
+def end_and_truth(scene: str, **changes: Any) -> tuple[Iterate, np.ndarray]:
+    """Give the last iterate of a run that converges, and the status of the solution."""
+    settings = CATALOGUE[scene].settings.checked({**SCENES[scene], **changes})
+    problem = discretise(settings)
+    solution = solve(problem, method_of(settings), watch=False)
+    assert solution.status.ending == "converged"
+    return solution.iterate, reference_of(problem).status
+
+
+@pytest.mark.parametrize("changes", METHODS)
+@pytest.mark.parametrize("scene", SCENES)
+def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(
+    scene: str, changes: dict[str, Any]
+) -> None:
+    iterate, truth = end_and_truth(scene, **changes)
+    assert np.mean(iterate.status != truth) < 0.004

@@ -1,26 +1,38 @@
-"""A run knows its error: the estimate beside the truth, accuracy heeded, every second billed."""
+"""A run knows its error, heeds the accuracy or a limit that is asked, and bills every second."""
 
 from __future__ import annotations
 
 import json
 import math
 from dataclasses import replace
+from functools import cache
 from itertools import islice
-from types import SimpleNamespace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.latin import Ending, StopRules, iterations, judged, solve, stop
-from solver.latin.criteria.changes import ForceChanges
-from solver.latin.criteria.estimate import SETTLED, ErrorEstimate
+from solver.files import settings_from_command
+from solver.latin import (
+    Accuracy,
+    Ending,
+    Latin,
+    Seconds,
+    Solution,
+    StopRules,
+    iterations,
+    judged,
+    solve,
+    stop,
+)
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
+from solver.settings import Settings
 
 SMALL: dict[str, dict[str, Any]] = {
     "bar": {"elements": 30, "instants": 41, "substructures": 5},
@@ -90,19 +102,6 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
         assert solution.records[-1].estimated_error == solution.iterate.residual
 
 
-def test_a_status_step_is_tried_once_the_whole_force_settles_though_friction_has_not() -> None:
-    settings = small("layers", friction=0.1)
-    estimate, changes = ErrorEstimate(0.01), ForceChanges()
-    for iterate in islice(iterations(discretise(settings), method_of(settings)), 60):
-        assert estimate.certificate is None
-        estimate(iterate, math.nan)
-        changes.left(iterate)
-        if changes.last.whole <= SETTLED:
-            break
-    assert changes.last.worst > SETTLED
-    assert estimate.certificate is not None
-
-
 @pytest.mark.parametrize(("scene", "is_by_increments"), [("bar", False), ("layers", True)])
 def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     scene: str, is_by_increments: bool
@@ -140,22 +139,6 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     assert verdict.finished is None
 
 
-def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = 0.0
-
-    def clock() -> float:
-        nonlocal now
-        now += 100.0
-        return now
-
-    monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=clock))
-    settings = small("bar")
-    found = list(judged(discretise(settings), method_of(settings)))
-    rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
-    assert found[-1][0].residual is not None
-    assert rules == pytest.approx([100.0 * number for number in range(1, len(found) + 1)])
-
-
 @pytest.mark.parametrize("method", METHODS)
 def test_the_result_file_says_what_is_known_of_its_error(
     tmp_path: Any, capsys: pytest.CaptureFixture[str], method: str
@@ -180,3 +163,89 @@ def test_the_result_file_says_what_is_known_of_its_error(
     # The clamped end shares its force with the support; all other points have their own.
     assert not arrays["determinate"][0].any()
     assert arrays["determinate"][1:].all()
+
+
+SHORT = {"elements": 16, "instants": 21, "substructures": 2}
+
+
+def options(scene: str = "bar", **changes: Any) -> Settings:
+    return CATALOGUE[scene].settings.checked({**SHORT, "finish": "accuracy", **changes})
+
+
+@cache
+def ended(settings: Settings) -> Solution:
+    problem = discretise(settings)
+    return solve(problem, method_of(settings), distance=distance_to(reference_of(problem), problem))
+
+
+@cache
+def searched(scene: str) -> Solution:
+    return ended(options(scene))
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_the_search_ends_with_its_first_iterate_within_the_accuracy(scene: str) -> None:
+    *iterates, answer = searched(scene).records
+    assert [one.is_answer for one in iterates] == [False] * len(iterates)
+    # A run knows how far it is once a step has held; small ones know before they are near.
+    assert [one.error_force <= 0.01 for one in iterates] == [False] * (len(iterates) - 1) + [True]
+    assert answer.is_answer
+    assert answer.error_force < 1e-7
+
+
+def test_iterations_depend_on_k_and_the_answer_does_not() -> None:
+    counts = {}
+    for k in (0.1, 1.0, 10.0):
+        solution = ended(options("strand", k_scale=k))
+        counts[k] = solution.iterate.iterations
+        answer = searched("strand").iterate.contact_force
+        assert np.allclose(solution.iterate.contact_force, answer, atol=1e-9 * np.abs(answer).max())
+    assert counts[0.1] > 1.5 * counts[1.0] < counts[10.0]
+
+
+def test_a_search_that_gives_up_says_how_far_it_was_and_what_to_try() -> None:
+    solution = ended(options(k_scale=100.0, max_iterations=4))
+    assert (solution.iterate.iterations, solution.is_certified) == (4, True)
+    assert solution.status.ending is Ending.CONVERGED
+    wrong = float(f"{100 * solution.records[-2].error_force:.2g}")
+    assert f"{wrong:g} %" in solution.status.advice
+    assert "Raise max_iterations" in solution.status.advice
+
+
+@pytest.mark.parametrize("said", ["at-once", "at once", "status"])
+def test_files_and_commands_may_say_at_once_as_they_did(said: str) -> None:
+    assert settings_from_command("bar", [f"finish={said}"])[0].finish == "at-once"
+
+
+SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}
+
+
+def bar() -> Any:
+    return discretise(CATALOGUE["bar"].settings.checked(SMALL_BAR))
+
+
+def test_a_run_ends_with_its_iterate_and_says_what_helps() -> None:
+    solution = solve(bar(), Latin(finish=None, stop=Accuracy(1e-9) | Seconds(1e-9)))
+    assert solution.status.ending is Ending.EXHAUSTED
+    assert "longer" in solution.status.advice
+    assert solution.iterate.number == 1
+
+
+def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    changes = [word for name, value in SMALL_BAR.items() for word in ("--set", f"{name}={value}")]
+    file = tmp_path / "limited.npz"
+    assert main(["run", "bar", *changes, "--limit", "1e-9", "--out", str(file)]) == 1
+    out, err = capsys.readouterr()
+    assert "exhausted" in out
+    assert "the reference takes longer" in err
+    with np.load(file) as saved:
+        assert len(saved["seconds"]) == 1
+        assert np.isfinite(saved["friction_force"]).all()
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf"])
+def test_a_limit_is_some_time(value: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "bar", "--limit", value]) == 2
+    assert "--limit" in capsys.readouterr().err

@@ -30,53 +30,13 @@ SIZES: dict[str, dict[str, Any]] = {
 }
 OF_THE_METHOD = {"k_scale": 3.0, "multiscale": False, "tolerance": 1e-3, "linear_stage": "pgd"}
 OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
-    "bar": {
-        "peak": 901.0,
-        "friction": 0.31,
-        "friction_profile": "rising",
-        "young": 2e11,
-        "duration": 2.0,
-        "length": 1.1,
-        "support_displacement": 1e-4,
-        "body_force": 10.0,
-        "instants": 21,
-        "elements": 21,
-    },
+    "bar": {"peak": 901.0, "friction_profile": "rising", "young": 2e11, "duration": 2.0},
     "strand": {"pressure": 5001.0, "break_position": 0.25, "grip": "displacement", "broken": 1},
-    "block": {
-        "gap": "flat",
-        "radius": 4.0,
-        "poisson": 0.31,
-        "top": "traction",
-        "top_normal_displacement": -5e-5,
-        "body_force_y": -1e6,
-        "left": "roller",
-        "interpolation": "biquadratic",
-        "substructures": 2,
-        "substructures_up": 1,
-    },
+    "block": {"gap": "flat", "poisson": 0.31, "left": "roller", "substructures": 2},
     "layers": {"contrast": 2.0, "pull": 1e6, "substructures": 2, "friction": 0.31},
-    "fault": {
-        "overpressure": 7e6,
-        "injection_load": "stopped",
-        "shear_stress": 4e6,
-        "normal_stress": 1.1e7,
-        "normal_profile": [[0.0, 0.9], [600.0, 1.2]],
-        "diffusivity": 0.2,
-        "young": 5e10,
-        "length": 500.0,
-    },
-    "incline": {"slope": 41.0, "weight": 1001.0, "slack": 1e-4, "spring": 1e6, "height": 0.06},
-    "rope": {
-        "construction": "seven-wire",
-        "curvature": 0.11,
-        "tension": 251e3,
-        "tension_load": "shaken",
-        "bending": "uniform",
-        "fall_off": 0.3,
-        "length": 0.7,
-        "layers": 2,
-    },
+    "fault": {"overpressure": 7e6, "injection_load": "stopped", "diffusivity": 0.2},
+    "incline": {"slope": 41.0, "weight": 1001.0, "slack": 1e-4, "spring": 1e6},
+    "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
 }
 
 
@@ -90,31 +50,21 @@ def never() -> bool:
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
-def test_what_the_method_does_leaves_the_fingerprint(scene: str) -> None:
+def test_what_the_solution_depends_on_changes_the_fingerprint_and_the_method_does_not(
+    scene: str,
+) -> None:
     own = fingerprint(made(scene)[1])
     for name, value in OF_THE_METHOD.items():
-        assert fingerprint(made(scene, **{name: value})[1]) == own
-
-
-@pytest.mark.parametrize(
-    ("scene", "name"), [(scene, name) for scene, all_ in OF_THE_PHYSICS.items() for name in all_]
-)
-def test_what_the_solution_depends_on_changes_the_fingerprint(scene: str, name: str) -> None:
-    if name == "top":
-        other = made(scene, top="traction", left="clamped")[1]
-    else:
-        other = made(scene, **{name: OF_THE_PHYSICS[scene][name]})[1]
-    assert fingerprint(other) != fingerprint(made(scene)[1])
+        assert fingerprint(made(scene, **{name: value})[1]) == own, name
+    for name, value in OF_THE_PHYSICS[scene].items():
+        assert fingerprint(made(scene, **{name: value})[1]) != own, name
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
-@pytest.mark.parametrize("cuts", [1, 2, 4])
-def test_reference_found_after_the_cuts_have_changed_is_that_of_the_problem(
-    scene: str, cuts: int
-) -> None:
+def test_reference_found_after_the_cuts_have_changed_is_that_of_the_problem(scene: str) -> None:
     references = ReferenceCache()
     references.of(*made(scene), never)
-    settings, problem = made(scene, substructures=cuts)
+    settings, problem = made(scene, substructures=2)
     kept, fresh = references.of(settings, problem, never), reference_of(problem)
     assert kept is not None
     assert kept.problem is problem

@@ -9,7 +9,6 @@ import pytest
 
 from app.link import read
 from app.state import SEARCH
-from solver.checked import dump
 from solver.cli import main
 from solver.files import settings_from_command
 from solver.latin import iterations
@@ -54,17 +53,6 @@ def test_a_method_sets_all_its_parts_of_the_bar(method):
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
-@pytest.mark.parametrize("method", METHODS)
-def test_a_scene_takes_of_a_method_what_it_has_options_for(scene, method):
-    kind = CATALOGUE[scene].settings
-    found = parts(kind.checked({"method": method}))
-    for name, value in METHODS[method].items():
-        options = getattr(kind.definitions()[name], "objects", [value])
-        expected = value if value in options else kind.definitions()[name].default
-        assert found[name] == expected
-
-
-@pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_what_is_called_a_default_is_what_the_fast_method_sets(scene):
     kind = CATALOGUE[scene].settings
     assert kind.checked({}).method == "fast"
@@ -105,15 +93,6 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
     saved.write_text(f'scene = "bar"\nmethod = "{method}"\n', encoding="utf-8")
     assert parts(settings_from_command(str(saved), words)[0]) == expected
     assert parts(BarSettings.checked(named).replace(**BY_HAND)) == expected
-
-
-def test_another_method_over_a_saved_file_brings_its_parts(tmp_path):
-    saved = tmp_path / "saved.toml"
-    fast = BarSettings.checked({**OTHERS, "acceleration": "none"})
-    saved.write_text(dump(fast), encoding="utf-8")
-    found, _ = settings_from_command(str(saved), ["method=paper", "relaxation=0.6"])
-    assert parts(found) == PAPER | {"relaxation": 0.6}
-    assert {name: getattr(found, name) for name in OTHERS} == OTHERS
 
 
 def test_a_method_that_does_not_exist_is_refused_with_those_that_do(capsys):

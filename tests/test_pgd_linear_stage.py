@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver.latin import Ending, iterations, solve
+from solver.latin import Ending, Solution, iterations, solve
 from solver.reduction.basis import SeparatedBasis
-from solver.reduction.enrichment import Enrichment
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.quantities.finished import finished_run
 
 GENEROUS = {"pgd_modes": 100, "pgd_pairs": 100, "pgd_tolerance": 1e-12}
-SMALL = {"elements": 20, "instants": 31, "substructures": 5}
 
 
 def options(**changes: object) -> BarSettings:
@@ -73,28 +74,6 @@ def test_the_force_follows_the_number_of_modes(scene, size):
         iterate = next(islice(iterations(problem, latin), 39, None))
         errors.append(distance.of_friction_force(iterate))
     assert errors[0] > 1.5 * errors[1] > 3.0 * errors[2]
-
-
-def test_modes_stay_orthonormal_over_a_thousand_iterations():
-    chosen = options(**SMALL, tolerance=1e-30)
-    for shown in sample(chosen, 1000).bases:
-        gram = shown.outgoing.T @ (shown.k[:, None] * shown.outgoing)
-        assert np.abs(gram - np.eye(len(gram))).max() < 1e-10
-
-
-def test_every_mode_is_admissible():
-    """The force of a mode is what its displacement needs inside the substructure (eq. 3)."""
-    chosen = options(substructures=5)
-    problem = discretise(chosen)
-    iterate = sample(chosen, 30)
-    for part, shown in zip(problem.substructures, iterate.bases, strict=True):
-        elasticity = part.elasticity
-        trace = np.zeros((len(elasticity.trace), elasticity.stiffness.shape[0]))
-        trace[np.arange(len(elasticity.trace)), elasticity.trace] = 1.0
-        inside = np.linalg.lstsq(trace, shown.displacement_modes, rcond=None)[0]
-        assert np.allclose(trace @ inside, shown.displacement_modes, atol=1e-12)
-        residual = elasticity.stiffness @ inside - trace.T @ shown.force_modes
-        assert np.abs(residual).max() < 1e-10 * np.abs(shown.force_modes).max()
 
 
 @pytest.mark.parametrize("change", [{}, {"pgd_sharing": 0.5}], ids=str)
@@ -155,13 +134,46 @@ def test_downsizing_drops_no_more_than_its_tolerance(drawn):
     assert np.all(np.diff(kept) <= 0.0)
 
 
-def test_the_fixed_point_finds_the_singular_pair(monkeypatch):
-    monkeypatch.setattr("solver.reduction.enrichment.STEPS", 200)
-    monkeypatch.setattr("solver.reduction.enrichment.STAGNATION", 0.0)
-    random = np.random.default_rng(4)
-    residual = random.normal(size=(12, 3)) @ np.diag([9.0, 3.0, 1.0]) @ random.normal(size=(3, 20))
-    k, weights = random.uniform(0.1, 10.0, 12), random.uniform(0.5, 2.0, 20)
-    found = Enrichment(0.0, 1, largest=1).mode(residual, k, weights) * np.sqrt(k)
-    root = np.sqrt(k)[:, None] * residual * np.sqrt(weights)
-    leading = np.linalg.svd(root)[0][:, 0]
-    assert abs(found @ leading) == pytest.approx(np.linalg.norm(found), rel=1e-9)
+SMALL_ONES = {"elements": 12, "instants": 21}
+
+
+def of_scene(scene: str = "bar", **changes: Any) -> Settings:
+    given = {"linear_stage": "pgd", **SMALL_ONES, **changes}
+    return CATALOGUE[scene].settings.checked(given)
+
+
+def ended(settings: Settings) -> Solution:
+    problem = discretise(settings)
+    return solve(problem, method_of(settings), distance=distance_to(reference_of(problem), problem))
+
+
+@pytest.fixture(scope="module")
+def bar() -> Solution:
+    return ended(of_scene(pgd_modes=2))
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_two_modes_find_the_solution_of_every_scene(scene: str) -> None:
+    solution = ended(of_scene(scene, pgd_modes=2))
+    assert solution.is_certified
+    before, last = solution.records[-2:]
+    assert last.error_force < 1e-9 < before.error_force
+    assert last.iteration == before.iteration + 1
+
+
+def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
+    left = bar.records[-2].error_force
+    assert "status step" in bar.status.advice
+    assert f"contact force was still {float(f'{100.0 * left:.2g}'):g} % away" in bar.status.advice
+    full = ended(of_scene(linear_stage="full"))
+    assert full.is_certified
+    assert "bases" not in full.status.advice
+
+
+@pytest.mark.parametrize(("stage", "is_answered"), [("full", True), ("pgd", False)])
+def test_a_run_on_bases_is_not_answered_by_its_neighbour(stage: str, is_answered: bool) -> None:
+    first = finished_run(of_scene(linear_stage=stage), errors=False)
+    again = finished_run(of_scene(linear_stage=stage), errors=False, before=first.states)
+    assert again.was_warm is is_answered
+    assert again.iterate.number == (1 if is_answered else first.iterate.number)
+    assert np.allclose(again.force, first.force)

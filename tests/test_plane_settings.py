@@ -6,14 +6,12 @@ import json
 
 import numpy as np
 import pytest
-from plane import solved
 
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings, layers
-from solver.scenes.sides import PRESCRIBED
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
 SMALL = {"elements": 8, "elements_up": 4, "instants": 11}
@@ -30,14 +28,6 @@ def refusal(kind, **values):
     with pytest.raises(SettingError) as caught:
         kind.checked(values)
     return str(caught.value)
-
-
-@pytest.mark.parametrize("kind", PRESCRIBED)
-@pytest.mark.parametrize("side", ["left", "right", "top"])
-def test_a_side_prescribes_the_components_that_its_kind_says(side, kind):
-    given = BlockSettings.checked({"left": "clamped", side: kind}).side(side)
-    normal, tangential = (given.y, given.x) if side == "top" else (given.x, given.y)
-    assert (normal.prescribed, tangential.prescribed) == PRESCRIBED[kind]
 
 
 @pytest.mark.parametrize(("side", "sign"), [("left", -1.0), ("right", 1.0), ("top", 1.0)])
@@ -67,13 +57,6 @@ def test_only_what_a_side_uses_applies():
     assert not {"left_normal_traction", "left_tangential_displacement"} & applies
     assert not [name for name in applies if name.startswith("right_")]
     assert "start" not in applies
-
-
-def test_a_table_has_its_own_size():
-    table = [[0.0, 0.0], [1.0, -3e-5]]
-    settings = BlockSettings.checked({"top_normal_load": table})
-    assert settings.side("top").y.mean[-1] == -3e-5
-    assert not settings.applies("top_normal_displacement")
 
 
 @pytest.mark.parametrize(
@@ -108,20 +91,6 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
 
 
 @pytest.mark.parametrize(
-    "values",
-    [
-        {**PRESSED, "top_tangential_traction": 1e7},
-        {**PRESSED, "top_tangential_traction": 3e7, "left": "clamped"},
-        {**PRESSED, "top_normal_slope": 2.9},
-        {**DRAGGED, "body_force_x": 4e6, "friction": 1.0},
-        {"top": "free", "body_force_x": 1.0, "body_force_y": -2.0, "friction": 0.6},
-    ],
-)
-def test_loads_that_can_be_held_are_taken(values):
-    BlockSettings.checked(values)
-
-
-@pytest.mark.parametrize(
     ("kind", "values", "name"),
     [
         (BlockSettings, {"substructures": 49}, "substructures"),
@@ -148,17 +117,6 @@ def test_the_moment_on_the_layers_has_the_size_that_was_asked_for():
     extreme = right.slope[-1]
     assert right.each_body
     assert -extreme * scene.height**2 / 6.0 * scene.bodies == pytest.approx(70.0)
-
-
-@pytest.mark.parametrize("scene", ["block", "layers"])
-def test_the_default_opens_sticks_and_slips_both_ways(scene):
-    iterate = solved(scene, violation=1e-4)
-    found = {
-        int(status)
-        for name in iterate.problem.rubbing
-        for status in np.unique(iterate.contact(name).status)
-    }
-    assert found == {-1, 0, 1, 2}
 
 
 @pytest.mark.parametrize("scene", ["block", "layers"])

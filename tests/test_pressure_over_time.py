@@ -123,21 +123,6 @@ def test_the_broken_wire_is_pulled_out_as_the_pressure_falls():
     np.testing.assert_allclose(wire[101] - wire[100], opened, atol=5e-3 * opened.max())
 
 
-def test_a_bound_may_travel_along_the_bar():
-    scene = rod(load="hold", peak=300.0, elements=40, substructures=4)
-    x, t = scene.nodes[:, None], scene.instants
-    moving = replace(scene, bound=1500.0 * (np.abs(x - t) > 0.1))
-    problem = moving.discretise()
-    found = reference_of(problem)
-    free = np.abs(x - t)[1:-1] < 0.08
-    assert np.all(found.contact_force[1:-1][free] == 0.0)
-    solution = solve(problem, Latin())
-    assert solution.is_certified
-    np.testing.assert_allclose(
-        solution.iterate.contact_force, found.contact_force, atol=1e-8 * 300.0
-    )
-
-
 def test_foolish_pressures_are_refused_in_words():
     with pytest.raises(RefusedError, match="pressures of at least 0"):
         BarSettings.checked({"pressure_load": [[0.0, 5000.0], [1.0, -1.0]]})

@@ -1,18 +1,20 @@
-"""Probes give what the recovered inside gives, and loops close the balance of forces."""
+"""Structures need no scene: their probes give what the inside gives, their loops balance."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
 
-from solver.discrete import Problem
+from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
-from solver.discrete.probes import AxialForce, end_rotation, reaction, side_mean
+from solver.discrete.probes import AxialForce, reaction, side_mean
 from solver.latin import Iterate, iterations
 from solver.reference.closed_forms.broken_wire import broken_wire
+from solver.reference.fingerprint import fingerprint
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
@@ -60,18 +62,6 @@ def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
     assert shown == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
 
 
-def test_end_rotation_of_turned_ends_is_their_angle() -> None:
-    _, iterate = iterate_of("layers", {**LAYERS, "bending": "moment"}, 1)
-    problem = iterate.problem
-    angle = 1e-3
-    turned = np.zeros((problem.n_dofs, problem.n_instants))
-    turned[0::2] = -angle * problem.positions[0::2, 1:]
-    turned[1::2] = angle * problem.positions[1::2, :1]
-    probe = end_rotation(problem)
-    probe_without_loads = probe.weights @ turned[probe.dofs]
-    assert probe_without_loads == pytest.approx(np.full(problem.n_instants, angle), rel=1e-9)
-
-
 def test_reaction_is_the_force_that_holds_the_prescribed_end() -> None:
     _, iterate = iterate_of("layers", LAYERS, 120)
     problem = iterate.problem
@@ -108,3 +98,43 @@ def test_equivalent_stress_of_pure_shear_and_of_even_pressure() -> None:
     even = von_mises(np.array([[1.0, 1.0, 0.0]]), 0.5, "strain")
     assert even == pytest.approx([0.0])
     assert von_mises(np.array([[3.0, 0.0, 0.0]]), 0.3, "stress") == pytest.approx([3.0])
+
+
+T = np.linspace(0.0, 1.0, 9)
+DOWN = Given(prescribed=True, mean=-1e-6 * np.minimum(4.0 * T, 1.0))
+ALONG = Given(prescribed=True, mean=1e-6 * np.sin(2.0 * np.pi * T))
+BODY = Stack(
+    length=0.2,
+    height=0.1,
+    elements=(8, 4),
+    substructures=(2, 1),
+    young=1e9,
+    poisson=0.3,
+    instants=T,
+    duration=1.0,
+    support=Support(gap=np.zeros(9), friction=0.3),
+    sides={"top": Side(x=ALONG, y=DOWN)},
+)
+BEAMS = replace(
+    BODY,
+    bodies=3,
+    support=None,
+    sides={
+        "left": Side(Given(True, 0.0 * T), Given(True, 0.0 * T)),
+        "right": Side(Given(False, 0.0 * T, 6e5 * T, each_body=True), Given(False, 0.0 * T)),
+    },
+)
+
+
+def test_a_side_that_is_not_named_is_free() -> None:
+    free = Side(Given(False, 0.0 * T), Given(False, 0.0 * T))
+    named = replace(BODY, sides={**dict.fromkeys(("left", "right", "bottom"), free), **BODY.sides})
+    assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
+    assert {act.where for act in BODY.described().acts} == {"top x", "top y"}
+    assert [hold.kind for hold in BODY.described().holds] == ["support"]
+
+
+def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
+    """Of an extreme s over three heights h each: 3 s h^2 / 6, against the clock where s is up."""
+    force = BEAMS.loop(BEAMS.discretise()).force
+    assert force == pytest.approx(-3.0 * 6e5 * T * 0.1**2 / 6.0)

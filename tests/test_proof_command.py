@@ -1,4 +1,4 @@
-"""`python -m solver proof` sets what is known beside what is found, and fails where a row does."""
+"""What is known stands beside what is found: in the proof, and as curves under runs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from urllib.parse import parse_qsl
 
 import numpy as np
@@ -15,9 +16,14 @@ import pytest
 
 from app.link import read as read_address
 from solver.cli import main
-from solver.scenes import CATALOGUE
+from solver.reference.choice import reference_of
+from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
+from solver.scenes.bar import BarSettings
+from solver.scenes.block import BlockSettings
 from solver.study.proof import by_getfem, others, report
-from solver.study.proof.case import KnownCase, KnownNumber, of_field
+from solver.study.proof.case import KnownCase, KnownNumber
+from solver.study.proof.report import cases
 from solver.study.speed.error_against_time import PeerError
 
 CASES = list(report.cases())
@@ -58,7 +64,7 @@ def test_each_scene_is_proven() -> None:
     assert found >= set(CATALOGUE)
 
 
-@pytest.mark.parametrize("number", [0, 2, 7])
+@pytest.mark.parametrize("number", [2])
 def test_a_wrong_number_fails_and_says_so(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,18 +88,6 @@ def test_a_program_that_is_not_installed_is_said_to_be_absent(
     assert "Not installed: PIQP, OSQP, DAQP, Clarabel, GetFEM." in page.read_text(encoding="utf-8")
 
 
-def test_a_field_is_as_far_off_as_where_it_is_farthest_off() -> None:
-    theirs = np.zeros((2, 5, 3))
-    theirs[:, 1, 2] = 3.0, -4.0
-    ours = theirs.copy()
-    ours[:, 4, 0] = 0.3, 0.4
-    number = of_field("displacement", "m", theirs, ours)
-    assert (number.exact, number.found) == (5.0, 5.0)
-    assert number.deviation == pytest.approx(0.1)
-    assert of_field("displacement", "m", theirs, theirs).deviation == 0.0
-    assert np.isnan(of_field("displacement", "m", theirs * np.nan, ours).deviation)
-
-
 def test_a_program_that_gives_up_proves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -113,9 +107,110 @@ def test_a_program_that_gives_up_proves_nothing(
         assert not any(row.holds for row in rows)
 
 
-def test_a_folder_that_cannot_be_made_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "file").write_text("")
-    assert main(["proof", "--out", str(tmp_path / "file")]) == 2
-    assert "--out" in capsys.readouterr().err
+KNOWN = {
+    "bar pulled to and fro": ["friction", "loop"],
+    "bar whose pressure halves while the load stands": ["friction", "loop"],
+    "bar on contact that gives way, pulled to and fro": ["loop"],
+    "bar on friction that softens with slip": ["loop"],
+    "broken wire between two others": ["axial force", "axial force"],
+    "parabola pressed on a plane": ["pressure"],
+    "parabola sheared to and fro": ["pressure", "friction"],
+    "block on a slope, caught by a spring": ["loop"],
+    "three layers that friction glues": ["loop"],
+    "shoe on a rigid plane (SSNV503)": ["loop"],
+    "slip front driven by a fluid, T = 0.5": ["front", "friction"],
+    "slip under a strength that grows from the middle": ["front", "friction"],
+}
+"""What the run of a case of the proof is drawn over."""
+APART = {"friction": 0.03, "pressure": 0.08, "loop": 0.01}
+"""Mean distance to the reference's curve over its mean size, that the meshes of the proof leave."""
+PRESSED = 0.1
+"""Friction summed along a parabola, over mu P: pressing what is no half-plane leaves some."""
+
+
+def settings_of(title: str) -> Any:
+    (case,) = [case for case in cases() if case.title == title]
+    assert dict(parse_qsl(case.address.removeprefix("?")))["scene"] in CATALOGUE
+    return read_address(case.address)[0].settings
+
+
+@pytest.mark.parametrize(("title", "known"), KNOWN.items())
+def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
+    settings = settings_of(title)
+    problem = discretise(settings)
+    found = reference_of(problem)
+    curves = exact_of(settings, problem, found)
+    assert [one.of for one in curves] == known
+    for curve in curves:
+        assert np.abs(curve.up).max() > 0.0
+        if curve.of == "axial force":
+            continue
+        if curve.of == "front":
+            places = problem.rubbing["support"].positions
+            slips = found.contact("support").status != 0
+            last = np.where(slips, places[:, None], 0.0).max(axis=0)
+            assert curve.up == pytest.approx(problem.instants)
+            assert np.abs(curve.across - last).max() <= 1.1 * places[1]
+            continue
+        if curve.of == "loop":
+            loop = loop_of(settings, problem)
+            force = loop.force if isinstance(loop.force, np.ndarray) else loop.force(found)
+            pairs = [(curve.up, force), (curve.across, loop.displacement(found.displacement))]
+        else:
+            (name, law), *_ = problem.rubbing.items()
+            contact = found.contact(name)
+            own = contact.normal_force if curve.of == "pressure" else contact.tangential_force
+            weights = law.by_point(law.weights)[:, None]
+            if curve.of == "friction" and contact.normal_force is not None:
+                missing = np.cumsum(curve.up * weights - own, axis=0)
+                most = settings.friction * contact.normal_force.sum(axis=0).max()
+                assert np.abs(missing).max() <= PRESSED * most
+                continue
+            pairs = [(curve.up, own / weights)]
+        for exact, ours in pairs:
+            assert np.abs(exact - ours).mean() <= APART[curve.of] * np.abs(exact).mean()
+
+
+def test_traction_of_a_shear_that_turns_begins_as_cattaneos_and_carries_the_force():
+    contact = HalfPlane(1e6, 5.0, 2.1e11)
+    place = np.linspace(-1.2, 1.2, 4801) * contact.half_width
+    most = 0.3 * contact.force
+    shear = most * np.array([0.0, 0.3, 0.6, 0.1, -0.6, 0.6])
+    found = contact.traction_over(place, 0.3, shear)
+    assert np.trapezoid(found, place, axis=0) == pytest.approx(shear, abs=2e-3 * most)
+    grown = contact.traction(place, 0.3, 0.6)
+    peak = 0.3 * contact.peak
+    # The levels are steps, so near the ends of what sticks it is a little off.
+    for instant, sign in ((2, 1.0), (4, -1.0), (5, 1.0)):
+        assert np.abs(found[:, instant] - sign * grown).mean() < 2e-3 * peak
+
+
+PRESSED_ON_SPRING = {
+    "gap": "flat",
+    "spring": 1e6,
+    "top": "traction",
+    "top_normal_traction": -1e7,
+    "right": "traction",
+}
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        BarSettings.checked({"body_force": 100.0}),
+        BarSettings.checked({"friction_law": "compliant", "pressure_load": "loosening"}),
+        BlockSettings.checked({"gap": "flat"}),
+        BlockSettings.checked({**PRESSED_ON_SPRING, "right_normal_traction": -1e6}),
+        BlockSettings.checked({"radius": 500.0, "elements": 12, "elements_up": 6}),
+    ],
+    ids=[
+        "body force",
+        "springs under a pressure that falls",
+        "flat",
+        "on a spring, stuck",
+        "wide contact",
+    ],
+)
+def test_nothing_is_drawn_where_no_closed_form_is_known(settings):
+    problem = discretise(settings)
+    assert exact_of(settings, problem, reference_of(problem)) == []

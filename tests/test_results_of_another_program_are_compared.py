@@ -1,4 +1,4 @@
-"""What another program has found is read or refused, and its distance to a run is what it says."""
+"""Results of other programs are compared, and instants are given to them as FCLIB problems."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from solver.cli import main
 from solver.definitions import SettingError
@@ -15,10 +16,13 @@ from solver.discrete.problem import Problem
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces
 from solver.reference.solution import Reference
+from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
-from solver.study.other_programs.beside import Beside, weights_of
+from solver.study.other_programs import fclib
+from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import read_brought
+from solver.study.other_programs.fclib import contacts_of, local_problem, save_fclib
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -62,28 +66,17 @@ def own_friction(scene: str) -> tuple[Any, Any, Any]:
 
 
 @pytest.mark.parametrize("scene", SMALL)
-def test_our_own_friction_is_at_no_distance(scene: str) -> None:
-    settings, problem, reference = solved(scene)
-    brought = read_brought(table("friction force", *own_friction(scene)), "own.csv", settings)
-    beside = Beside(brought, problem)
-    assert beside.counted == len(brought.times) > 50
-    assert beside.of(reference) < 1e-12
-
-
-def test_our_own_displacement_is_at_no_distance() -> None:
-    settings, problem, reference = solved("bar")
-    text = table("displacement", problem.positions, problem.instants, reference.displacement)
-    brought = read_brought(text, "own.csv", settings)
-    assert Beside(brought, problem).of(reference) < 1e-12
-
-
-@pytest.mark.parametrize("scene", SMALL)
-@pytest.mark.parametrize("factor", [0.5, 1.25, -1.0])
-def test_a_field_times_a_factor_is_as_far_as_the_factor_says(scene: str, factor: float) -> None:
+@pytest.mark.parametrize("factor", [1.0, 1.25, -1.0])
+def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
+    scene: str, factor: float
+) -> None:
     settings, problem, reference = solved(scene)
     x, t, values = own_friction(scene)
     brought = read_brought(table("friction force", x, t, factor * values), "a.csv", settings)
-    assert Beside(brought, problem).of(reference) == pytest.approx(abs((factor - 1.0) / factor))
+    beside = Beside(brought, problem)
+    assert beside.counted == len(brought.times) > 50
+    expected = abs((factor - 1.0) / factor)
+    assert beside.of(reference) == pytest.approx(expected, abs=1e-12)
 
 
 def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
@@ -110,33 +103,6 @@ def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
     assert distances[0] > distances[1] > distances[2]
 
 
-def test_rows_may_have_any_order_and_count_once_however_often_they_stand_there() -> None:
-    settings, problem, reference = solved("bar")
-    head, *rows = table("friction force", *own_friction("bar")).splitlines()
-    rng = np.random.default_rng(0)
-    off = [
-        f"{row.rsplit(',', 1)[0]},{value}"
-        for row, value in zip(rows, rng.normal(size=len(rows)), strict=True)
-    ]
-    shuffled = [off[place] for place in rng.permutation(len(off))]
-    wanted = Beside(read_brought("\n".join([head, *off]), "a", settings), problem).of(reference)
-    for other in (shuffled, off + shuffled):
-        found = Beside(read_brought("\n".join([head, *other]), "b", settings), problem)
-        assert found.of(reference) == pytest.approx(wanted)
-
-
-def test_a_place_that_is_sampled_densely_counts_no_more_for_that() -> None:
-    coarse, fine = np.array([0.0, 0.5, 1.0]), np.array([0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0])
-    shares = [weights_of(x, np.zeros(len(x)))[x >= 0.75].sum() for x in (coarse, fine)]
-    assert shares[0] == pytest.approx(shares[1])
-    assert weights_of(fine, np.zeros(len(fine))).sum() == pytest.approx(1.0)
-
-
-def test_a_series_at_one_place_is_weighted_by_its_steps_in_time() -> None:
-    weights = weights_of(np.full(4, 0.5), np.array([0.0, 1.0, 3.0, 4.0]))
-    np.testing.assert_allclose(weights, [0.5, 1.5, 1.5, 0.5])
-
-
 def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
     settings, problem, reference = solved("bar")
     x, t, values = own_friction("bar")
@@ -147,14 +113,6 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
     beside = Beside(brought, problem)
     assert beside.counted == len(brought.times) - 3
     assert beside.of(reference) < 1e-12
-
-
-def test_a_run_that_has_become_shorter_than_all_of_it_is_at_no_known_distance() -> None:
-    brought = read_brought(HEAD + "0.1,0.9,1\n0.2,0.9,1\n0.3,1,1\n0.4,1,1\n", "a", settings_of())
-    problem = discretise(settings_of(duration=0.5))
-    beside = Beside(brought, problem)
-    assert beside.counted == 0
-    assert np.isnan(beside.of(reference_of(problem)))
 
 
 @pytest.mark.parametrize(
@@ -182,24 +140,18 @@ def test_a_table_is_read_as_it_is_written(text: str) -> None:
     [
         ("", "it has no points"),
         (ROWS, "name its columns in the first line"),
-        (HEAD, "it has no points"),
         ("x,friction force\n0.1,1\n", "no column t"),
-        ("t,displacement\n0.1,1\n", "no column x"),
         ("x,t\n0.1,1\n", "neither friction force nor displacement"),
-        ("x,t,u,friction\n0.1,1,1,1\n", "both friction force and displacement"),
         (
             "x,t,friction force [N]\n" + ROWS,
             r"says N: give it in N/m, kN/m, N/mm; divide nodal forces",
         ),
         ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
         (HEAD + ROWS + "0.5,1,nan\n", "line 6 has 'nan' as friction force: leave such rows out"),
-        (HEAD + ROWS + "0.5,inf,1\n", "line 6 has 'inf' as t"),
         (HEAD + ROWS + "0.5,much,1\n", "line 6 has 'much' as t: give a number"),
-        (HEAD + ROWS + "0.5,1\n", "line 6 has '' as friction force"),
         (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*to 1 m"),
         (HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n", r"2 of its 3 rows lie in the run.*at least 4"),
         (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
-        (HEAD + "0.1,0,1\n" * 600_000, "more than 4 MB"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str) -> None:
@@ -243,3 +195,123 @@ def test_the_command_refuses_in_words(options: Any, why: str, tmp_path: Any, cap
     path.write_text(HEAD + ROWS)
     assert main(["compare", "bar", *(one.format(path) for one in options)]) == 2
     assert why in capsys.readouterr().err
+
+
+PLANE = {
+    "block": {"elements": 16, "elements_up": 6, "instants": 21},
+    "layers": {"layers": 3, "elements": 6, "elements_up": 2, "instants": 21},
+}
+INSTANTS = (0, 6, 13)
+
+
+def problem_of(scene, **changes):
+    return discretise(CATALOGUE[scene].settings.checked(PLANE.get(scene, {}) | changes))
+
+
+def gauss_seidel(compliance, free, friction, most=50_000):
+    """Solve point by point: r_N from its opening, and r_T from its slip, cut to the cone."""
+    force = np.zeros_like(free)
+    for _ in range(most):
+        before = force.copy()
+        for normal, mu in zip(range(0, len(free), 2), friction, strict=True):
+            for row in (normal, normal + 1):
+                move = compliance[row] @ force + free[row]
+                force[row] -= move / compliance[row, row]
+                bound = mu * force[normal]
+                low, high = (0.0, np.inf) if row == normal else (-bound, bound)
+                force[row] = min(max(force[row], low), high)
+        if np.abs(force - before).max() <= 1e-13 * np.abs(force).max():
+            return force
+    raise AssertionError("no solution is found")
+
+
+def read_hdf5(path):
+    """Read W, q, mu and what stands under a solution, with no other knowledge than the layout."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path) as file:
+        group = file["fclib_local"]
+        own = {name: group[f"W/{name}"][()] for name in ("nzmax", "m", "n", "nz", "p", "i", "x")}
+        assert own["nz"] == -1
+        assert group["spacedim"][()] == 2
+        assert own["nzmax"][0] == len(own["x"]) == own["p"][-1]
+        shape = own["m"][0], own["n"][0]
+        matrix = sparse.csc_array((own["x"], own["i"], own["p"]), shape=shape).toarray()
+        vectors = group["vectors/q"][()], group["vectors/mu"][()]
+        solution = {name: one[()] for name, one in file.get("solution", {}).items()}
+        words = {name: one[()] for name, one in group["info"].items()}
+        kinds = {group[name].dtype for name in ("spacedim", "W/p", "W/i", "W/nz")}
+    assert kinds == {np.dtype(np.int32)}
+    return matrix, *vectors, solution, words
+
+
+@pytest.mark.parametrize("scene", PLANE)
+def test_a_solver_of_the_file_alone_finds_the_reactions_of_the_reference(scene, tmp_path):
+    problem = problem_of(scene)
+    reference, contacts = reference_of(problem), contacts_of(problem)
+    for instant in INSTANTS:
+        local = local_problem(contacts, reference, instant, scene, certified=True)
+        pytest.importorskip("h5py")
+        path = tmp_path / f"{instant}.hdf5"
+        save_fclib(path, local)
+        compliance, free, friction, solution, words = read_hdf5(path)
+        force = gauss_seidel(compliance, free, friction) if free.any() else 0.0 * free
+        wanted = reference.contact_force[contacts.places, instant]
+        assert np.linalg.norm(force - wanted) <= 1e-8 * np.linalg.norm(wanted)
+        np.testing.assert_array_equal(solution["r"], wanted)
+        assert f"t = {problem.instants[instant]:.6g} s".encode() in words["title"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "why"),
+    [
+        ("bar", {}, "bound that is known beforehand"),
+        ("strand", {}, "bound that is known beforehand"),
+        ("incline", {}, "is a spring"),
+        ("block", {"friction_law": "compliant"}, "gives way"),
+        ("block", {"friction_law": "slip-dependent"}, "changes with slip"),
+    ],
+    ids=str,
+)
+def test_what_fclib_cannot_say_is_refused_with_its_reason(scene, changes, why):
+    with pytest.raises(RefusedError, match=why):
+        contacts_of(problem_of(scene, **changes))
+
+
+def test_a_body_that_contact_alone_holds_has_no_compliance():
+    problem = problem_of("block", top="traction")
+    with pytest.raises(RefusedError, match=r"contact alone holds.*hold a side"):
+        contacts_of(problem)
+
+
+def test_the_command_writes_the_instant_that_is_nearest(tmp_path, capsys):
+    pytest.importorskip("h5py")
+    path = tmp_path / "one.hdf5"
+    sizes = [f"--set={name}={json.dumps(value)}" for name, value in PLANE["block"].items()]
+    assert main(["fclib", "block", *sizes, "--out", str(path), "--instant", "0.31"]) == 0
+    assert "t = 0.296875 s, 17 points" in capsys.readouterr().out
+    compliance, free, friction, solution, _ = read_hdf5(path)
+    assert set(solution) == {"u", "r"}
+    force = gauss_seidel(compliance, free, friction)
+    assert np.linalg.norm(force - solution["r"]) <= 1e-8 * np.linalg.norm(force)
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (["--instant", "7"], "--instant = 7.0 is refused"),
+        (["--instant", "nan"], "a time from 0 to 1 s"),
+        (["--out", "/no/such/folder/one.hdf5"], "No such file or directory"),
+    ],
+)
+def test_the_command_refuses_in_words_before_it_runs(options, why, tmp_path, capsys):
+    pytest.importorskip("h5py")
+    out = ["--out", str(tmp_path / "one.hdf5")]
+    assert main(["fclib", "block", *out, *options]) == 2
+    assert why in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_h5py_it_says_what_to_install(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(fclib, "find_spec", lambda name: None)
+    assert main(["fclib", "block", "--out", str(tmp_path / "one.hdf5")]) == 2
+    assert "slipfront[peers]" in capsys.readouterr().err

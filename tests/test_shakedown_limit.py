@@ -12,7 +12,6 @@ from solver.reference.shakedown.melan import ShakedownLimit, shakedown_limit
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import cycles_of, ends_of
 from solver.study.quantities.finished import finished_run
-from solver.study.quantities.quantities import reading
 
 BOUND, LENGTH = 1500.0, 1.0
 SMALL = {"elements": 20, "instants": 161, "substructures": 2, "load": "cycles"}
@@ -107,10 +106,3 @@ def test_what_the_theorem_does_not_cover_is_refused() -> None:
         limit("block", **block, substructures=1)
     with pytest.raises(NoReferenceError):
         limit("bar", **SMALL, peak=300.0, friction_law="slip-dependent")
-
-
-def test_a_run_is_asked_for_its_factor() -> None:
-    settings = CATALOGUE["bar"].settings.checked({**SMALL, **GIVES_WAY, "peak": 300.0})
-    run = finished_run(settings, errors=False, indicators=False)
-    expected = limit("bar", **SMALL, **GIVES_WAY, peak=300.0).factor
-    assert reading("shakedown_factor")(run) == pytest.approx(expected, rel=1e-9)

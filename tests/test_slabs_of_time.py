@@ -22,7 +22,6 @@ from solver.latin import (
     solve,
 )
 from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
-from solver.laws.play import play
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.refusal import RefusedError
@@ -124,14 +123,6 @@ def test_the_command_solves_in_slabs(capsys: pytest.CaptureFixture[str], tmp_pat
     assert np.load(out)["displacement"].shape[1] == 33
     assert main([*asked, "--slab", "0"]) == 2
     assert "slab = 0 is refused" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("points", [3, 200])
-def test_a_play_goes_on_where_it_stood(points: int) -> None:
-    draw = np.random.default_rng(0)
-    target, reach = draw.normal(size=(points, 30)), draw.uniform(0.1, 1.0, points)
-    whole = play(target, reach)
-    assert np.array_equal(play(target[:, 11:], reach, whole[:, 10]), whole[:, 11:])
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,9 @@ import pytest
 from plane import whole_force_error
 
 from solver.latin import iterations, solve
-from solver.latin.direction.rules import automatic
+from solver.latin.direction.sticking import LOOK
 from solver.reference.choice import reference_of
+from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
@@ -69,16 +70,45 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
     assert solve(problem, method_of(settings)).is_certified
 
 
-def test_k_between_bodies_knows_their_shape_and_not_their_cuts():
-    def total(ratio, **values):
-        _, problem = layers_of(ratio, **values)
-        law = problem.rubbing["contact 1-2"]
-        k = automatic(problem)
-        return k[law.normal.component.above].sum(), k[law.tangent.above].sum()
+THIN = {"length": 2.0, "thickness": 0.01, "elements": 24, "instants": 13, "finish": "none"}
+SLIPPING = {"instants": 13, "elements": 24, "finish": "none"}
 
-    np.testing.assert_allclose(total(200, substructures=8), total(200), rtol=1e-12)
-    np.testing.assert_allclose(total(10), (7.0, 1.0), rtol=1e-12)
-    # Elements as long as the layers are thick leave the root of 40 / ratio; the held end point is
-    # no part of the contact.
-    fine = total(200, elements=200)
-    np.testing.assert_allclose(fine, np.sqrt(40 / 200) * np.array((7.0, 1.0)), rtol=1e-4)
+
+def stuck(**values):
+    settings = CATALOGUE["layers"].settings.checked(values)
+    return discretise(settings), method_of(settings)
+
+
+def iterates(number, start=None, **values):
+    problem, latin = stuck(**values)
+    return list(islice(iterations(problem, latin, start), number))
+
+
+@pytest.mark.parametrize("ratio", [200, 500, 1000])
+@pytest.mark.parametrize("layers", [4, 10])
+def test_thin_layers_that_stick_come_within_one_percent_in_thirty_iterations(ratio, layers):
+    problem, latin = stuck(**{**THIN, "length": 0.01 * ratio, "layers": layers})
+    distance = distance_to(reference_of(problem), problem)
+    errors = [distance.of_friction_force(one) for one in islice(iterations(problem, latin), 33)]
+    assert max(errors[-4:]) <= 0.01
+
+
+def test_k_stays_where_anything_slips():
+    found = iterates(LOOK + 9, **SLIPPING)
+    assert np.any(np.abs(found[LOOK - 1].contact("contact 1-2").status) == 1)
+    assert all(one.k is found[0].k for one in found)
+
+
+@pytest.mark.parametrize("place", [LOOK - 2, LOOK - 1, LOOK, LOOK + 4])
+def test_such_a_run_goes_on_from_any_checkpoint_to_the_bit(place):
+    straight = iterates(LOOK + 8, **THIN)
+    again = iterates(len(straight) - place - 1, straight[place].checkpoint, **THIN)
+    for one, other in zip(again, straight[place + 1 :], strict=True):
+        assert np.array_equal(one.k, other.k)
+        assert np.array_equal(one.outgoing, other.outgoing)
+
+
+def test_what_nowhere_slips_is_solved_by_a_status_step_at_once():
+    solution = solve(*stuck(**{**THIN, "instants": 81, "finish": "at-once"}))
+    assert solution.is_certified
+    assert solution.iterate.number <= LOOK

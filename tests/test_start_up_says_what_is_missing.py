@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 import socket
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
-import pytest
-from browser import ROOT, chromium
+from browser import ROOT
 
 
 def test_a_port_in_use_is_named_in_a_line() -> None:
@@ -29,18 +26,3 @@ def test_a_port_in_use_is_named_in_a_line() -> None:
     assert found.returncode != 0
     assert f"port {port} is already in use" in found.stderr.splitlines()[-1]
     assert "Traceback" not in found.stderr
-
-
-@pytest.mark.parametrize(
-    ("promised", "outcome"), [("", pytest.skip.Exception), ("true", pytest.fail.Exception)]
-)
-def test_a_browser_that_is_missing_skips_a_test_and_where_one_is_promised_fails_it(
-    promised: str, outcome: type[BaseException], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def nowhere(name: str, **options: Any) -> None:
-        return None
-
-    monkeypatch.setattr(shutil, "which", nowhere)
-    monkeypatch.setenv("CI", promised)
-    with pytest.raises(outcome, match="apt-get install chromium"):
-        chromium()

@@ -1,4 +1,4 @@
-"""Strands solved over all instants at once and instant by instant are the same strands."""
+"""Strands are the same whatever the method, and instant by instant."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver.latin import solve
+from solver.definitions import SettingError
+from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
 from solver.scenes import discretise
@@ -18,7 +19,6 @@ from solver.scenes.strand import StrandSettings, strand
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}
 """The iteration itself has to get there, without a solver that is much like the reference."""
-GRIPPED = {"grip": "displacement"}
 
 
 def options(**changes: object) -> StrandSettings:
@@ -76,8 +76,77 @@ def test_friction_however_small_counts_where_it_is_at_its_bound():
     assert distance_to(reference, problem).of_friction_force(nothing) == pytest.approx(1.0)
 
 
-def test_without_any_load_the_error_is_absolute():
-    problem = discretise(options(broken=0, **GRIPPED, peak=0.0))
-    reference = reference_of(problem)
-    some = replace(reference, contact_force=reference.contact_force + 1.0)
-    assert distance_to(reference, problem).of_friction_force(some) > 1.0
+PLAIN = {"method": "paper"}
+TIGHT = {"tolerance": 1e-16, "max_iterations": 4000}
+PGD = {"linear_stage": "pgd"}
+ACCELERATED = {"search_direction": "auto", "acceleration": "anderson"}
+
+
+def by_paper(**changes: object) -> StrandSettings:
+    return StrandSettings.checked({**SMALL, **PLAIN, **TIGHT, **changes})
+
+
+def solution_of(settings):
+    found = solve(discretise(settings), method_of(settings), watch=False)
+    assert found.status.ending is Ending.CONVERGED
+    return found.iterate
+
+
+@pytest.fixture(scope="module")
+def known():
+    return solution_of(by_paper(**ACCELERATED, tolerance=1e-24))
+
+
+def apart(one, other):
+    return max(
+        float(np.linalg.norm(getattr(one, name) - getattr(other, name)))
+        / float(np.linalg.norm(getattr(other, name)))
+        for name in ("displacement", "friction_force")
+    )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"multiscale": False, "acceleration": "anderson"},
+        {"relaxation": 0.6, "k_scale": 2.0},
+        {**ACCELERATED, "start": "nested"},
+        {"search_direction": "auto", "start": "nested"},
+        {**PGD, "pgd_modes": 60, "pgd_tolerance": 1e-14, "tolerance": 1e-13},
+        {"substructures": 1, "acceleration": "anderson"},
+        {"substructures": 2, **ACCELERATED},
+        {"substructures": 7, **ACCELERATED},
+        {"substructures": 24, **ACCELERATED},
+    ],
+    ids=str,
+)
+def test_every_method_and_any_number_of_substructures_reach_the_same_solution(known, change):
+    assert apart(solution_of(by_paper(**change)), known) < 2e-5
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "words"),
+    [
+        ({"wires": 3, "broken": 4}, "broken", "0 to wires (3)"),
+        ({"elements": 5, "substructures": 6}, "substructures", "1 to elements (5)"),
+        ({"load": [[0.0, 0.0], [1.0, -5.0]]}, "load", "wires cannot be pushed"),
+        ({"peak": 2000.0}, "peak", "tensions below 1500 N"),
+        ({"peak": 800.0, "broken": 1}, "peak", "tensions below 750 N"),
+        ({"friction": 0.0}, "peak", "raise friction or pressure"),
+        ({"load": [[0.0, 1500.0]]}, "load", "move the break to the left"),
+        ({"wires": 200, "elements": 2000, "instants": 101}, "instants", "fewer instants"),
+    ],
+    ids=str,
+)
+def test_what_makes_no_strand_is_refused_in_words(change, name, words):
+    with pytest.raises(SettingError, match=f"^{name} = ") as refused:
+        StrandSettings.checked(change)
+    assert words in str(refused.value)
+
+
+def test_changes_bring_along_what_could_not_stand_beside_them():
+    settings = StrandSettings.checked({"broken": 3})
+    assert settings.with_change("wires", 2).broken == 2
+    assert settings.with_change("elements", 4).substructures == 4
+    assert settings.with_change("peak", 100.0).peak == 100.0

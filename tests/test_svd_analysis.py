@@ -1,8 +1,8 @@
-"""Singular values and modes of interface fields are what their weighted inner products say."""
+"""Interface fields in singular vectors, and slip fronts in clips with memory."""
 
 from __future__ import annotations
 
-from itertools import islice
+from itertools import islice, pairwise
 
 import numpy as np
 import pytest
@@ -10,28 +10,25 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from solver.arrays import Array
 from solver.latin import iterations
+from solver.reduction.clips import Clips, clips_of, monotone
 from solver.reduction.svd import (
     InterfaceField,
-    against_front,
     decompose,
     decompositions,
     friction_spectra,
     front_decay,
 )
-from solver.scenes import discretise
+from solver.reference.choice import reference_of
+from solver.scenes import discretise, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
+from solver.study.quantities.clip_measures import clips_in
+from solver.study.quantities.finished import finished_run
+from solver.study.quantities.quantities import reading
 
-DEGENERATE = {
-    "one instant": {"instants": 1, "load": "ramp"},
-    "no load": {"peak": 0.0},
-    "one element per substructure": {"elements": 5, "substructures": 5},
-    "one substructure": {"substructures": 1},
-    "sizes that differ": {"elements": 52, "substructures": 5},
-    "no sliding": {"peak": 1e-3},
-    "all sliding": {"peak": 2000.0},
-}
+DEGENERATE = [{"instants": 1, "load": "ramp"}, {"peak": 0.0}, {"elements": 52, "peak": 2000.0}]
 
 
 @st.composite
@@ -94,41 +91,7 @@ def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(
     assert np.all(np.diff(found.errors) <= 0.0)
 
 
-@given(weighted_fields(), st.floats(0.0, 1.0))
-def test_no_fewer_modes_than_counted_reach_the_error(case, share):
-    field, space, time = case
-    found = decompose(field, space, time, np.arange(len(space)))
-    count = found.modes_for(share)
-    assert found.errors[count] <= share
-    assert count == 0 or found.errors[count - 1] > share
-
-
-def test_a_zero_field_has_rank_zero_and_needs_no_mode():
-    found = decompose(np.zeros((4, 6)), np.ones(4), np.ones(6), np.arange(4))
-    assert not found.values.any()
-    assert not found.errors.any()
-    assert found.modes_for(0.0) == 0
-    assert not against_front(found.values).any()
-
-
-@pytest.mark.parametrize("field", list(InterfaceField))
-@pytest.mark.parametrize("changes", DEGENERATE.values(), ids=DEGENERATE.keys())
-def test_every_field_is_decomposed_whatever_the_bar(changes, field):
-    iterate = iterate_of(**changes)
-    found = decompositions(iterate, field)
-    parts = iterate.problem.substructures
-    assert len(found) == len(parts)
-    for each, part in zip(found, parts, strict=True):
-        n_points, n_instants = len(part.rows) - 2, iterate.problem.n_instants
-        assert each.space_modes.shape == (n_points, min(n_points, n_instants))
-        assert each.time_modes.shape == (min(n_points, n_instants), n_instants)
-        assert each.positions.shape == (n_points,)
-        places = iterate.problem.positions[part.dofs]
-        assert set(each.positions) == set(places)
-        assert np.isfinite(each.errors).all()
-
-
-@pytest.mark.parametrize("changes", DEGENERATE.values(), ids=DEGENERATE.keys())
+@pytest.mark.parametrize("changes", DEGENERATE, ids=str)
 def test_the_short_way_gives_the_singular_values_of_the_long_one(changes):
     iterate = iterate_of(**changes)
     for short, each in zip(
@@ -139,20 +102,137 @@ def test_the_short_way_gives_the_singular_values_of_the_long_one(changes):
         np.testing.assert_allclose(short, each.values, rtol=1e-9, atol=1e-9 * each.values[0])
 
 
-def test_singular_values_of_one_substructure_add_up_to_the_norm_in_si_units():
-    iterate = iterate_of(substructures=1, length=2.0, duration=3.0)
-    (force,) = decompositions(iterate, InterfaceField.FRICTION_FORCE)
-    (displacement,) = decompositions(iterate, InterfaceField.DISPLACEMENT)
-    assert force.space_weights.sum() == pytest.approx(2.0)
-    assert force.time_weights.sum() == pytest.approx(3.0)
-    density = iterate.friction_force / force.space_weights[:, None]
-    for found, field in ((force, density), (displacement, iterate.displacement)):
-        whole = squared_norm(field, found.space_weights, found.time_weights)
-        assert np.sum(found.values**2) == pytest.approx(whole)
-
-
 def test_a_front_sampled_finely_has_the_spectrum_of_an_integration():
     found = constant_speed_front(400, 400).values[:10]
     orders = np.arange(1, 11)
     np.testing.assert_allclose(found, 2.0 / ((2 * orders - 1) * np.pi), rtol=1e-3)
     np.testing.assert_allclose(found / found[0], front_decay(10), rtol=1e-3)
+
+
+EXACT = 1e-12
+
+
+def solved(**changes) -> Clips:
+    """Fit clips to the discrete solution of a bar."""
+    settings = BarSettings.checked(changes)
+    problem = discretise(settings)
+    law = problem.rubbing["friction"]
+    lengths = law.by_point(law.weights)
+    friction = reference_of(problem).contact("friction").tangential_force
+    load = structure_of(settings).load
+    return clips_of(
+        friction / lengths[:, None],
+        law.by_point(law.tangential.bound) * problem.scales.force / lengths[:, None],
+        load if load.any() else friction.sum(axis=0),
+        lengths,
+        problem.time_weights * problem.scales.time,
+    )
+
+
+@pytest.mark.parametrize("elements", [50, 200, 800])
+@pytest.mark.parametrize(
+    ("load", "branches"),
+    [("ramp", 1), ("triangle", 2), ("sine", 3), ("cycle", 3), ("decaying", 8), ("random", 9)],
+)
+def test_two_vectors_a_branch_are_the_friction_of_a_bar(load, branches, elements):
+    clips = solved(load=load, elements=elements, peak=1200.0)
+    assert len(clips.branches) == branches
+    assert clips.errors[0] < EXACT
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"substructures": 1},
+        {"substructures": 25},
+        {"pressure_profile": "rising"},
+        {"friction_profile": "gap"},
+        {"section_profile": "falling"},
+        {"peak": 2400.0},
+        {"load": "cycles", "instants": 161},
+        {"peak": 0.0, "support_displacement": 1e-3},
+        {"load": "ramp", "pressure_load": "loosening"},
+        {"load": "hold", "pressure_load": "loosening"},
+    ],
+    ids=str,
+)
+def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves(changes):
+    assert solved(**changes).errors[0] < EXACT
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"body_force": 800.0},
+        {"load": "sine", "pressure_load": "loosening"},
+        {"friction_law": "compliant"},
+        {"friction_law": "slip-dependent"},
+    ],
+    ids=str,
+)
+def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it(changes):
+    clips = solved(**changes)
+    assert clips.errors[0] > 0.01
+    assert clips.errors[-1] < EXACT
+    assert clips.reconstruct(len(clips.rest.values)) == pytest.approx(clips.given, abs=1e-6)
+
+
+def play_of(load: Array, bound: Array) -> Array:
+    """Give the friction on a clamped rod: its axial force follows the load with play."""
+    reach = np.cumsum(bound[::-1])[::-1]
+    axial, now = np.zeros((len(bound) + 1, len(load))), np.zeros(len(bound))
+    axial[-1] = load
+    for instant, force in enumerate(load):
+        now = np.clip(now, force - reach, force + reach)
+        axial[:-1, instant] = now
+    return np.diff(axial, axis=0)
+
+
+@st.composite
+def pulled_rods(draw):
+    sizes = st.floats(0.0, 1.0, allow_subnormal=False).map(lambda one: round(one, 3))
+    bound = draw(arrays.arrays(float, st.integers(1, 12), elements=sizes))
+    load = draw(arrays.arrays(float, st.integers(1, 25), elements=st.integers(-40, 40)))
+    return load / draw(st.sampled_from([5.0, 10.0, 40.0])), bound
+
+
+@given(pulled_rods())
+def test_any_load_on_any_bound_is_a_clip(case):
+    load, bound = case
+    field = play_of(load, bound)
+    clips = clips_of(field, bound, load, np.ones(len(bound)), np.ones(len(load)))
+    assert np.abs(clips.field - field).max() <= EXACT * max(bound.max(), 1.0)
+    assert np.all(np.abs(clips.field) <= bound[:, None] * (1.0 + EXACT))
+
+
+@given(
+    arrays.arrays(float, (6, 9), elements=st.integers(-50, 50)),
+    arrays.arrays(float, 9, elements=st.integers(-9, 9)),
+)
+def test_errors_fall_with_the_modes_that_are_kept_whatever_the_field(field, load):
+    clips = clips_of(field, np.full(6, 30.0), load, np.full(6, 0.5), np.full(9, 2.0))
+    assert np.all(np.diff(clips.errors) <= EXACT)
+    size = np.linalg.norm(field)
+    for modes, error in enumerate(clips.errors):
+        missed = np.linalg.norm(clips.reconstruct(modes) - field)
+        assert missed == pytest.approx(error * size, abs=1e-9 * max(size, 1.0))
+
+
+@given(arrays.arrays(float, st.integers(1, 30), elements=st.integers(-3, 3)))
+def test_branches_go_one_way_and_are_as_few_as_can_be(load):
+    found = list(monotone(load))
+    assert [one.start for one in found[1:]] == [one.stop for one in found[:-1]]
+    assert (found[0].start, found[-1].stop) == (0, len(load))
+    path = np.append(0.0, load)
+    ways = [np.sign(np.diff(path[one.start : one.stop + 1])) for one in found]
+    assert all(not {-1.0, 1.0} <= set(own) for own in ways)
+    last = [own[own != 0.0][-1] for own in ways if own.any()]
+    assert all(one != other for one, other in pairwise(last))
+
+
+def test_quantities_of_a_run_say_the_same():
+    run = finished_run(BarSettings.checked({}), errors=False, indicators=False)
+    clips = clips_in(run.settings, run.iterate)
+    assert reading("clip_numbers@1e-9")(run) == clips.numbers
+    assert reading("clip_error")(run) == clips.errors[0] < EXACT
+    assert reading("svd_numbers@0.01")(run) == 30 * (51 + 101)

@@ -13,16 +13,11 @@ from processes import is_alive, wait_for
 from sweeps import Here, rows_of, tiny
 
 from solver.definitions import SettingError
-from solver.latin.finish.status_step import states_of
-from solver.laws import OPEN
-from solver.reference.choice import incremental_solver, reference_of
-from solver.running.executors import Processes, opened
+from solver.running.executors import opened
 from solver.running.pool import EndedError, OverdueError
-from solver.scenes import CATALOGUE, discretise
-from solver.study.quantities.finished import finished_run
-from solver.study.sweep import VersionsDifferError, sweep
+from solver.scenes import CATALOGUE
 from solver.study.sweep import point as points
-from solver.study.sweep.nearest import KEPT, Nearest
+from solver.study.sweep import sweep
 
 
 def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
@@ -42,14 +37,6 @@ def test_processes_give_the_same_rows_as_this_one() -> None:
         rows = rows_of(plan, pool)
     expected = np.array([row.values for row in rows_of(plan)])
     assert np.array([row.values for row in rows]) == pytest.approx(expected, rel=1e-9)
-
-
-def test_points_that_are_done_are_left_out() -> None:
-    plan = tiny(["peak=300:900:5"], ["iterations"])
-    assert [row.number for row in rows_of(plan, done={0, 2, 4})] == [1, 3]
-    pool = Here()
-    assert rows_of(plan, pool, done=range(5)) == []
-    assert pool.calls == 0
 
 
 def test_a_run_that_fails_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,35 +85,6 @@ def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> No
 def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of: str) -> None:
     plan = tiny(["friction=0.4:0.42:6"], ["peak_displacement", of])
     assert not any(row.was_warm for row in rows_of(plan))
-
-
-def test_the_nearest_run_is_the_start_and_the_oldest_are_forgotten() -> None:
-    nearest = Nearest((3, 4000))
-    assert nearest.to(5) is None
-    states = {number: np.full((1, 1), number % 100, np.int8) for number in (0, 3999, 4001, 8100)}
-    for number, one in states.items():
-        nearest.keep(number, one)
-    # one of 3 lines away is farther than 100 of 4000 places
-    assert nearest.to(10) is states[0]
-    assert nearest.to(8001) is states[8100]
-    for number in range(KEPT):
-        nearest.keep(4002 + number, states[0])
-    assert nearest.to(8100) is states[0]
-
-
-@pytest.mark.parametrize("scene", ["bar", "block"])
-def test_a_foolish_start_costs_little_and_changes_nothing(scene: str) -> None:
-    settings = tiny(["friction=0.4,0.5"], ["dissipation"], scene).settings
-    problem = discretise(settings)
-    right = reference_of(problem)
-    states = states_of(finished_run(settings).iterate)
-    foolish = np.where(states == OPEN, OPEN, 1).astype(np.int8)
-    for guess in (states, -foolish, foolish):
-        found = incremental_solver(problem).march(guess=guess)
-        assert found.contact_force == pytest.approx(
-            right.contact_force, abs=1e-9 * np.abs(right.contact_force).max()
-        )
-        assert found.steps <= right.steps + 3 * problem.n_instants
 
 
 def test_a_process_that_is_killed_takes_no_row_with_it() -> None:
@@ -187,23 +145,6 @@ def test_a_point_is_not_given_up_for_one_lost_process() -> None:
     assert [row.number for row in rows if row.holds] == list(range(6))
 
 
-def test_closing_a_sweep_ends_what_runs() -> None:
-    plan = tiny(["peak=300:900:9"], ["iterations"])
-    with opened("processes:1") as pool:
-        assert isinstance(pool, Processes)
-        running = sweep(plan, pool)
-        next(running)
-        running.close()
-        assert pool.submit(int, 3).result() == 3
-        sleeping = pool.submit(time.sleep, 60.0)
-        wait_for(sleeping.running)
-        assert not sleeping.cancel()
-        with pytest.raises(EndedError):
-            sleeping.result()
-        pid = pool.submit(os.getpid).result()
-    wait_for(lambda: not is_alive(pid))
-
-
 def test_an_executor_ends_with_all_that_it_does() -> None:
     with opened("processes:2") as pool:
         calls = [pool.submit(time.sleep, 60.0) for _ in range(4)]
@@ -213,29 +154,8 @@ def test_an_executor_ends_with_all_that_it_does() -> None:
         pool.submit(int)
 
 
-def test_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    plan = tiny(["peak=300,900"], ["iterations"])
-    with opened("processes:1") as pool:
-        monkeypatch.setattr("solver.study.sweep.drive.versions", lambda: "numpy 1.0")
-        with pytest.raises(VersionsDifferError, match=r"here are numpy 1\.0"):
-            rows_of(plan, pool)
-
-
 @pytest.mark.parametrize(
-    "on",
-    [
-        "",
-        "process",
-        "processes:",
-        "processes:0",
-        "processes:-1",
-        "processes:x",
-        "threads",
-        "processes:2:2",
-        "processes:1000",
-        "dask",
-        "processes: 2",
-    ],
+    "on", ["", "process", "processes:0", "processes:x", "processes:2:2", "processes:1000", "dask"]
 )
 def test_a_foolish_executor_is_refused_in_a_line(on: str) -> None:
     with pytest.raises(SettingError, match=r"processes:COUNT, or dask://HOST:PORT") as refusal:

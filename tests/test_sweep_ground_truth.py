@@ -67,13 +67,6 @@ def test_an_exponent_is_found_with_a_margin_that_holds_it(power: float) -> None:
     assert 0.92 < held / 400 < 0.98
 
 
-def test_an_exponent_needs_two_sizes_and_leaves_out_what_is_no_positive_number() -> None:
-    assert exponent_of([1.0, 1.0], [2.0, 3.0]) is None
-    assert str(exponent_of([1.0, 10.0], [2.0, 20.0])) == "1.00"
-    law = exponent_of([1.0, 2.0, 4.0, 8.0, 9.0], [1.0, 4.0, 16.0, np.nan, 0.0])
-    assert str(law) == "2.00 ± 0.00"
-
-
 def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
     plan = tiny(["elements=10:40:3:log", "method=fast,paper"], ["iterations"])
     rows = [

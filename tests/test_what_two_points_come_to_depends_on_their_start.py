@@ -13,14 +13,12 @@ import numpy as np
 import pytest
 
 from solver.discrete.problem import Problem
-from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.melan import shakedown_limit
-from solver.reference.shakedown.slip_space import SlipSpace, largest_swing, room_of_two, slip_space
+from solver.reference.shakedown.slip_space import largest_swing, room_of_two, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import cycles_of, ends_of
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.shakedown import Fate, fate_of
-from solver.study.quantities.slips import slips_of
 
 LESSON = Path(__file__).parents[1] / "app/lessons/two-points.toml"
 GIVEN = tomllib.loads(LESSON.read_text(encoding="utf-8"))["settings"]
@@ -95,17 +93,6 @@ def test_yet_there_is_a_slip_that_could_stay() -> None:
     assert room.min(axis=0)[0] < slip[0] < room.max(axis=0)[0]
 
 
-def test_who_ceases_is_in_the_room_and_who_does_not_is_never() -> None:
-    for first, stays in ((0.0, True), (PUSH, False)):
-        run, space = ran(**{PATH: path(first)}), slip_space(problem(**{PATH: path(first)}))
-        inside = slice(ends_of(run.settings)[-2], ends_of(run.settings)[-1] + 1)
-        ((law, slip, _),) = slips_of(run.iterate)
-        moved = np.cumsum(law.mean_by_point(slip), axis=1)[:, inside]
-        beyond = space.matrix @ moved - space.limit[:, inside].min(axis=1)[:, None]
-        slack = 1e-9 * np.abs(space.limit).max()
-        assert (beyond.max(axis=0) <= slack).any() == stays
-
-
 @pytest.mark.parametrize(("first", "share", "goes_on"), [(0.0, 0.995, False), (0.0, 1.005, True)])
 def test_above_the_program_all_starts_slip_and_below_it_the_best_does_not(
     first: float, share: float, goes_on: bool
@@ -127,22 +114,3 @@ def test_where_slip_presses_nothing_it_is_the_limit_of_the_theorem(
     some = slice(ends[-2], ends[-1] + 1)
     theorem = shakedown_limit(discretise(rods), some).factor
     assert largest_swing(slip_space(discretise(rods)), some)[0] == pytest.approx(theorem, rel=1e-6)
-
-
-def test_planes_that_there_are_not_are_refused() -> None:
-    for changes in ({"friction_law": "compliant"}, {"friction": 0.0}):
-        with pytest.raises(NoReferenceError):
-            slip_space(problem(**changes))
-
-
-def test_a_load_that_stands_still_may_grow_without_end() -> None:
-    held = problem(**{PATH: "hold"})
-    assert largest_swing(slip_space(held), slice(64, None))[0] == np.inf
-
-
-def test_a_mean_that_friction_cannot_hold_is_refused() -> None:
-    space = slip_space(problem())
-    bad = SlipSpace(space.matrix, space.limit - 10.0 * np.abs(space.limit).max())
-    assert not len(room_of_two(bad, slice(100, None)))
-    with pytest.raises(NoReferenceError):
-        largest_swing(bad, slice(100, None))
