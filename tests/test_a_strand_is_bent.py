@@ -12,7 +12,6 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import Rods, solve
 from solver.arrays import Array
-from solver.definitions import SettingError
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
 from solver.discrete.rope.forces import CutWires, WireForces, cut_at, stress_ranges
 from solver.discrete.rope.helical_wire import HelicalWire
@@ -161,13 +160,6 @@ def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_ev
     assert arrays["status"].shape == (len(problem.rubbing) * shape[0], shape[1])
 
 
-def test_without_friction_only_the_wires_themselves_are_bent() -> None:
-    settings = settings_of(friction=0.0, curvature=0.2)
-    scene, found = solved(settings)
-    own = settings.section.slipping_bending * scene.curvature
-    np.testing.assert_allclose(moment_of(scene, found), own, atol=1e-6 * own.max())
-
-
 def test_what_is_no_strand_is_refused() -> None:
     section = seven_wire()
     with pytest.raises(RefusedError, match="lay angle"):
@@ -184,18 +176,6 @@ def test_what_is_no_strand_is_refused() -> None:
         replace(scene, wires=[short, *scene.wires[1:]])
     with pytest.raises(RefusedError, match="below zero"):
         replace(scene, wires=[replace(scene.wires[0], bound=np.array([-1.0]))])
-
-
-@pytest.mark.parametrize(
-    ("changes", "name"),
-    [
-        ({"tension_load": [[0.0, 1e5], [1.0, -1e5]]}, "tension_load"),
-        ({"bending": "clamp", "tension": 0.0}, "fall_off"),
-    ],
-)
-def test_settings_that_cannot_be_are_refused(changes: dict[str, Any], name: str) -> None:
-    with pytest.raises(SettingError, match=name):
-        settings_of(**changes)
 
 
 def taken(name: str, run: FinishedRun) -> float:

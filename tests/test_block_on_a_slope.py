@@ -5,8 +5,6 @@ Closed forms: solver/README.md, 9.
 
 from __future__ import annotations
 
-from itertools import islice
-
 import numpy as np
 import pytest
 from contact_problems import local_stage
@@ -14,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import SettingError
-from solver.latin import iterations, solve
+from solver.latin import solve
 from solver.laws import Component, Contact, Frictionless, SlackSpring
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -121,13 +119,3 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     np.testing.assert_allclose(force[:3], overlap / spring.softness[:, None], atol=1e-12)
     assert not force[3:].any()
     assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0) < 1e-10)
-
-
-@pytest.mark.parametrize("spring", [1e4, 2e6, 1e14])
-def test_the_point_where_the_spring_pulls_does_not_hold_the_body_back(spring):
-    options = {"finish": "none", "spring": spring}
-    settings = InclineSettings.checked({**SMALL, **options})
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    iterates = islice(iterations(problem, method_of(settings), resumable=False), 25)
-    assert any(distance.of_friction_force(iterate) <= 0.01 for iterate in iterates)

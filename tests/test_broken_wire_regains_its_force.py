@@ -72,8 +72,8 @@ def test_it_regains_its_force_linearly_over_the_tension_by_the_friction_bound(ch
 
 @pytest.mark.parametrize(
     "change",
-    [PAIR, {"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}, GRIPPED],
-    ids=["pair", "middle of three", "pair in a grip", "middle of three in a grip"],
+    [{"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}],
+    ids=["middle of three", "pair in a grip"],
 )
 def test_refinement_brings_it_to_the_closed_form(change):
     errors = []
@@ -181,12 +181,3 @@ def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
     if scene.wires == 2:
         # Each side of the break is a friction bar, whose cycles are closed (solver/README.md, 6).
         assert stored[second] == pytest.approx(stored[first], abs=1e-6 * dissipated)
-
-
-def test_a_cycle_dissipates_what_friction_bars_do():
-    """Twice 2 T^3 / (3 K q) over cycles of +-T, with K = ES / 2; an eighth of it from 0 to T."""
-    settings = {**PAIR, "peak": 600.0, "elements": 120, "instants": 21}
-    scene, iterate = solved(**settings, tolerance=1e-14)
-    expected = 2.0 * 2.0 * 600.0**3 / (3.0 * 0.5 * scene.stiffness * scene.bound[0]) / 8.0
-    measured = dissipation(iterate)[5:13].sum()
-    assert measured == pytest.approx(expected, rel=0.02)

@@ -7,12 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from solver.discrete import Problem
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
-from solver.reference.distance import Distance, distance_to
-from solver.reference.fingerprint import fingerprint
+from solver.reference.distance import distance_to
 from solver.reference.states import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
@@ -113,20 +111,6 @@ RUNS = [
 ]
 
 
-@pytest.fixture(scope="module")
-def distances():
-    """Give the distance to the reference of a problem, solved once for all runs of it."""
-    found: dict[bytes, Distance] = {}
-
-    def distance(problem: Problem) -> Distance:
-        key = fingerprint(problem)
-        if key not in found:
-            found[key] = distance_to(reference_of(problem), problem)
-        return found[key]
-
-    return distance
-
-
 @pytest.mark.parametrize("friction", [0.02, 0.05])
 @pytest.mark.parametrize("finish", ["none", "at-once"])
 def test_friction_does_not_hide_behind_a_large_pressure(finish, friction):
@@ -157,11 +141,11 @@ def test_an_error_is_that_of_friction_and_one_of_next_to_nothing_counts_beside_t
 
 
 @pytest.mark.parametrize(("scene", "values"), RUNS, ids=str)
-def test_what_is_called_converged_is_within_one_percent(distances, scene, values):
+def test_what_is_called_converged_is_within_one_percent(scene, values):
     settings = CATALOGUE[scene].settings.checked(values)
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
-    distance = distances(problem)
+    distance = distance_to(reference_of(problem), problem)
     assert solution.status.ending is Ending.CONVERGED
     assert distance.of_displacement(solution.iterate) < ACCURACY
     assert distance.of_friction_force(solution.iterate) < ACCURACY

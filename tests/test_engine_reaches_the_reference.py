@@ -11,7 +11,6 @@ from bars import SMALL, options, relative, sample, table
 
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import latin_indicator
-from solver.latin.iterate import Iterate
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -66,9 +65,8 @@ def test_the_default_reaches_the_reference_in_fields_and_statuses():
 
 
 @pytest.mark.parametrize("load", PATHS)
-@pytest.mark.parametrize("peak", [900.0, 2000.0])
-def test_every_load_path_reaches_the_reference(load, peak):
-    assert_reached(options(**SMALL, load=load, peak=peak))
+def test_every_load_path_reaches_the_reference(load):
+    assert_reached(options(**SMALL, load=load, peak=2000.0))
 
 
 @pytest.mark.parametrize(
@@ -134,22 +132,13 @@ SCENES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 20, "instants": 51},
     "block": {"elements": 24, "elements_up": 8},
 }
-METHODS: tuple[dict[str, Any], ...] = ({"method": "paper"}, {"linear_stage": "pgd"})
 
 
-def end_and_truth(scene: str, **changes: Any) -> tuple[Iterate, np.ndarray]:
-    """Give the last iterate of a run that converges, and the status of the solution."""
+@pytest.mark.parametrize("changes", [{"method": "paper"}, {"linear_stage": "pgd"}], ids=str)
+@pytest.mark.parametrize("scene", SCENES)
+def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(scene, changes):
     settings = CATALOGUE[scene].settings.checked({**SCENES[scene], **changes})
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
     assert solution.status.ending == "converged"
-    return solution.iterate, reference_of(problem).status
-
-
-@pytest.mark.parametrize("changes", METHODS)
-@pytest.mark.parametrize("scene", SCENES)
-def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(
-    scene: str, changes: dict[str, Any]
-) -> None:
-    iterate, truth = end_and_truth(scene, **changes)
-    assert np.mean(iterate.status != truth) < 0.004
+    assert np.mean(solution.iterate.status != reference_of(problem).status) < 0.004

@@ -16,10 +16,7 @@ import pytest
 from solver.cli import main
 from solver.files import settings_from_command
 from solver.latin import (
-    Accuracy,
     Ending,
-    Latin,
-    Seconds,
     Solution,
     StopRules,
     iterations,
@@ -222,13 +219,6 @@ SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}
 
 def bar() -> Any:
     return discretise(CATALOGUE["bar"].settings.checked(SMALL_BAR))
-
-
-def test_a_run_ends_with_its_iterate_and_says_what_helps() -> None:
-    solution = solve(bar(), Latin(finish=None, stop=Accuracy(1e-9) | Seconds(1e-9)))
-    assert solution.status.ending is Ending.EXHAUSTED
-    assert "longer" in solution.status.advice
-    assert solution.iterate.number == 1
 
 
 def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(

@@ -158,19 +158,10 @@ STIFFNESS = 210e9 / (1.0 - 0.4999**2)
 
 @functools.cache
 def cycle(half_width, pressing):
-    """Press a block as high as long, and shear it to and fro by half of what makes it slide.
+    """Press a block as high as long to a half-width, m, and shear it by half of what slides it.
 
-    At nu = 0.4999 tangential forces do not move the surface of a half-plane along its normal. Along
-    the half-width there are twelve elements.
-
-    Parameters
-    ----------
-    half_width, pressing
-        Of Hertz, and the displacement of the top by which it comes about, m.
-
-    Returns
-    -------
-    Energy of a cycle over that of a half-plane, and how far the contact moves, in half-widths.
+    Gives the energy of a cycle over that of a half-plane, and how far the contact moves, in
+    half-widths, along each of which there are twelve elements.
     """
     elements = round(12 * LENGTH / half_width)
     shear = SHARE * MU * np.pi * STIFFNESS * half_width**2 / (4.0 * NARROW_RADIUS) / LENGTH

@@ -5,6 +5,8 @@ the versions, but unpacks no packages that these tests run on already. Outside t
 installed there has all that the command, the engine as a library and the page need.
 """
 
+from __future__ import annotations
+
 import http.client
 import json
 import os
@@ -194,3 +196,21 @@ def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path)
     ending, home = done.stdout.split()
     assert ending == "converged", done.stderr
     assert Path(home).is_relative_to(folder.parent / "environment")
+
+
+def test_a_port_in_use_is_named_in_a_line() -> None:
+    panel = str(Path(sys.executable).with_name("panel"))
+    with socket.socket() as taken:
+        taken.bind(("", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        found = subprocess.run(
+            [panel, "serve", "app", "--port", port],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    assert found.returncode != 0
+    assert f"port {port} is already in use" in found.stderr.splitlines()[-1]
+    assert "Traceback" not in found.stderr

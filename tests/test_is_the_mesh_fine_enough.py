@@ -9,13 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver.cli import main
-from solver.scenes import CATALOGUE
 from solver.study.mesh import (
     LARGEST_ORDER,
     LEAST_ORDER,
     Refinement,
     answer,
-    meshes_around,
 )
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
@@ -62,18 +60,6 @@ def test_a_singular_corner_shows_no_limit_and_a_jump_no_power() -> None:
     assert "no answer" in answer(Refinement((1.0, math.nan, 1.0), 1), "m")
 
 
-def test_meshes_are_halved_and_doubled_or_made_finer_alone() -> None:
-    block = CATALOGUE["block"].settings.checked({})
-    meshes, own = meshes_around(block)
-    assert [(one.elements, one.elements_up) for one in meshes] == [(24, 12), (48, 24), (96, 48)]
-    assert meshes[own].values() == block.values()
-    for odd in ({"elements_up": 23}, {"elements": 4}):
-        settings = block.replace(**odd)
-        meshes, own = meshes_around(settings)
-        assert meshes[own].values() == settings.values()
-        assert meshes[2].elements_up == 4 * settings.elements_up
-
-
 def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -92,13 +78,6 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     [
         ("bar elements=40 instants=11 load=ramp", "first_slip_time@0.5", "instants"),
         ("bar elements=10 instants=41 load=cycle", "dissipation@1", "elements"),
-        # Contact grows by several points from an instant to the next.
-        (
-            "block gap=parabola radius=30 friction=0.5 top_normal_displacement=-2e-5 elements=96 "
-            "elements_up=8 instants=21",
-            "dissipation",
-            "instants",
-        ),
     ],
 )
 def test_it_is_said_which_to_refine(

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import islice
-
-import numpy as np
 import pytest
 
 from app.link import read
 from app.state import SEARCH
 from solver.cli import main
 from solver.files import settings_from_command
-from solver.latin import iterations
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
 from solver.settings import Settings
 
 PAPER = {
@@ -36,7 +31,6 @@ FAST = {
 METHODS = {"paper": PAPER, "fast": FAST}
 OTHERS = {"friction": 0.4, "elements": 30, "accuracy": 1e-4, "k_scale": 2.0, "max_iterations": 77}
 BY_HAND = {"search_direction": "auto", "start": "zero", "tolerance": 1e-7}
-SMALL = {"elements": 20, "instants": 21, "substructures": 4}
 
 
 def other(method):
@@ -100,18 +94,3 @@ def test_a_method_that_does_not_exist_is_refused_with_those_that_do(capsys):
     told = capsys.readouterr().err
     assert "method" in told
     assert "fast, paper" in told
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_a_method_is_no_more_than_its_parts(method):
-    def fields(values):
-        settings = BarSettings.checked({**SMALL, **values})
-        return [
-            one.outgoing
-            for one in islice(iterations(discretise(settings), method_of(settings)), 12)
-        ]
-
-    at_once = fields({"method": method})
-    by_hand = fields({"method": other(method), **METHODS[method]})
-    for one, same in zip(at_once, by_hand, strict=True):
-        assert np.array_equal(one, same)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
 import pytest
 
-from solver.cli import main
 from solver.definitions import SettingError
 from solver.latin import Ending, solve
 from solver.loads import PRESSURES
@@ -51,10 +49,9 @@ def turns(values: np.ndarray) -> np.ndarray:
     return np.concatenate([moves[:1], moves[1:-1][inner], moves[-1:]])
 
 
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
-def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(scene, name, seed):
-    settings = drawn(scene, name, seed)
+def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(scene, name):
+    settings = drawn(scene, name, 1)
     times, given = np.array(getattr(settings, name)).T
     seen, instants = settings.path(name), settings.times()
     assert (seen.max(), seen.min()) == (given.max(), given.min())
@@ -88,13 +85,6 @@ def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scen
             assert seen.max() == pytest.approx(given.max(), abs=1e-4 * size), (preset, number)
             assert seen.min() == pytest.approx(given.min(), abs=1e-4 * size), (preset, number)
             assert settings.n_instants >= number
-
-
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_instants_on_which_all_presets_turn_stay_evenly_spread(scene):
-    settings = CATALOGUE[scene].settings.checked({})
-    even = np.linspace(0.0, settings.duration, settings.instants)
-    np.testing.assert_array_equal(settings.times(), even)
 
 
 def friction_of(changes: dict[str, Any]) -> float:
@@ -230,15 +220,6 @@ def test_an_asperity_between_nodes_touches_and_the_mesh_that_sees_it_is_named():
     assert nothing == []
     # A point carries in the plane as 1 / log(size): half as much again on shares 7 times as wide.
     assert fine < coarse < 1.5 * fine
-
-
-def test_the_command_says_what_its_mesh_does_not_see(capsys):
-    command = ["run", "block", "--set", f"gap={json.dumps(ASPERITY)}", "--no-reference"]
-    command += [part for name in PRESSED for part in ("--set", f"{name}={PRESSED[name]}")]
-    assert main([*command, "--json"]) == 0
-    (remark,) = json.loads(capsys.readouterr().out)["remarks"]
-    assert main(command) == 0
-    assert f"remarks              {remark}" in capsys.readouterr().out
 
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 31}

@@ -13,7 +13,7 @@ from solver.scenes.block import BlockSettings, block
 from solver.scenes.method import method_of
 
 PRESSURE, SHEAR = 1e6, 4e5
-DECOMPOSITIONS = [(1, 1), (3, 2), (10, 7)]
+DECOMPOSITIONS = [(1, 1), (10, 7)]
 INTERPOLATIONS = ["bilinear", "biquadratic"]
 PATCH = {
     "gap": "flat",

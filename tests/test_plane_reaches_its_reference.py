@@ -104,17 +104,13 @@ def case(request):
     return problem, reference_of(problem), iterate
 
 
-def test_converged_latin_is_the_reference(case):
+def test_converged_latin_is_the_reference_and_shows_the_same_at_every_interface(case):
     problem, reference, iterate = case
     distance = distance_to(reference, problem)
     assert reference.converged.all()
     assert reference.residual <= 1e-12
     assert distance.of_displacement(iterate) < 1e-6
     assert distance.of_friction_force(iterate) < 1e-6
-
-
-def test_both_show_the_same_at_every_interface(case):
-    problem, reference, iterate = case
     size = np.abs(reference.displacement).max()
     for name in problem.rubbing:
         ours, theirs = iterate.contact(name), reference.contact(name)

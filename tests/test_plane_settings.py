@@ -11,7 +11,7 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
-from solver.scenes.layers import LayersSettings, layers
+from solver.scenes.layers import LayersSettings
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
 SMALL = {"elements": 8, "elements_up": 4, "instants": 11}
@@ -108,15 +108,6 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
 )
 def test_what_does_not_fit_together_is_refused_by_name(kind, values, name):
     assert name in refusal(kind, **values)
-
-
-def test_the_moment_on_the_layers_has_the_size_that_was_asked_for():
-    settings = LayersSettings.checked({"bending": "moment", "moment": 70.0, "bend_load": "ramp"})
-    scene = layers(settings)
-    right = scene.sides["right"].x
-    extreme = right.slope[-1]
-    assert right.each_body
-    assert -extreme * scene.height**2 / 6.0 * scene.bodies == pytest.approx(70.0)
 
 
 @pytest.mark.parametrize("scene", ["block", "layers"])

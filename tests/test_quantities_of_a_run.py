@@ -220,16 +220,6 @@ ROCKED = {
 """A block that its weight holds down, rocked from above."""
 
 
-@functools.cache
-def made_of_cycles(scene: str, changes: tuple[tuple[str, Any], ...]) -> FinishedRun:
-    settings = CATALOGUE[scene].settings.checked(dict(changes))
-    return finished_run(settings, errors=False, indicators=False)
-
-
-def ran_cycles(scene: str, **changes: Any) -> FinishedRun:
-    return made_of_cycles(scene, tuple(changes.items()))
-
-
 def cut(run: FinishedRun) -> LoadCycles:
     return cycles_of(run.settings, run.iterate)
 
@@ -302,7 +292,7 @@ def test_nothing_is_said_of_what_never_slips_or_of_cycles_that_differ() -> None:
 
 @pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])
 def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> None:
-    run = ran_cycles("bar", peak=peak, **TIMES)
+    run = ran("bar", peak=peak, **TIMES)
     cycles = cut(run)
     exact = 2.0 * peak**3 / (3.0 * STIFFNESS * BOUND)
     np.testing.assert_allclose(cycles.energy, exact, rtol=3e-3)
@@ -315,7 +305,7 @@ def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> 
 def lesson(**changes: Any) -> FinishedRun:
     settings = tomllib.loads(LESSON.read_text(encoding="utf-8"))["settings"]
     frozen = {name: _frozen(value) for name, value in settings.items()}
-    return ran_cycles("block", **{**frozen, **changes})
+    return ran("block", **{**frozen, **changes})
 
 
 def _frozen(value: Any) -> Any:
@@ -335,7 +325,7 @@ def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
     """Below its friction at every instant, and yet farther in each cycle, at all points alike."""
     moved = []
     for shear in (2e6, -2e6):
-        run = ran_cycles(
+        run = ran(
             "block",
             **ROCKED,
             top_normal_slope=math.copysign(10.0, shear),

@@ -101,12 +101,6 @@ def test_what_may_be_installed_is_what_is_promised() -> None:
     assert f"3.{minors[0] - 1}.99" not in allowed
 
 
-def test_the_code_is_linted_for_the_oldest_and_the_readme_names_it() -> None:
-    oldest = min(PROMISED, key=minor)
-    assert PROJECT["tool"]["ruff"]["target-version"] == f"py{oldest.replace('.', '')}"
-    assert f"Python {oldest}" in (ROOT / "README.md").read_text(encoding="utf-8")
-
-
 def test_the_container_has_one_of_them() -> None:
     (version,) = re.findall(r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M)
     assert version in PROMISED

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.arrays import Array
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.slip_space import (
     MOST_POINTS,
@@ -66,13 +65,6 @@ def goes_on(run: FinishedRun) -> bool:
     return bool((run.iterate.status[:, last(run)][:, 1:] != 0).any())
 
 
-def forces(run: FinishedRun) -> tuple[Array, Array]:
-    """Give pressing and friction forces of the only interface, shape (n_points, n_instants)."""
-    (name,) = run.problem.rubbing
-    contact = run.iterate.contact(name)
-    return contact.normal_force, contact.tangential_force
-
-
 SMALL = 1e-4
 """Deflection, m, under which the two layers stick wherever they do so at all."""
 
@@ -87,17 +79,6 @@ def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_a
         run = ran("layers", TWINS, share * swing, first * swing)
         assert goes_on(run) == expected, share
         assert first == 0.0 or np.abs(run.iterate.status[:, : last(run).start]).any()
-
-
-def test_the_limit_of_two_equal_layers_is_where_a_point_is_pulled_by_twice_its_friction() -> None:
-    """The dual, of forces that a run without any slip has."""
-    run = ran("layers", {**TWINS, "friction": 10.0}, SMALL)
-    assert not goes_on(run)
-    pressing, friction = (one[:, last(run)] for one in forces(run))
-    swing = np.ptp(friction, axis=1)
-    mu = CATALOGUE["layers"].settings.checked({}).friction
-    most = 2.0 * mu * pressing.min(axis=1)[swing > 0.0] / swing[swing > 0.0]
-    assert factor(ran("layers", TWINS, SMALL)) == pytest.approx(most.min(), rel=1e-5)
 
 
 SHEAR, PUSH = 1.2e7, 1.7e7

@@ -9,6 +9,7 @@ import pytest
 
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.melan import ShakedownLimit, shakedown_limit
+from solver.reference.shakedown.slip_space import largest_swing, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import cycles_of, ends_of
 from solver.study.quantities.finished import finished_run
@@ -106,3 +107,14 @@ def test_what_the_theorem_does_not_cover_is_refused() -> None:
         limit("block", **block, substructures=1)
     with pytest.raises(NoReferenceError):
         limit("bar", **SMALL, peak=300.0, friction_law="slip-dependent")
+
+
+@pytest.mark.parametrize(("scene", "changes"), [CASES[0], CASES[4]])
+def test_where_slip_presses_nothing_the_program_of_the_plane_gives_it_too(
+    scene: str, changes: dict[str, Any]
+) -> None:
+    rods = CATALOGUE[scene].settings.checked({**SMALL, **changes})
+    ends = ends_of(rods)
+    some = slice(ends[-2], ends[-1] + 1)
+    theorem = shakedown_limit(discretise(rods), some).factor
+    assert largest_swing(slip_space(discretise(rods)), some)[0] == pytest.approx(theorem, rel=1e-6)

@@ -119,7 +119,6 @@ def test_a_run_ends_certified_and_its_forces_balance(case):
                 "elements_up": 3,
             },
         ),
-        ("strand", {}),
         ("layers", {"elements_up": 1, "layers": 3}),
     ],
 )

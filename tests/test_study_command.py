@@ -21,8 +21,8 @@ from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
 from solver.study.speed import crossover as measuring
-from solver.study.speed.crossover import FACTORS, Crossover, Duel, crossover, equal_at
-from solver.study.speed.crossover_report import crossover_notes, crossover_table
+from solver.study.speed.crossover import FACTORS, crossover, equal_at
+from solver.study.speed.crossover_report import crossover_notes
 from solver.study.speed.error_against_time import (
     FORMS,
     INCREMENTAL,
@@ -161,16 +161,6 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 6, "instants": 5, "substructures": 2, "wires": 4},
     "layers": {"elements": 8, "instants": 5, "layers": 4, "substructures": 1},
 }
-MADE = Crossover(
-    "layers",
-    "Layers",
-    (),
-    (
-        *(Duel(size, 41, latin, 1.0) for size, latin in ((4, 4.0), (16, 1.0), (64, 0.25))),
-        *(Duel(size, 81, latin, 1.0) for size, latin in ((4, 2.0), (16, 0.5))),
-        Duel(64, 81, math.nan, math.nan, "left out: it would take about 2 h and 3 GB"),
-    ),
-)
 
 
 @pytest.mark.parametrize("scene", list(SMALL_ONES))
@@ -203,14 +193,6 @@ def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
     assert equal_at([4, 16, 64], [4.0, math.nan, 0.25]) == pytest.approx(16.0)
     assert equal_at([4, 16], [0.5, 0.4]) is None
     assert equal_at([4, 16], [4.0, 2.0]) is None
-
-
-def test_the_table_has_the_ratios_and_where_they_are_one() -> None:
-    head, first, second = crossover_table(MADE)
-    assert head[1:] == ["layers 4", "layers 16", "layers 64", "equal at"]
-    assert first == ["41 instants", "4", "1", "0.25", "16"]
-    assert second == ["81 instants", "2", "0.5", "-", "8"]
-    assert "2 of 5 sizes" in crossover_notes(MADE)[0]
 
 
 def test_other_solvers_stand_in_a_study_with_what_they_said_where_they_gave_up():

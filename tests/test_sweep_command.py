@@ -125,14 +125,6 @@ def test_a_folder_keeps_one_sweep(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 @pytest.mark.usefixtures("here")
-def test_a_run_that_fails_is_a_line_and_the_exit_code_says_so(tmp_path: Path) -> None:
-    assert command(tmp_path, vary="substructures=2,30") == 1
-    fits, refused = table(tmp_path)
-    assert (fits["ending"], refused["ending"]) == ("converged", "refused")
-    assert "substructures = 30" in refused["reason"]
-
-
-@pytest.mark.usefixtures("here")
 def test_fields_can_be_kept(tmp_path: Path) -> None:
     assert command(tmp_path) == 0
     assert command(tmp_path, "--fields") == 0
@@ -254,13 +246,6 @@ def test_a_foolish_plan_is_refused_in_a_line(vary: list[str], of: list[str], wor
         plan_of(BAR, vary, of)
     assert words in str(refusal.value)
     assert "\n" not in str(refusal.value)
-
-
-def test_a_point_changes_what_varies_and_nothing_else() -> None:
-    plan = plan_of(BAR.replace(elements=40), ["load=sine,ramp", "peak=1:3:3"], ["iterations"])
-    assert plan.size == 6
-    assert plan.point(4) == {"load": "ramp", "peak": 2.0}
-    assert plan.settings_at(4).changed(plan.settings) == {"load": "ramp", "peak": 2.0}
 
 
 def test_a_plan_survives_as_json_and_another_has_another_digest() -> None:

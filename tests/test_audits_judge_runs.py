@@ -158,16 +158,6 @@ def test_one_scene_alone_can_be_asked(tmp_path, capsys):
     assert ", ".join(CATALOGUE) in capsys.readouterr().err
 
 
-def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        report_commands,
-        "cases_of",
-        lambda scene, quick: [Case("load", "too few", {"max_iterations": 3})],
-    )
-    assert main(["stability", "--out", str(tmp_path)]) == 1
-    assert "FAIL" in (tmp_path / "stability.csv").read_text(encoding="utf-8")
-
-
 NEAR = Outcome(Ending.CONVERGED, "It is.", error_displacement=1e-3, error_force=5e-3)
 
 
@@ -213,11 +203,6 @@ def test_the_command_writes_a_table_and_a_page_of_its_own(tmp_path, capsys):
         (alone,) = csv.DictReader(file)
     assert alone["settings"] == rows[1]["settings"]
     assert alone["error_force"] == rows[1]["error_force"]
-
-
-def test_numbers_without_sense_are_refused(tmp_path, capsys):
-    assert main(["survey", "--runs", "0", "--out", str(tmp_path)]) == 2
-    assert "--runs = 0 is refused" in capsys.readouterr().err
 
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():

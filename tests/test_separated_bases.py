@@ -7,11 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from solver.latin import Ending, Solution, iterations, solve
-from solver.reduction.basis import SeparatedBasis
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -100,38 +97,6 @@ def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
         stored.append(iterate.reduction.stored)
     assert errors[0] == pytest.approx(errors[1], rel=0.01)
     assert stored[0] < 0.75 * stored[1]
-
-
-fields = st.tuples(
-    st.integers(1, 9), st.integers(1, 12), st.integers(0, 2**32 - 1), st.floats(-9.0, 0.0)
-)
-
-
-def random_basis(rows: int, columns: int, seed: int) -> tuple[SeparatedBasis, np.ndarray]:
-    generator = np.random.default_rng(seed)
-    k, weights = 10.0 ** generator.uniform(-2, 2, rows), generator.uniform(0.1, 1.0, columns)
-    sizes = 10.0 ** -np.arange(min(rows, columns), dtype=float)
-    field = (
-        generator.normal(size=(rows, len(sizes)))
-        * sizes
-        @ generator.normal(size=(len(sizes), columns))
-    )
-    return SeparatedBasis.of_field(field, k, weights, 0.0, 100), field
-
-
-@given(fields)
-def test_downsizing_drops_no_more_than_its_tolerance(drawn):
-    rows, columns, seed, power = drawn
-    basis, field = random_basis(rows, columns, seed)
-    tolerance = 10.0**power
-    dropped = basis.downsize(tolerance, 100)
-    scratch = np.empty_like(field)
-    lost = basis.squared(field - basis.field(), scratch)
-    change = np.sqrt(lost / basis.squared(field, scratch))
-    assert dropped <= tolerance
-    assert change == pytest.approx(dropped, abs=1e-7)
-    kept = np.sqrt(np.sum(basis.time_functions**2 * basis.weights, axis=1))
-    assert np.all(np.diff(kept) <= 0.0)
 
 
 SMALL_ONES = {"elements": 12, "instants": 21}

@@ -251,7 +251,7 @@ def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
     assert "jumps" in run.status.advice
 
 
-@pytest.mark.parametrize("length", [1e-6, 1e-5, 1e-4])
+@pytest.mark.parametrize("length", [1e-6, 1e-4])
 @pytest.mark.parametrize("displaced", [False, True])
 def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(length, displaced):
     found = []
@@ -301,8 +301,7 @@ def pull_out(length):
     return np.concatenate([moved, length + along]), forces
 
 
-@pytest.mark.parametrize("length", [1e-6, 1e-5])
-@pytest.mark.parametrize("end", [6e-5, 3e-4])
+@pytest.mark.parametrize(("length", "end"), [(1e-6, 6e-5), (1e-5, 3e-4)])
 def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(length, end):
     path = [[0.0, 0.0], [0.25, 0.0], [1.0, end]]
     values = {**STRIP, "slip_length": length, "right_normal_load": path, "instants": 121}

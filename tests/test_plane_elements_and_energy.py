@@ -1,4 +1,4 @@
-"""Rectangular elements are right, and what is condensed away comes back exactly."""
+"""Rectangular elements are right, and on cycles work is what bodies store and friction takes."""
 
 from __future__ import annotations
 
@@ -111,12 +111,6 @@ def test_what_is_condensed_comes_back(sides, order):
     np.testing.assert_allclose(
         kept.stiffness @ values - kept.condense(force), reaction[kept.dofs], atol=1e-10
     )
-
-
-def test_a_rectangle_that_is_not_held_is_refused():
-    mesh = rectangle()
-    with pytest.raises(np.linalg.LinAlgError):
-        Kept(Condensed(mesh), 2 * mesh.edge("left"))
 
 
 TURNS = [0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0]

@@ -11,13 +11,11 @@ import pytest
 
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
-from solver.discrete.probes import AxialForce, reaction, side_mean
+from solver.discrete.probes import reaction, side_mean
 from solver.latin import Iterate, iterations
-from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.fingerprint import fingerprint
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
-from solver.scenes.strand import StrandSettings, strand
 from solver.settings import Settings
 
 SMALL = {"elements": 12, "elements_up": 4, "instants": 9}
@@ -77,19 +75,6 @@ def test_shear_force_on_the_support_is_the_traction_on_the_top() -> None:
     assert callable(loop.force)
     expected = settings.path("top_tangential_load") * settings.values()["length"]
     assert loop.force(iterate) == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
-
-
-def test_axial_forces_of_a_strand_meet_their_closed_form() -> None:
-    settings, iterate = iterate_of("strand", {"load": "ramp", "instants": 21}, 150)
-    assert isinstance(settings, StrandSettings)
-    exact = broken_wire(strand(settings))
-    assert exact is not None
-    axial = AxialForce(iterate.problem)
-    force = axial(iterate.displacement[:, -1]).reshape(settings.wires, settings.elements)
-    middle = 0.5 * (exact.force[1:, -1] + exact.force[:-1, -1])
-    assert list(np.unique(axial.wires)) == [0, 1, 2]
-    assert force[1] == pytest.approx(middle, abs=0.02 * settings.peak)
-    assert force.sum(axis=0) == pytest.approx(np.full(60, 3 * settings.peak), rel=1e-3)
 
 
 def test_equivalent_stress_of_pure_shear_and_of_even_pressure() -> None:

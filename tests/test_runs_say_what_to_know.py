@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_scenes import SMALL
 
 from solver.cli import main
 from solver.discrete.small_strain import beyond_small_strain, largest_strain
@@ -81,15 +82,6 @@ def test_the_command_prints_remarks_with_the_result(capsys: pytest.CaptureFixtur
     assert "tips" in json.loads(capsys.readouterr().out)["remarks"][0]
 
 
-SMALL_ONES = {
-    "bar": {},
-    "strand": {},
-    "block": {"elements": 12, "elements_up": 6, "substructures": 2, "instants": 17},
-    "fault": {"elements": 12, "elements_up": 6, "substructures": 2, "instants": 11},
-    "incline": {"elements": 12, "elements_up": 6, "substructures": 2, "instants": 11},
-    "layers": {"elements": 16, "layers": 2, "substructures": 2, "instants": 17},
-    "rope": {"elements": 12, "layers": 1, "substructures": 2},
-}
 SOFT = {
     "bar": {"young": 2.1e6},
     "strand": {"young": 2.1e6},
@@ -102,7 +94,7 @@ SOFT = {
 
 
 def beyond(scene: str, changes: dict[str, object]) -> str | None:
-    settings = CATALOGUE[scene].settings.checked({**SMALL_ONES[scene], **changes})
+    settings = CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
     problem = discretise(settings)
     displacement = reference_of(problem).displacement
     return beyond_small_strain(structure_of(settings), problem, displacement)
@@ -125,12 +117,12 @@ def test_the_strain_of_a_bar_is_force_over_stiffness():
 
 
 def test_the_slope_of_a_sheared_body_is_its_shear_and_sliding_is_none():
-    settings = CATALOGUE["block"].settings.checked(SMALL_ONES["block"])
+    settings = CATALOGUE["block"].settings.checked(SMALL["block"])
     structure, problem = structure_of(settings), discretise(settings)
     along = np.where(problem.inside.components == 0, 1.0, 0.0)[:, None]
     ones = np.ones((1, problem.n_instants))
     assert largest_strain(structure, problem, along * ones) < 1e-12
-    settings = CATALOGUE["fault"].settings.checked({**SMALL_ONES["fault"], "friction": 10.0})
+    settings = CATALOGUE["fault"].settings.checked({**SMALL["fault"], "friction": 10.0})
     problem = discretise(settings)
     strain = largest_strain(structure_of(settings), problem, reference_of(problem).displacement)
     assert strain == pytest.approx(3.6e6 / (6e10 / 2.5), rel=1e-6)

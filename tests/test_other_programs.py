@@ -116,26 +116,6 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    [
-        HEAD + ROWS,
-        "friction force,t,x\n1,0,0.1\n2,0.5,0.2\n3,0.5,0.3\n4,1,0.4\n",
-        "Mesh 7\nx [mm];t [s];Friction [kN/m]\n"
-        "100;0;0,001\n200;0,5;0,002\n300;0,5;0,003\n400;1;0,004\n",
-        "position\ttime\tstatus\tfriction_force\nm\ts\t\tN/m\n0.1\t0\tstick\t1\n"
-        "0.2\t0.5\t-\t2\n0.3\t0.5\t-\t3\n0.4\t1\t-\t4\n",
-    ],
-    ids=["plain", "other order", "spreadsheet", "further columns"],
-)
-def test_a_table_is_read_as_it_is_written(text: str) -> None:
-    brought = read_brought(text, "a.csv", settings_of())
-    np.testing.assert_allclose(brought.positions, [0.1, 0.2, 0.3, 0.4])
-    np.testing.assert_allclose(brought.times, [0.0, 0.5, 0.5, 1.0])
-    np.testing.assert_allclose(brought.values, [1.0, 2.0, 3.0, 4.0])
-    assert (brought.quantity, brought.scene) == ("friction force", "bar")
-
-
-@pytest.mark.parametrize(
     ("text", "why"),
     [
         ("", "it has no points"),
@@ -158,13 +138,6 @@ def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str)
     with pytest.raises(SettingError, match=why) as caught:
         read_brought(text, "theirs.csv", settings_of())
     assert "theirs.csv" in str(caught.value)
-
-
-def test_friction_of_bodies_in_the_plane_is_a_traction() -> None:
-    with pytest.raises(SettingError, match="give it in Pa"):
-        read_brought("x,t,friction [N/m]\n0.01,0,1\n", "theirs.csv", settings_of("block"))
-    text = "x,t,friction [MPa]\n" + "0.01,0,1\n" * 4
-    assert read_brought(text, "theirs.csv", settings_of("block")).values[0] == 1e6
 
 
 def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) -> None:

@@ -25,9 +25,6 @@ from solver.study.benchmarks.cycles_problems import (
     CyclesProblem,
 )
 from solver.study.benchmarks.cycles_problems import (
-    GROUPS as CYCLE_GROUPS,
-)
-from solver.study.benchmarks.cycles_problems import (
     PROBLEMS as CYCLE_PROBLEMS,
 )
 
@@ -78,11 +75,6 @@ def test_every_problem_has_settings_that_are_allowed_and_a_group() -> None:
     assert small
     assert not any(one.is_large for one in small)
     assert {one.scene for one in small} == {"layers"}
-
-
-def test_its_options_mean_nothing_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["benchmark", "--large"]) == 2
-    assert "only with --ahead or --cycles" in capsys.readouterr().err
 
 
 BLOCK = CYCLE_PROBLEMS[0]
@@ -162,8 +154,3 @@ def test_every_problem_is_allowed_for_any_number_of_cycles() -> None:
         for number in (own for own in MANY if own <= one.most):
             settings = CATALOGUE[one.scene].settings.checked(one.settings(number))
             assert settings.instants == 40 * number + 1
-
-
-def test_other_groups_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["benchmark", "--cycles", "--only", "layers"]) == 2
-    assert " or ".join(CYCLE_GROUPS) in capsys.readouterr().err
