@@ -1,4 +1,4 @@
-"""A run knows its error, heeds the accuracy or a limit that is asked, and bills every second."""
+"""A run knows its error, heeds the accuracy or the limit that is asked, and says what it is."""
 
 from __future__ import annotations
 
@@ -215,10 +215,6 @@ def test_files_and_commands_may_say_at_once_as_they_did(said: str) -> None:
 
 
 SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}
-
-
-def bar() -> Any:
-    return discretise(CATALOGUE["bar"].settings.checked(SMALL_BAR))
 
 
 def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(

@@ -1,4 +1,4 @@
-"""A parabola on a large block: Hertz, and the partial slip of Cattaneo and Mindlin."""
+"""A parabola on a large block: Hertz, partial slip of Cattaneo and Mindlin, and its energy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run ends where it should, resumes to the bit, and is the same whatever the threads."""
+"""A run starts, ends and resumes as it should, alike by threads, and refuses what it cannot do."""
 
 from __future__ import annotations
 

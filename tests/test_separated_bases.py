@@ -1,4 +1,4 @@
-"""The linear stage on separated bases: follows the full stage as far as its modes reach."""
+"""Separated bases follow the full stage as far as their modes reach, and may end certified."""
 
 from __future__ import annotations
 

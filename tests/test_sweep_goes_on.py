@@ -1,4 +1,4 @@
-"""A sweep has a row for every point, whatever becomes of a run or of its process."""
+"""Sweeps have a row for every point, whatever becomes of it, and what closed forms say of it."""
 
 from __future__ import annotations
 
