@@ -1,4 +1,4 @@
-"""A fluid that spreads along a fault drives a slip front, as published; what cannot be is refused."""
+"""A fluid along a fault drives a slip front, as published; what cannot be is refused."""
 
 from __future__ import annotations
 
