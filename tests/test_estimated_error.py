@@ -1,4 +1,4 @@
-"""A run knows its error, heeds the accuracy or the limit that is asked, and says what it is."""
+"""A run knows its error, heeds the accuracy or the limit that is asked, and bills every second."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import islice
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -134,6 +135,22 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     assert f"stopped being finite at iteration {number + 1}" in verdict.status.advice
     assert math.isnan(verdict.estimated_error)
     assert verdict.finished is None
+
+
+def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+
+    def clock() -> float:
+        nonlocal now
+        now += 100.0
+        return now
+
+    monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=clock))
+    settings = small("bar")
+    found = list(judged(discretise(settings), method_of(settings)))
+    rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
+    assert found[-1][0].residual is not None
+    assert rules == pytest.approx([100.0 * number for number in range(1, len(found) + 1)])
 
 
 @pytest.mark.parametrize("method", METHODS)
