@@ -215,6 +215,11 @@ def test_what_a_run_does_not_heed_is_said(capsys, assignments, words):
     assert "iterations" in printed.out
 
 
+def test_a_structure_on_which_nothing_acts_is_said_to_be_idle(capsys):
+    assert main(["run", "block", "--set", "top=traction", "--set", "instants=5"]) == 0
+    assert "nothing acts on the structure" in capsys.readouterr().err
+
+
 def test_the_result_file_holds_what_the_contract_names(tmp_path, capsys):
     file = tmp_path / "result.npz"
     assert main(["run", "bar", *SMALL, "--out", str(file), "--json"]) == 0

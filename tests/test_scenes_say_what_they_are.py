@@ -8,9 +8,6 @@ import pytest
 
 from solver.scenes import CATALOGUE, words_of
 
-LONGEST = 140
-"""Letters that a line has room for across a page of 1280 pixels, beside its controls."""
-
 
 def words(scene: str, changes: dict[str, Any]) -> str:
     return words_of(CATALOGUE[scene].settings.checked(changes))
@@ -40,8 +37,3 @@ def words(scene: str, changes: dict[str, Any]) -> str:
 )
 def test_a_scene_says_what_it_is(scene: str, changes: dict[str, Any], said: str) -> None:
     assert said in words(scene, changes)
-
-
-@pytest.mark.parametrize("scene", list(CATALOGUE))
-def test_by_default_it_is_one_line(scene: str) -> None:
-    assert len(words(scene, {})) <= LONGEST

@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ from solver.study.speed.error_against_time import (
     Study,
     error_against_time,
 )
+from solver.study.speed.growth import growth
 from solver.study.speed.study_report import winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
@@ -137,6 +139,19 @@ def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
     assert NO_CHARTS in capsys.readouterr().out.splitlines()
     names = {file.name for file in tmp_path.iterdir()}
     assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
+
+
+def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
+    sizes = {"elements": (2, 8, 16), "substructures": (1, 4)}
+    monkeypatch.setitem(CATALOGUE, "bar", replace(CATALOGUE["bar"], sizes=sizes))
+    found = growth(
+        BarSettings.checked({"method": "paper", "elements": 8, "instants": 5, "substructures": 3})
+    )
+    assert {one.setting: [size.size for size in one.sizes] for one in found} == {
+        "elements": [8, 16],
+        "substructures": [1, 4],
+    }
+    assert all(size.seconds > 0.0 for one in found for size in one.sizes)
 
 
 PROGRAM = "import solver.__main__, solver.running.machine as found; print(found.machine())"
