@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ropes import SMALL_ROPE
+from small_scenes import SMALL
 
 from app.worker.references import ReferenceCache
 from solver.discrete import Problem
@@ -19,15 +19,6 @@ from solver.reference.incremental import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 
-SIZES: dict[str, dict[str, Any]] = {
-    "bar": {"elements": 20, "instants": 11, "substructures": 4},
-    "strand": {"elements": 12, "instants": 11, "substructures": 3},
-    "block": {"elements": 12, "elements_up": 4, "instants": 11},
-    "layers": {"elements": 12, "layers": 3, "instants": 11},
-    "fault": {"elements": 12, "elements_up": 6, "instants": 11},
-    "incline": {"elements": 12, "elements_up": 4, "instants": 11},
-    "rope": {**SMALL_ROPE, "elements": 8, "instants": 11},
-}
 OF_THE_METHOD = {"k_scale": 3.0, "multiscale": False, "tolerance": 1e-3, "linear_stage": "pgd"}
 OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
     "bar": {"peak": 901.0, "friction_profile": "rising", "young": 2e11, "duration": 2.0},
@@ -41,7 +32,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
 
 
 def made(scene: str, **changes: Any) -> tuple[Settings, Problem]:
-    settings = CATALOGUE[scene].settings.checked({**SIZES[scene], **changes})
+    settings = CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
     return settings, discretise(settings)
 
 

@@ -13,6 +13,7 @@ from hypothesis.extra import numpy as arrays
 from solver.arrays import Array
 from solver.latin import iterations
 from solver.reduction.clips import Clips, clips_of, monotone
+from solver.reduction.sizes import in_pieces, of_bases
 from solver.reduction.svd import (
     InterfaceField,
     decompose,
@@ -215,6 +216,14 @@ def test_branches_go_one_way_and_are_as_few_as_can_be(load):
     assert all(not {-1.0, 1.0} <= set(own) for own in ways)
     last = [own[own != 0.0][-1] for own in ways if own.any()]
     assert all(one != other for one, other in pairwise(last))
+
+
+def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers():
+    iterate = iterate_of(8, linear_stage="pgd", substructures=1, relaxation=1.0)
+    own, best = of_bases(iterate, iterate.reduction), in_pieces(iterate)
+    assert own.errors[-1] < 1e-9
+    assert np.all(own.errors >= best.errors[: len(own.errors)] - EXACT)
+    assert own.within(0.1) >= best.within(0.1)
 
 
 def test_quantities_of_a_run_say_the_same():
