@@ -1,4 +1,4 @@
-"""What tests of several files hold: a served page, a browser, the runs of the paper's figures."""
+"""What tests of several files hold: a served page and a browser."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import one_thread  # noqa: F401  # before NumPy, which asks but once
 import gc
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -24,14 +24,6 @@ from playwright.sync_api import sync_playwright
 from proxy import Proxy
 from xdist.scheduler import LoadFileScheduling
 
-from solver.study.figures import paper_runs as runs_of_the_paper
-from solver.study.figures.paper_runs import PaperRuns
-
-TOGETHER = {
-    "the page": ("test_journey_",),
-    "the paper's runs": ("test_figures_command", "test_paper_figures_"),
-}
-"""Files that one worker has, one after the other, by what it keeps from each to the next."""
 LONGEST_FIRST = (
     "test_journey_",
     "test_installed_as_in_the_container",
@@ -39,8 +31,9 @@ LONGEST_FIRST = (
     "test_converged_means_it",
     "test_engine_reaches_the_reference",
     "test_sweep_command",
-    "test_survey_judges_random_runs",
-    "test_lessons_hold",
+    "test_paper_figures",
+    "test_lessons",
+    "test_audits_judge_runs",
 )
 """Files of many seconds: whoever came to one of these last would work on alone."""
 
@@ -63,12 +56,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class Together(LoadFileScheduling):
-    """Gives a worker a file at a time, or all files that share what one of them made."""
+    """Gives a worker a file at a time, or all journeys, which share a server and a browser."""
 
     def _split_scope(self, nodeid: str) -> str:
         file = super()._split_scope(nodeid)
-        stem = Path(file).stem
-        return next((name for name, files in TOGETHER.items() if stem.startswith(files)), file)
+        return "journeys" if Path(file).stem.startswith("test_journey_") else file
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -121,29 +113,3 @@ def visit(chrome: Chrome, server: Server) -> Iterator[Visit]:
     """Opens pages; neither they nor the server may complain."""
     with visits(server, chrome) as opened:
         yield opened
-
-
-@pytest.fixture(scope="session")
-def solved() -> list[str]:
-    """What was called to solve the runs of the paper's figures, in order."""
-    return []
-
-
-@pytest.fixture(scope="session")
-def paper_runs(solved: list[str]) -> Iterator[PaperRuns]:
-    """The runs behind the paper's figures, each solved when it is first asked for."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("solve", "incremental"):
-            patch.setattr(runs_of_the_paper, name, counted(name, solved))
-        yield PaperRuns()
-
-
-def counted(name: str, calls: list[str]) -> Callable[..., object]:
-    """A function of these runs that also says that it was called."""
-    real = getattr(runs_of_the_paper, name)
-
-    def call(*given: object, **options: object) -> object:
-        calls.append(name)
-        return real(*given, **options)
-
-    return call

@@ -65,6 +65,35 @@ def contact(normal, tangent, below, gap, friction):
     )
 
 
+def rubbing_points(seed, *, opens, two):
+    """Give random numbers, sliders, and what else a contact of them needs: a normal law or none."""
+    random, pairs = np.random.default_rng(seed), 4
+    rows = random.permutation(4 * pairs).reshape(4, pairs)
+    across, along = (Component(rows[n], rows[n + 2] if two else None) for n in (0, 1))
+    if opens:
+        normal = Unilateral(component=across, gap=np.zeros(pairs))
+        sliders = Sliders.of_contact(along, np.full(pairs, 0.4))
+    else:
+        normal = None
+        sliders = Sliders.of_known_bound(along, random.uniform(0.0, 0.5, pairs))
+    common = {
+        "normal": normal,
+        "points": np.arange(pairs),
+        "positions": np.arange(float(pairs)),
+        "weights": random.uniform(0.5, 2.0, pairs),
+    }
+    return random, sliders, common
+
+
+def local_stage(law, random, *, rows=16, times=20):
+    """Give displacements and forces that a law finds along random search directions, and these."""
+    k = 10.0 ** random.uniform(-1.0, 1.0, rows)
+    incoming = random.normal(size=(rows, times))
+    moved = incoming.copy()
+    law.rule(k, times)(incoming, moved, slice(None))
+    return moved, k[:, None] * (moved - incoming)
+
+
 def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
     """Give one body, tangential and normal displacement of each point in turn, on a support."""
     size = 2 * points

@@ -11,19 +11,24 @@ import pytest
 from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import Rods, solve
-from solver.definitions import SettingError
+from solver.arrays import Array
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
+from solver.discrete.rope.forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.rope.helical_wire import HelicalWire
 from solver.discrete.rope.rope import Rope
 from solver.files import result_arrays
 from solver.latin import Accuracy, Auto, Iterations, Latin
-from solver.reference.choice import incremental_solver, reference_of
+from solver.reference.choice import incremental_solver
+from solver.reference.closed_forms.bent_wire import BentWire
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod, incremental
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 from solver.scenes.constructions import CONSTRUCTIONS, seven_wire
 from solver.scenes.method import method_of
 from solver.scenes.rope import rope
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantities import reading
 
 CLAMPED: dict[str, Any] = {"bending": "clamp", "layers": 2, "elements": 24, "instants": 31}
 CHANGING: dict[str, Any] = {**CLAMPED, "tension_load": "shaken"}
@@ -66,19 +71,6 @@ def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose
     assert section.stuck_bending > 20.0 * section.slipping_bending
 
 
-def test_the_order_of_the_wires_means_nothing() -> None:
-    scene = rope(settings_of(**CHANGING))
-    order = np.random.default_rng(3).permutation(len(scene.wires))
-    other = replace(scene, wires=[scene.wires[place] for place in order])
-    one, two = (incremental(each.discretise()) for each in (scene, other))
-    np.testing.assert_allclose(moment_of(scene, one), moment_of(other, two), rtol=1e-12, atol=1e-9)
-    for name in one.problem.rubbing:
-        mine, theirs = one.contact(name), two.contact(name)
-        np.testing.assert_array_equal(mine.status, theirs.status)
-        np.testing.assert_allclose(mine.slip, theirs.slip, atol=1e-15)
-        np.testing.assert_allclose(mine.tangential_force, theirs.tangential_force, atol=1e-6)
-
-
 def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
     scene = rope(settings_of(**{**CLAMPED, "layers": 1}))
     turn = 2.0 * np.pi / len(scene.wires)
@@ -89,66 +81,6 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
     turned = replace(scene, wires=wires)
     moments = [moment_of(one, incremental(one.discretise())) for one in (scene, turned)]
     np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
-
-
-def test_layers_may_be_laid_either_way_round() -> None:
-    scene = rope(settings_of(**CLAMPED))
-    wires = [replace(wire, helix=replace(wire.helix, lay=-wire.helix.lay)) for wire in scene.wires]
-    mirrored = replace(scene, wires=wires)
-    moments = [moment_of(one, incremental(one.discretise())) for one in (scene, mirrored)]
-    np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("changes", [CLAMPED, CHANGING])
-def test_a_wire_of_it_is_a_bar_alone_under_its_body_force(changes: dict[str, Any]) -> None:
-    scene = rope(settings_of(**changes))
-    found = incremental(scene.discretise())
-    size = scene.elements + 1
-    for place in (0, 5, 13):
-        wire = scene.wires[place]
-        bound = np.broadcast_to(np.atleast_1d(wire.bound), (size, len(wire.bound)))
-        bar = Rods(
-            length=wire.length,
-            stiffness=wire.helix.stiffness,
-            elements=scene.elements,
-            substructures=1,
-            bound=bound[:, 0] if bound.shape[1] == 1 else bound,
-            load=np.zeros(len(scene.instants)),
-            instants=scene.instants,
-            duration=scene.duration,
-            rigid_grip=True,
-            body_force=wire.helix.body_force(wire.arc, wire.curvature),
-        )
-        alone = incremental(bar.discretise())
-        own = found.displacement[place * size : (place + 1) * size]
-        largest = np.abs(alone.displacement).max()
-        np.testing.assert_allclose(own, alone.displacement, atol=1e-9 * largest)
-        np.testing.assert_array_equal(found.contact(wire.name).status, alone.status[1:-1])
-
-
-def test_a_wire_is_in_equilibrium() -> None:
-    """What its force changes by from end to end, friction has taken up."""
-    scene = rope(settings_of(**CHANGING))
-    found = incremental(scene.discretise())
-    size = scene.elements + 1
-    for place, wire in enumerate(scene.wires):
-        slip = found.displacement[place * size : (place + 1) * size]
-        force = wire.helix.force(wire.arc, slip, wire.curvature)
-        friction = found.contact(wire.name).tangential_force
-        np.testing.assert_allclose(np.diff(force, axis=0), -friction, atol=1e-7 * np.ptp(force))
-
-
-def test_all_forces_grow_with_tension_and_curvature() -> None:
-    one, other = (
-        settings_of(**CLAMPED, fall_off=0.2, tension=1e5 * c, curvature=0.05 * c)
-        for c in (1.0, 3.0)
-    )
-    (scene, small), (_, large) = solved(one), solved(other)
-    np.testing.assert_array_equal(small.status, large.status)
-    np.testing.assert_allclose(3.0 * small.displacement, large.displacement, atol=1e-14)
-    np.testing.assert_allclose(3.0 * small.contact_force, large.contact_force, rtol=1e-7, atol=1e-5)
-    assert small.status.any()
-    assert len(small.displacement) == len(scene.wires) * (scene.elements + 1)
 
 
 def test_outer_layers_press_on_what_is_below_them() -> None:
@@ -184,12 +116,6 @@ def test_wires_carry_the_tension_and_lie_beside_each_other(construction: str) ->
         assert layer.wires * layer.diameter <= 1.005 * room
 
 
-def test_a_strand_of_prestressing_steel_has_the_area_of_its_standard() -> None:
-    section = seven_wire()
-    area = section.core.area + 6 * section.layers[0].area
-    assert area == pytest.approx(150e-6, rel=0.01)
-
-
 @pytest.mark.parametrize(
     "changes",
     [
@@ -219,24 +145,6 @@ def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale
 
 
-@pytest.mark.parametrize(
-    "law",
-    [
-        {"friction_law": "compliant"},
-        {"friction_law": "slip-dependent", "slip_length": 1e-5},
-        {"friction_law": "slip-dependent", "friction_ratio": 0.7, "slip_length": 1e-4},
-    ],
-)
-def test_it_takes_every_law_of_friction(law: dict[str, Any]) -> None:
-    settings = settings_of(**{**CLAMPED, "layers": 1}, **law)
-    problem = discretise(settings)
-    solution = solve(problem, method_of(settings))
-    exact = reference_of(problem)
-    assert exact.converged.all()
-    scale = np.abs(exact.contact_force).max()
-    assert np.abs(solution.iterate.contact_force - exact.contact_force).max() < 0.03 * scale
-
-
 def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_every_wire() -> None:
     settings = settings_of(**CLAMPED)
     problem = discretise(settings)
@@ -250,23 +158,6 @@ def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_ev
     for wire in rope(settings).wires:
         assert arrays[f"interface/{wire.name}/slip"].shape == shape
     assert arrays["status"].shape == (len(problem.rubbing) * shape[0], shape[1])
-
-
-@pytest.mark.parametrize(("construction", "kinds"), [("mooring", 1), ("conductor", 3)])
-def test_wires_that_are_alike_share_their_operator(construction: str, kinds: int) -> None:
-    """The wires of a mooring strand are alike in all layers, those of a conductor in none."""
-    settings = settings_of(**{**CLAMPED, "substructures": 3, "construction": construction})
-    problem = discretise(settings)
-    operators = {id(part.elasticity) for part in problem.substructures}
-    assert len(problem.substructures) == 3 * settings.n_wires
-    assert len(operators) == 3 * kinds
-
-
-def test_without_friction_only_the_wires_themselves_are_bent() -> None:
-    settings = settings_of(friction=0.0, curvature=0.2)
-    scene, found = solved(settings)
-    own = settings.section.slipping_bending * scene.curvature
-    np.testing.assert_allclose(moment_of(scene, found), own, atol=1e-6 * own.max())
 
 
 def test_what_is_no_strand_is_refused() -> None:
@@ -287,29 +178,126 @@ def test_what_is_no_strand_is_refused() -> None:
         replace(scene, wires=[replace(scene.wires[0], bound=np.array([-1.0]))])
 
 
-@pytest.mark.parametrize(
-    ("changes", "name"),
-    [
-        ({"tension_load": [[0.0, 1e5], [1.0, -1e5]]}, "tension_load"),
-        ({"bending": "clamp", "tension": 0.0}, "fall_off"),
-    ],
-)
-def test_settings_that_cannot_be_are_refused(changes: dict[str, Any], name: str) -> None:
-    with pytest.raises(SettingError, match=name):
-        settings_of(**changes)
+def taken(name: str, run: FinishedRun) -> float:
+    return float(reading(name)(run))
 
 
-def test_a_coarser_strand_is_bent_alike() -> None:
-    scene = rope(settings_of(**CLAMPED))
-    coarse = scene.coarser()
-    assert isinstance(coarse, Rope)
-    for one, other in zip(scene.wires, coarse.wires, strict=True):
-        np.testing.assert_allclose(one.curvature[::2], other.curvature, rtol=1e-12)
-    assert coarse.coarser() is None or coarse.elements >= 12
+def section_of(
+    scene: Rope, displacement: Array, instant: int, place: float
+) -> tuple[CutWires, Array]:
+    cut, forces = cut_at(scene, place), WireForces(scene)
+    return cut, forces.stress_at(cut, forces(displacement, slice(instant, instant + 1)))[:, 0]
 
 
-def test_the_sentence_says_how_many_wires_there_are() -> None:
-    said = CATALOGUE["rope"].words
-    assert "37 wires" in said(settings_of(layers=3))
-    assert "seven wires" in said(settings_of(construction="seven-wire"))
-    assert "clamp" in said(settings_of(**CLAMPED))
+def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> None:
+    """Any section has about the moment that a wire has on average along it."""
+    settings = settings_of(elements=160, layers=3)
+    scene, found = solved(settings)
+    instant = 30
+    cut, stress = section_of(scene, found.displacement, instant, 0.013)
+    section = settings.section
+    assert len(stress) == section.wires - 1 == 36
+    areas, lay = (
+        np.array([getattr(one, name) for one in section.layers])[cut.layer]
+        for name in ("area", "lay")
+    )
+    share = stress * areas * np.cos(lay)
+    moment = float(np.sum(share * cut.centres[:, 1]))
+    own = section.slipping_bending * scene.curvature[instant]
+    whole = float(scene.moment()(found.displacement)[instant])
+    assert moment + own == pytest.approx(whole, rel=0.02)
+    core = settings.tension * section.core.stiffness / section.stiffness
+    assert float(np.sum(share)) + core == pytest.approx(settings.tension, rel=1e-6)
+    assert float(np.sum(share * cut.centres[:, 0])) == pytest.approx(0.0, abs=0.02 * abs(whole))
+
+
+def test_while_all_sticks_the_stress_range_is_that_of_a_bar() -> None:
+    settings = settings_of(curvature=0.005, layers=1, instants=21)
+    scene, found = solved(settings)
+    helix, layer = settings.section.helix(0), settings.section.layers[0]
+    stretch = helix.radius * np.cos(helix.lay) ** 2 + 0.5 * layer.diameter
+    expected = 2.0 * 0.005 * layer.young * stretch
+    ranges = stress_ranges(scene, found.displacement, slice(None))
+    assert ranges == pytest.approx([expected], rel=2e-3)
+
+
+def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
+    settings = settings_of(curvature=0.1, instants=201, elements=80, layers=1, cycles=2)
+    run, exact = finished_run(settings, errors=False), exact_of(settings)
+    energy = exact.energy(0.1)
+    assert reading("energy_per_metre@2")(run) == pytest.approx(energy, rel=0.01)
+    secant = float(exact.moment(np.array(0.1))) / 0.1
+    assert taken("bending_stiffness", run) == pytest.approx(secant, rel=0.005)
+    assert taken("slipping_bending", run) < secant < taken("stuck_bending", run)
+    # All slips, so that friction's bound times the slip of a point is what it takes of a metre.
+    work, slip = taken("wire_work", run), taken("wire_slip", run)
+    assert work == pytest.approx(2.0 * exact.layers[0].bound * slip, rel=1e-6)
+
+
+WIRE = HelicalWire(stiffness=1.5e6, radius=4e-3, lay=np.radians(12.0))
+BENT = BentWire(WIRE, bound=3000.0)
+
+
+def rods(curvature: Array, elements: int = 40, substructures: int = 4) -> Rods:
+    """Make half a pitch of the wire; by symmetry neither of its ends slips."""
+    arc = np.linspace(0.0, WIRE.half_pitch, elements + 1)
+    instants = np.linspace(0.0, 1.0, len(curvature))
+    return Rods(
+        length=WIRE.half_pitch,
+        stiffness=WIRE.stiffness,
+        elements=elements,
+        substructures=substructures,
+        bound=np.full(elements + 1, BENT.bound),
+        load=np.zeros(len(curvature)),
+        instants=instants,
+        duration=1.0,
+        rigid_grip=True,
+        body_force=WIRE.body_force(arc, curvature),
+    )
+
+
+def moments_of_wire(curvature: Array, elements: int = 40) -> Array:
+    """Give the wire's moment by the incremental solver."""
+    scene = rods(curvature, elements)
+    return WIRE.moment(scene.nodes, incremental(scene.discretise()).displacement, curvature)
+
+
+def to_and_fro(peak: float, steps: int = 60) -> Array:
+    up = np.linspace(0.0, peak, steps + 1)
+    down, back = np.linspace(peak, -peak, 2 * steps + 1), np.linspace(-peak, peak, 2 * steps + 1)
+    return np.concatenate([up, down[1:], back[1:]])
+
+
+def test_it_comes_nearer_with_order_two() -> None:
+    curvature = BENT.first_slip * np.linspace(0.0, 1.4, 15)
+    exact = BENT.moment(curvature)
+    off = [np.abs(moments_of_wire(curvature, n) - exact).max() for n in (20, 40, 80, 160)]
+    orders = np.log2(np.array(off[:-1]) / np.array(off[1:]))
+    assert np.mean(orders) == pytest.approx(2.0, abs=0.3)
+
+
+def test_what_friction_dissipates_is_what_the_loop_encloses() -> None:
+    peak = 1.5 * BENT.first_slip
+    curvature = to_and_fro(peak)
+    scene = rods(curvature)
+    found = incremental(scene.discretise())
+    slips = np.diff(found.displacement[:, 60:], axis=1)
+    force = found.contact_force[:, 61:]
+    # The loop is a wire's mean share in the moment of a metre of strand.
+    strand = WIRE.half_pitch * np.cos(WIRE.lay)
+    lost = -np.sum(force * slips) / strand
+    moment = WIRE.moment(scene.nodes, found.displacement, curvature)
+    assert lost == pytest.approx(abs(np.trapezoid(moment[60:], curvature[60:])), rel=0.01)
+
+
+def test_the_closed_form_has_its_landmarks() -> None:
+    step = 1e-6 * BENT.first_slip
+    stuck = WIRE.stiffness * WIRE.radius**2 * np.cos(WIRE.lay) ** 3 / 2.0
+    kappas = np.array([0.3, 1.0, 1.0 + 1e-9, 0.5 * np.pi, 3.0]) * BENT.first_slip
+    small, first, after, full, beyond = BENT.moment(kappas)
+    assert small == pytest.approx(0.3 * BENT.first_slip * stuck, rel=1e-12)
+    assert after == pytest.approx(first, rel=1e-6)
+    assert full == beyond == pytest.approx(4.0 / np.pi * first, rel=1e-9)
+    slope = np.diff(BENT.moment(np.array([1.2 * BENT.first_slip, 1.2 * BENT.first_slip + step])))
+    assert 0.0 < slope[0] / step < stuck
+    assert BENT.energy(0.9 * BENT.first_slip) == pytest.approx(0.0, abs=1e-9 * first)

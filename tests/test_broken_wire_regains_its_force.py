@@ -72,8 +72,8 @@ def test_it_regains_its_force_linearly_over_the_tension_by_the_friction_bound(ch
 
 @pytest.mark.parametrize(
     "change",
-    [PAIR, {"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}, GRIPPED],
-    ids=["pair", "middle of three", "pair in a grip", "middle of three in a grip"],
+    [{"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}],
+    ids=["middle of three", "pair in a grip"],
 )
 def test_refinement_brings_it_to_the_closed_form(change):
     errors = []
@@ -122,13 +122,6 @@ def test_without_friction_it_carries_nothing_and_the_others_what_the_grip_asks_f
         np.testing.assert_allclose(found[whole], scene.load + 0.0 * found[whole], atol=1e-3)
 
 
-def test_with_endless_friction_nothing_slips_but_the_break_opens_by_an_element():
-    scene, iterate = solved(friction=1e5)
-    found = axial_forces(scene, iterate.displacement)
-    np.testing.assert_allclose(found, scene.load + 0.0 * found, atol=1e-2)
-    assert not iterate.contact("contact 1-2").status.any()
-
-
 def test_the_break_mirrored_mirrors_everything():
     left = wire_forces(**GRIPPED, wires=4, break_position=0.25)
     right = wire_forces(**GRIPPED, wires=4, break_position=0.75)
@@ -147,21 +140,6 @@ def test_equal_wires_without_a_break_never_slip(wires, grip):
         contact = iterate.contact(f"contact {number}-{number + 1}")
         assert np.abs(contact.tangential_force).max() < 1e-4
         assert not contact.status.any()
-
-
-@pytest.mark.parametrize("wires", [3, 6, 15])
-def test_every_section_carries_what_the_grip_gives_whatever_the_number_of_wires(wires):
-    scene, iterate = solved(
-        wires=wires, elements=24, substructures=4, instants=9, peak=400.0, load="triangle"
-    )
-    whole = axial_forces(scene, iterate.displacement).sum(axis=0)
-    assert relative(whole, wires * scene.load + 0.0 * whole) < 1e-6
-
-
-def test_an_edge_wire_regains_its_force_at_the_bound_of_its_one_neighbour():
-    scene, iterate = solved(wires=6, broken=1, load="ramp", peak=300.0)
-    found = axial_forces(scene, iterate.displacement)[0, :, -1]
-    np.testing.assert_allclose(np.diff(found[30:40]), 1500.0 / 60, rtol=1e-4)
 
 
 def strain_energy(scene, forces):
@@ -203,12 +181,3 @@ def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
     if scene.wires == 2:
         # Each side of the break is a friction bar, whose cycles are closed (solver/README.md, 6).
         assert stored[second] == pytest.approx(stored[first], abs=1e-6 * dissipated)
-
-
-def test_a_cycle_dissipates_what_friction_bars_do():
-    """Twice 2 T^3 / (3 K q) over cycles of +-T, with K = ES / 2; an eighth of it from 0 to T."""
-    settings = {**PAIR, "peak": 600.0, "elements": 120, "instants": 21}
-    scene, iterate = solved(**settings, tolerance=1e-14)
-    expected = 2.0 * 2.0 * 600.0**3 / (3.0 * 0.5 * scene.stiffness * scene.bound[0]) / 8.0
-    measured = dissipation(iterate)[5:13].sum()
-    assert measured == pytest.approx(expected, rel=0.02)

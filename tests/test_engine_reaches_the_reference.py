@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from bars import SMALL, options, relative, sample, table
 
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import latin_indicator
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
-from solver.scenes import discretise
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
 LOOK = 20
@@ -63,20 +65,8 @@ def test_the_default_reaches_the_reference_in_fields_and_statuses():
 
 
 @pytest.mark.parametrize("load", PATHS)
-@pytest.mark.parametrize("peak", [900.0, 2000.0])
-def test_every_load_path_reaches_the_reference(load, peak):
-    assert_reached(options(**SMALL, load=load, peak=peak))
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_random_tables_of_points_reach_the_reference(seed):
-    forces = np.random.default_rng(seed).uniform(-1800.0, 1800.0, 9)
-    assert_reached(options(**SMALL, load=table(forces)))
-
-
-@pytest.mark.parametrize("seed", [2, 3])
-def test_random_walks_reach_the_reference(seed):
-    assert_reached(options(**SMALL, load="random", seed=seed, peak=1300.0))
+def test_every_load_path_reaches_the_reference(load):
+    assert_reached(options(**SMALL, load=load, peak=2000.0))
 
 
 @pytest.mark.parametrize(
@@ -107,22 +97,12 @@ def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     assert relative(sample(chosen, 5).displacement, sample(other, 5).displacement) > 1e-3
 
 
-@pytest.mark.parametrize("substructures", [4, 10])
-def test_substructures_of_unequal_size_reach_the_reference(substructures):
-    assert_reached(options(elements=33, substructures=substructures, instants=31))
-
-
 @pytest.mark.parametrize("k_scale", [0.3, 3.0])
 def test_k_changes_the_path_and_not_the_limit(k_scale):
     chosen = options(**SMALL, k_scale=k_scale)
     assert_reached(chosen)
     plain = options(**SMALL)
     assert relative(sample(chosen, 5).displacement, sample(plain, 5).displacement) > 1e-3
-
-
-@pytest.mark.parametrize("relaxation", [0.5, 0.95])
-def test_relaxation_does_not_change_the_limit(relaxation):
-    assert_reached(options(**SMALL, relaxation=relaxation))
 
 
 @pytest.mark.parametrize("substructures", [3, 6])
@@ -136,18 +116,6 @@ def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(subst
     assert relative(ends[1].displacement, ends[0].displacement) < 1e-9
 
 
-def test_one_substructure_has_neither_cuts_nor_a_coarse_problem():
-    multi, mono = (
-        options(**{**SMALL, "substructures": 1}, multiscale=multiscale)
-        for multiscale in (True, False)
-    )
-    problem = discretise(multi)
-    assert not problem.has_cuts
-    assert set(problem.interfaces) == {"friction", "support", "load"}
-    for number in (1, 5):
-        assert np.array_equal(sample(multi, number).outgoing, sample(mono, number).outgoing)
-
-
 def test_the_bar_remembers_its_return_points():
     forces = [0.0, 600.0, 1200.0, 300.0, 900.0, 500.0, 900.0, 300.0, 1200.0, -1200.0, 1200.0]
     chosen = options(**{**SMALL, "instants": len(forces)}, load=table(forces))
@@ -157,3 +125,20 @@ def test_the_bar_remembers_its_return_points():
         assert relative(displacement[:, closes], displacement[:, opened]) < 1e-9
         assert relative(friction[1:, closes], friction[1:, opened]) < 1e-7
     assert relative(displacement[:, 4], displacement[:, 2]) > 1e-2
+
+
+SCENES: dict[str, dict[str, Any]] = {
+    "bar": {},
+    "strand": {"elements": 20, "instants": 51},
+    "block": {"elements": 24, "elements_up": 8},
+}
+
+
+@pytest.mark.parametrize("changes", [{"method": "paper"}, {"linear_stage": "pgd"}], ids=str)
+@pytest.mark.parametrize("scene", SCENES)
+def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(scene, changes):
+    settings = CATALOGUE[scene].settings.checked({**SCENES[scene], **changes})
+    problem = discretise(settings)
+    solution = solve(problem, method_of(settings), watch=False)
+    assert solution.status.ending == "converged"
+    assert np.mean(solution.iterate.status != reference_of(problem).status) < 0.004

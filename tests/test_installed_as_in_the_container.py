@@ -5,27 +5,26 @@ the versions, but unpacks no packages that these tests run on already. Outside t
 installed there has all that the command, the engine as a library and the page need.
 """
 
+from __future__ import annotations
+
 import http.client
 import json
 import os
 import re
 import shutil
-import signal
 import socket
 import subprocess
 import sys
 import time
 import tomllib
+import urllib.request
 from contextlib import closing
 from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
-from browser import serving
 from packaging.requirements import Requirement
-from pages import status, visits
-from playwright.sync_api import expect
-from processes import PATIENCE, is_alive, wait_for
+from processes import PATIENCE, wait_for
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
@@ -161,6 +160,8 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
             assert time.monotonic() < end, (tmp_path / "log").read_text()
             assert server.poll() is None, (tmp_path / "log").read_text()
             time.sleep(0.5)
+        with urllib.request.urlopen(f"http://127.0.0.1:{other}/app", timeout=PATIENCE) as page:
+            assert b"Slipfront" in page.read()
         assert handshake(other, f"http://localhost:{other}") == 101
         assert handshake(other, "http://elsewhere.example") == 403
     finally:
@@ -182,13 +183,10 @@ def run(image, place, *command):
     )
 
 
-def test_the_command_runs_a_scene(image, tmp_path):
+def test_the_command_runs_a_scene_and_lists_the_page_among_its_own(image, tmp_path):
     done = run(image, tmp_path, "slipfront", "run", "bar", "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["status"] == "converged"
-
-
-def test_the_command_lists_the_page_among_its_own(image, tmp_path):
     assert "serve the page" in run(image, tmp_path, "slipfront", "--help").stdout
 
 
@@ -200,19 +198,19 @@ def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path)
     assert Path(home).is_relative_to(folder.parent / "environment")
 
 
-@pytest.fixture
-def served(image, tmp_path):
-    _, variables = image
-    command = [shutil.which("slipfront", path=variables["PATH"]), "serve"]
-    with serving(tmp_path / "log", serves=command, place=tmp_path) as made:
-        yield made
-
-
-def test_its_page_runs_in_a_browser_and_an_interrupt_leaves_no_process(served, chrome):
-    with visits(served, chrome) as visit:
-        page = visit("?lesson=best-k")
-        expect(page.get_by_role("button", name="Show me")).to_be_visible()
-        expect(status(page)).to_contain_text("iteration")
-    workers = served.processes()
-    served.stop(signal.SIGINT)
-    wait_for(lambda: not any(is_alive(pid) for pid in workers))
+def test_a_port_in_use_is_named_in_a_line() -> None:
+    panel = str(Path(sys.executable).with_name("panel"))
+    with socket.socket() as taken:
+        taken.bind(("", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        found = subprocess.run(
+            [panel, "serve", "app", "--port", port],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    assert found.returncode != 0
+    assert f"port {port} is already in use" in found.stderr.splitlines()[-1]
+    assert "Traceback" not in found.stderr

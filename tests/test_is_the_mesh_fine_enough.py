@@ -9,15 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from solver.cli import main
-from solver.scenes import CATALOGUE
 from solver.study.mesh import (
     LARGEST_ORDER,
     LEAST_ORDER,
     Refinement,
     answer,
-    instants_around,
-    meshes_around,
-    which_to_refine,
 )
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
@@ -64,18 +60,6 @@ def test_a_singular_corner_shows_no_limit_and_a_jump_no_power() -> None:
     assert "no answer" in answer(Refinement((1.0, math.nan, 1.0), 1), "m")
 
 
-def test_meshes_are_halved_and_doubled_or_made_finer_alone() -> None:
-    block = CATALOGUE["block"].settings.checked({})
-    meshes, own = meshes_around(block)
-    assert [(one.elements, one.elements_up) for one in meshes] == [(24, 12), (48, 24), (96, 48)]
-    assert meshes[own].values() == block.values()
-    for odd in ({"elements_up": 23}, {"elements": 4}):
-        settings = block.replace(**odd)
-        meshes, own = meshes_around(settings)
-        assert meshes[own].values() == settings.values()
-        assert meshes[2].elements_up == 4 * settings.elements_up
-
-
 def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -89,28 +73,11 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     assert lines[7].startswith("Refine elements first")
 
 
-def test_instants_are_halved_and_doubled_between_the_same_ends() -> None:
-    bar = CATALOGUE["bar"].settings.checked({"instants": 21})
-    runs, own = instants_around(bar)
-    assert [one.instants for one in runs] == [11, 21, 41]
-    assert runs[own].values() == bar.values()
-    odd, own = instants_around(bar.replace(instants=12))
-    assert [one.instants for one in odd] == [12, 23, 45]
-    assert own == 0
-
-
 @pytest.mark.parametrize(
     ("scene", "asked", "refined"),
     [
         ("bar elements=40 instants=11 load=ramp", "first_slip_time@0.5", "instants"),
         ("bar elements=10 instants=41 load=cycle", "dissipation@1", "elements"),
-        # Contact grows by several points from an instant to the next.
-        (
-            "block gap=parabola radius=30 friction=0.5 top_normal_displacement=-2e-5 elements=96 "
-            "elements_up=8 instants=21",
-            "dissipation",
-            "instants",
-        ),
     ],
 )
 def test_it_is_said_which_to_refine(
@@ -119,13 +86,6 @@ def test_it_is_said_which_to_refine(
     name, *changes = scene.split()
     assert main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
     assert f"Refine {refined} first" in capsys.readouterr().out
-
-
-def test_where_neither_changes_a_value_neither_is_to_be_refined() -> None:
-    same = Refinement((2.0, 2.0, 2.0 + 1e-9), 1)
-    assert which_to_refine(same, same).startswith("Neither")
-    assert "elements first" in which_to_refine(power(2.0, 1.0, 0.5), same)
-    assert which_to_refine(same, Refinement((1.0, math.nan, 1.0), 1)) == ""
 
 
 @pytest.mark.parametrize("asked", ["seconds", "peak_pressure", "nonsense"])

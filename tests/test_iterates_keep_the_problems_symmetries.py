@@ -1,12 +1,18 @@
-"""A problem that is scaled, reversed, slowed or paused has iterates that are so too."""
+"""Iterates keep the symmetries of their problem, and indicators are what they say."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from bars import SMALL, options, relative, sample, table
+from bars import SMALL, boundary_of, options, relative, sample, table
 
-from solver.latin.indicators import latin_indicator
+from solver.latin import Iterate
+from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.laws import Contact, Dirichlet, Neumann
+from solver.reference.incremental import incremental
+from solver.scenes import discretise
+from solver.scenes.bar import BarSettings, bar
+from solver.scenes.method import method_of
 
 
 def test_the_rate_does_not_matter():
@@ -18,9 +24,8 @@ def test_the_rate_does_not_matter():
     assert latin_indicator(slow) == pytest.approx(latin_indicator(fast), rel=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_a_path_with_pauses_gives_every_iterate_again_with_pauses(seed):
-    forces = np.random.default_rng(seed).uniform(-1500.0, 1500.0, 20)
+def test_a_path_with_pauses_gives_every_iterate_again_with_pauses():
+    forces = np.random.default_rng(1).uniform(-1500.0, 1500.0, 20)
     quick = options(**{**SMALL, "instants": 20}, load=table(forces))
     times = np.concatenate([[1, 3, 2, 5], np.full(16, 2)])
     paused = np.repeat(forces, times)
@@ -44,3 +49,119 @@ def test_reversing_the_load_reverses_the_answer():
     plain, reversed_ = (sample(options(**SMALL, peak=peak), 20) for peak in (900.0, -900.0))
     assert relative(reversed_.displacement, -plain.displacement) < 1e-12
     assert np.array_equal(reversed_.status, -plain.status)
+
+
+def iterate_of(problem, k, displacement, force):
+    """Make the iterate whose linear and local stage both are one pair of fields."""
+    incoming = displacement - force / k[:, None]
+    return Iterate(
+        number=1,
+        seconds=0.0,
+        problem=problem,
+        k=k,
+        outgoing=displacement + force / k[:, None],
+        incoming=incoming,
+        local_displacement=displacement,
+        local_incoming=incoming,
+    )
+
+
+@pytest.mark.parametrize("number", [1, 4, 25])
+@pytest.mark.parametrize("multiscale", [True, False])
+def test_the_latin_indicator_is_equation_2(number, multiscale):
+    iterate = sample(options(**SMALL, multiscale=multiscale, k_scale=2.0), number)
+    problem, k = iterate.problem, iterate.k[:, None]
+    time_step = 1.0 / (problem.n_instants - 1)
+
+    def squared(displacement, force):
+        return np.trapezoid((k * displacement**2 + force**2 / k).sum(axis=0), dx=time_step)
+
+    linear = iterate.boundary_displacement, iterate.boundary_force
+    local = iterate.local_displacement, iterate.boundary_local_force
+    distance = squared(linear[0] - local[0], linear[1] - local[1])
+    expected = distance / (0.5 * (squared(*linear) + squared(*local)))
+    assert latin_indicator(iterate) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("load", ["sine", "random"])
+@pytest.mark.parametrize(
+    "change", [{}, {"body_force": 800.0, "support_displacement": 3e-4}], ids=str
+)
+def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(load, change):
+    chosen = options(load=load, peak=1300.0, **change)
+    problem = discretise(chosen)
+    k = method_of(chosen).direction.of(problem)
+    displacement, force = boundary_of(problem, incremental(problem))
+    exact = behaviour_indicator(iterate_of(problem, k, displacement, force))
+    assert 0.0 <= exact < 1e-8
+    random = np.random.default_rng(5)
+    for kind in (Contact, Dirichlet):
+        (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
+        moved = displacement.copy()
+        moved[law.rows] += 1e-3 * displacement.max() * random.normal(size=moved[law.rows].shape)
+        assert behaviour_indicator(iterate_of(problem, k, moved, force)) > 1e-6
+    for kind in (Contact, Neumann):
+        (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
+        pulled = force.copy()
+        pulled[law.rows] *= 1.01
+        assert behaviour_indicator(iterate_of(problem, k, displacement, pulled)) > 1e-6
+
+
+@pytest.mark.parametrize("number", [1, 5, 40, 200])
+def test_the_behaviour_indicator_sees_no_k(number):
+    iterate = sample(options(**SMALL), number)
+    displacement, force = iterate.boundary_displacement, iterate.boundary_force
+    found = [
+        behaviour_indicator(iterate_of(iterate.problem, factor * iterate.k, displacement, force))
+        for factor in (1e-3, 1.0, 40.0)
+    ]
+    assert found[1] > 0.0
+    for other in (found[0], found[2]):
+        assert other == pytest.approx(found[1], rel=1e-9, abs=1e-12)
+
+
+def short(**values):
+    return BarSettings.checked({"method": "paper", "instants": 31, **values})
+
+
+@pytest.mark.parametrize("young", [1e3, 1e15])
+def test_the_iteration_does_not_see_the_size_of_a_pascal(young):
+    factor = young / 210e9
+    plain = sample(short(), 25)
+    other = sample(short(young=young, peak=900.0 * factor, pressure=5000.0 * factor), 25)
+    assert relative(other.outgoing, plain.outgoing) < 1e-10
+    assert relative(other.displacement, plain.displacement) < 1e-10
+    assert relative(other.friction_force, factor * plain.friction_force) < 1e-10
+    assert latin_indicator(other) == pytest.approx(latin_indicator(plain), rel=1e-10)
+
+
+@pytest.mark.parametrize("length", [1e-3, 1e3])
+def test_the_iteration_does_not_see_the_size_of_a_metre(length):
+    plain = sample(short(), 25)
+    other = sample(short(length=length, pressure=5000.0 / length), 25)
+    assert relative(other.outgoing, plain.outgoing) < 1e-10
+    assert relative(other.displacement, length * plain.displacement) < 1e-10
+    assert relative(other.friction_force, plain.friction_force) < 1e-10
+
+
+@pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 800.0}], ids=str)
+@pytest.mark.parametrize("substructures", [1, 10])
+def test_dense_and_sparse_boundary_responses_agree(monkeypatch, change, substructures):
+    chosen = short(substructures=substructures, **change)
+    dense = sample(chosen, 25)
+    monkeypatch.setattr("solver.latin.linear.response.DENSE_UP_TO", 0)
+    sparse = sample(chosen, 25)
+    assert relative(sparse.outgoing, dense.outgoing) < 1e-10
+    assert relative(sparse.incoming, dense.incoming) < 1e-10
+
+
+@pytest.mark.parametrize("multiscale", [True, False])
+def test_without_friction_a_body_force_hangs_the_bar_as_in_the_textbook(multiscale):
+    chosen = short(
+        friction=0.0, peak=0.0, body_force=1000.0, substructures=7, multiscale=multiscale
+    )
+    iterate = sample(chosen, 3000)
+    scene, x = bar(chosen), iterate.problem.positions
+    profile = scene.length * x - 0.5 * x**2
+    expected = profile[:, None] * scene.body_force / scene.stiffness
+    assert relative(iterate.displacement, expected) < 1e-9

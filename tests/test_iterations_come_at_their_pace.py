@@ -6,7 +6,7 @@ import pytest
 
 from app.messages import WHOLE
 from app.worker import runner
-from app.worker.runner import LATE, Pacing
+from app.worker.runner import Pacing
 
 
 class Watch:
@@ -52,12 +52,3 @@ def test_a_whole_search_lasts_three_seconds_however_many_iterations_it_takes(
 def test_a_slow_search_takes_what_its_iterations_take(watch: Watch) -> None:
     times = played(watch, WHOLE, 100, takes=0.5)
     assert times[-1] - times[-51] == pytest.approx(25.0)
-
-
-def test_iterations_catch_up_on_a_picture_and_on_no_more(watch: Watch) -> None:
-    paced = Pacing(20.0)
-    for late, rest in ((0.08, 0.0), (5.0, 0.0)):
-        watch.now += late
-        assert paced.rest() == rest
-        paced.count(1)
-    assert paced._due == pytest.approx(watch.now - LATE + 0.05)

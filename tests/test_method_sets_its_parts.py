@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import islice
-
-import numpy as np
 import pytest
 
-from app.link import Place, query_of, read
-from app.state import SEARCH, default_settings
-from solver.checked import dump
+from app.link import read
+from app.state import SEARCH
 from solver.cli import main
-from solver.files import settings_from_command, settings_from_toml
-from solver.latin import iterations
-from solver.scenes import CATALOGUE, discretise
+from solver.files import settings_from_command
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
 from solver.settings import Settings
 
 PAPER = {
@@ -37,7 +31,6 @@ FAST = {
 METHODS = {"paper": PAPER, "fast": FAST}
 OTHERS = {"friction": 0.4, "elements": 30, "accuracy": 1e-4, "k_scale": 2.0, "max_iterations": 77}
 BY_HAND = {"search_direction": "auto", "start": "zero", "tolerance": 1e-7}
-SMALL = {"elements": 20, "instants": 21, "substructures": 4}
 
 
 def other(method):
@@ -51,17 +44,6 @@ def parts(settings):
 @pytest.mark.parametrize("method", METHODS)
 def test_a_method_sets_all_its_parts_of_the_bar(method):
     assert parts(BarSettings.checked({"method": method})) == METHODS[method]
-
-
-@pytest.mark.parametrize("scene", list(CATALOGUE))
-@pytest.mark.parametrize("method", METHODS)
-def test_a_scene_takes_of_a_method_what_it_has_options_for(scene, method):
-    kind = CATALOGUE[scene].settings
-    found = parts(kind.checked({"method": method}))
-    for name, value in METHODS[method].items():
-        options = getattr(kind.definitions()[name], "objects", [value])
-        expected = value if value in options else kind.definitions()[name].default
-        assert found[name] == expected
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
@@ -89,12 +71,6 @@ def test_another_method_brings_its_parts_and_all_else_stays(method, change):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_same_method_again_changes_nothing(method):
-    settings = BarSettings.checked({"method": method, **BY_HAND})
-    assert settings.replace(method=method).values() == settings.values()
-
-
-@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("method_first", [True, False])
 def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first, tmp_path):
     named = {"method": method}
@@ -113,62 +89,8 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
     assert parts(BarSettings.checked(named).replace(**BY_HAND)) == expected
 
 
-def test_what_is_set_beside_a_method_is_kept_where_something_else_is_refused():
-    place, complaint = read("?start=zero&method=paper&acceleration=anderson&a=1")
-    settings = place.settings
-    assert (settings.start, settings.acceleration, settings.method) == ("zero", "anderson", "paper")
-    assert "a" in complaint
-    together = "?acceleration=anderson&elements=5&method=paper&substructures=9"
-    place, complaint = read(together)
-    settings = place.settings
-    assert (settings.acceleration, settings.method, settings.start) == ("anderson", "paper", "zero")
-    assert complaint
-
-
-@pytest.mark.parametrize("scene", list(CATALOGUE))
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("by_hand", [{}, {"acceleration": "none"}, {"tolerance": 1e-7}], ids=str)
-def test_files_and_addresses_give_the_same_settings_again(scene, method, by_hand):
-    settings = CATALOGUE[scene].settings.checked({"method": method, **by_hand})
-    assert settings_from_toml(dump(settings)).values() == settings.values()
-    again, complaint = read(query_of(Place(settings)))
-    assert (again.settings.values(), complaint) == (settings.values(), "")
-
-
-def test_an_address_names_the_method_and_only_what_differs_from_it():
-    assert query_of(Place(default_settings("bar"))) == "?scene=bar"
-    paper = Place(BarSettings.checked({"method": "paper"}))
-    assert query_of(paper) == "?scene=bar&method=%22paper%22"
-    mixed = BarSettings.checked({"method": "paper", "acceleration": "anderson"})
-    assert mixed.changed() == {"method": "paper", "acceleration": "anderson"}
-
-
-def test_another_method_over_a_saved_file_brings_its_parts(tmp_path):
-    saved = tmp_path / "saved.toml"
-    fast = BarSettings.checked({**OTHERS, "acceleration": "none"})
-    saved.write_text(dump(fast), encoding="utf-8")
-    found, _ = settings_from_command(str(saved), ["method=paper", "relaxation=0.6"])
-    assert parts(found) == PAPER | {"relaxation": 0.6}
-    assert {name: getattr(found, name) for name in OTHERS} == OTHERS
-
-
 def test_a_method_that_does_not_exist_is_refused_with_those_that_do(capsys):
     assert main(["run", "bar", "--set", "method=slow"]) == 2
     told = capsys.readouterr().err
     assert "method" in told
     assert "fast, paper" in told
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_a_method_is_no_more_than_its_parts(method):
-    def fields(values):
-        settings = BarSettings.checked({**SMALL, **values})
-        return [
-            one.outgoing
-            for one in islice(iterations(discretise(settings), method_of(settings)), 12)
-        ]
-
-    at_once = fields({"method": method})
-    by_hand = fields({"method": other(method), **METHODS[method]})
-    for one, same in zip(at_once, by_hand, strict=True):
-        assert np.array_equal(one, same)

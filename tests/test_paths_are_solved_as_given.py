@@ -1,21 +1,21 @@
-"""What a path over time has, a run sees: every turning point, and all between them."""
+"""What a path over time or a table along a body has, a run sees, or says that it does not."""
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.instants import instants_of, thinned
 from solver.latin import Ending, solve
-from solver.loads import INJECTIONS, PRESETS, PRESSURES, PULLS, Preset
-from solver.reference.choice import reference_of
+from solver.loads import PRESSURES
+from solver.reference.assembly import assembled_stiffness
 from solver.reference.closed_forms.diffusion import spread
-from solver.scenes import CATALOGUE, discretise, left_out, points_of
-from solver.scenes.base import EVERY_POINT, LARGEST_FIELD, THINNED
+from solver.reference.incremental import incremental
+from solver.scenes import CATALOGUE, discretise, left_out, structure_of
+from solver.scenes.bar import BarSettings, bar
+from solver.scenes.base import EVERY_POINT, THINNED
 from solver.scenes.method import method_of
 
 SPIKE = [[0.0, 0.0], [0.5, 0.0], [0.503, 1200.0], [0.506, 0.0], [1.0, 0.0]]
@@ -49,10 +49,9 @@ def turns(values: np.ndarray) -> np.ndarray:
     return np.concatenate([moves[:1], moves[1:-1][inner], moves[-1:]])
 
 
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
-def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(scene, name, seed):
-    settings = drawn(scene, name, seed)
+def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(scene, name):
+    settings = drawn(scene, name, 1)
     times, given = np.array(getattr(settings, name)).T
     seen, instants = settings.path(name), settings.times()
     assert (seen.max(), seen.min()) == (given.max(), given.min())
@@ -88,35 +87,6 @@ def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scen
             assert settings.n_instants >= number
 
 
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_instants_on_which_all_presets_turn_stay_evenly_spread(scene):
-    settings = CATALOGUE[scene].settings.checked({})
-    even = np.linspace(0.0, settings.duration, settings.instants)
-    np.testing.assert_array_equal(settings.times(), even)
-
-
-@pytest.mark.parametrize("shapes", [PRESETS, PULLS, PRESSURES, INJECTIONS])
-def test_the_corners_of_a_preset_are_all_that_it_has(shapes: dict[str, Preset]) -> None:
-    """Between them it is straight, or goes one way."""
-    for name, preset in shapes.items():
-        for seed in (1, 2, 5):
-            ends = np.concatenate([[0.0], preset.corners(seed), [1.0]])
-            for a, b in pairwise(ends):
-                inside = preset(np.linspace(a, b, 50)[1:-1], seed)
-                ways = np.sign(np.round(np.diff(inside), 12))
-                assert not (np.any(ways > 0.0) and np.any(ways < 0.0)), (name, a, b)
-
-
-@pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
-def test_the_table_that_stands_for_a_preset_has_its_extremes(scene, name):
-    for preset in CATALOGUE[scene].settings.definitions()[name].presets:
-        settings = of_preset(scene, name, preset)
-        given, table = settings.path(name), np.array(points_of(settings, name))[:, 1]
-        size = np.abs(given).max()
-        assert table.max() == pytest.approx(given.max(), abs=1e-5 * size), preset
-        assert table.min() == pytest.approx(given.min(), abs=1e-5 * size), preset
-
-
 def friction_of(changes: dict[str, Any]) -> float:
     """Solve the bar; give what friction takes, J."""
     settings = CATALOGUE["bar"].settings.checked(changes)
@@ -134,16 +104,6 @@ def test_a_pull_between_two_instants_of_the_bar_is_solved():
     )
 
 
-def test_a_burst_takes_the_same_whatever_the_number_of_instants():
-    times = np.linspace(0.0, 1.0, 501)
-    burst = 900.0 * np.sin(2.0 * np.pi * 37.0 * times)
-    table = [[float(a), float(b)] for a, b in zip(times, burst, strict=True)]
-    small = {"load": table, "elements": 20, "substructures": 2}
-    few, many = (friction_of({**small, "instants": count}) for count in (101, 501))
-    assert few == pytest.approx(many, rel=1e-9)
-    assert few > 1.0
-
-
 def noisy(points: int) -> list[list[float]]:
     """A pull of a slow wave, one narrow peak, and noise that hardly counts."""
     times = np.linspace(0.0, 1.0, points)
@@ -151,12 +111,6 @@ def noisy(points: int) -> list[list[float]]:
     wave += 0.2 * np.random.default_rng(1).uniform(-1.0, 1.0, points)
     wave[points // 3] = 1400.0
     return [[float(a), float(b)] for a, b in zip(times, wave, strict=True)]
-
-
-def test_a_small_problem_has_every_point_of_a_long_table():
-    settings = CATALOGUE["bar"].settings.checked({"load": noisy(20_001)})
-    assert settings.n_instants == 20_001
-    assert left_out(settings) == []
 
 
 def test_a_large_problem_keeps_the_peaks_of_a_long_table_and_says_what_it_leaves_out():
@@ -173,33 +127,6 @@ def test_a_large_problem_keeps_the_peaks_of_a_long_table_and_says_what_it_leaves
     assert "of 60001 points are left out" in message
 
 
-def test_what_is_thinned_is_within_what_is_allowed():
-    random = np.random.default_rng(4)
-    for allowed in (0.0, 0.03, 0.3):
-        table = np.column_stack([np.cumsum(random.exponential(size=400)), random.normal(size=400)])
-        kept = thinned(table, allowed)
-        assert (kept[0], kept[-1]) == (0, 399)
-        assert {table[:, 1].argmax(), table[:, 1].argmin()} <= set(kept.tolist())
-        line = np.interp(table[:, 0], *table[kept].T)
-        assert np.abs(line - table[:, 1]).max() <= allowed + 1e-12
-
-
-def test_memory_is_checked_for_the_instants_that_there_are():
-    jagged = [[n / 60_000.0, 900.0 * (n % 2)] for n in range(60_001)]
-    elements = LARGEST_FIELD // 60_001 + 1
-    with pytest.raises(SettingError, match="60001"):
-        CATALOGUE["bar"].settings.checked({"load": jagged, "elements": elements})
-
-
-def test_a_peak_on_a_long_problem_reaches_its_reference():
-    changes = {"top_tangential_load": [[0.3, 0.0], [0.5005, 2e-5], [0.5007, -1e-5], [0.501, 0.0]]}
-    small = {"elements": 16, "elements_up": 8, "substructures": 2, "instants": 17}
-    settings = CATALOGUE["block"].settings.checked({**small, **changes})
-    problem = discretise(settings)
-    force = solve(problem, method_of(settings), watch=False).iterate.contact_force
-    assert force == pytest.approx(reference_of(problem).contact_force, abs=1e-8 * abs(force).max())
-
-
 def test_a_fluid_spreads_alike_on_even_and_uneven_instants():
     place, even = np.linspace(0.0, 3.0, 7), np.linspace(0.0, 1.0, 201)
     given = np.interp(even, [0.0, 0.3, 0.35, 1.0], [2.0, 1.0, 3.0, 0.0])
@@ -208,9 +135,129 @@ def test_a_fluid_spreads_alike_on_even_and_uneven_instants():
     np.testing.assert_allclose(uneven, spread(place, even, given, 0.5)[:, some], atol=1e-9)
 
 
-def test_no_instant_is_there_twice():
-    """Corners of two presets that rounding sets apart are one."""
-    corners = np.array([0.3, 0.3 + 1e-16, 0.7])
-    times = instants_of(1.0, 11, np.array([0.31]), corners)
-    assert np.diff(times).min() > 1e-3
-    assert np.isin([0.31, 0.7], times).all()
+ASPERITY = [[0.0, 1e-5], [0.05, 1e-5], [0.0503, 0.0], [0.0506, 1e-5], [0.1, 1e-5]]
+PRESSED = {
+    "top": "displacement",
+    "top_normal_displacement": -5e-6,
+    "top_tangential_displacement": 0.0,
+    "instants": 5,
+}
+
+
+def profile(seed: int, length: float, *, least: float = 0.0) -> list[list[float]]:
+    """A table of factors with wide and narrow peaks, wherever the nodes are."""
+    random = np.random.default_rng(seed)
+    middles = random.uniform(0.02, 0.98, 5) * length
+    halves = 10.0 ** random.uniform(-5.0, -2.0, 5) * length
+    places = np.unique(np.concatenate([middles - halves, middles, middles + halves]))
+    factors = random.uniform(least, 2.0, len(places))
+    return [[float(a), float(b)] for a, b in zip(places, factors, strict=True)]
+
+
+def integral(*tables: list[list[float]], over: np.ndarray) -> float:
+    """Integrate a product of tables by many middles of each of their pieces."""
+    points = np.concatenate([np.array(table)[:, 0] for table in tables])
+    ends = np.union1d(points[(points > over[0]) & (points < over[1])], over)
+    share = (np.arange(200) + 0.5) / 200
+    where = ends[:-1, None] + share * np.diff(ends)[:, None]
+    values = np.prod([np.interp(where, *np.transpose(table)) for table in tables], axis=0)
+    return float((values.mean(axis=1) * np.diff(ends)).sum())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_all_friction_of_the_bar_is_there_whatever_the_mesh(seed):
+    length = 2.0
+    mu, pressure = profile(seed, length), profile(seed + 100, length)
+    whole = 0.3 * 5000.0 * integral(mu, pressure, over=np.array([0.0, length]))
+    for elements in (3, 50, 400):
+        changes = {"friction_profile": mu, "pressure_profile": pressure, "length": length}
+        settings = CATALOGUE["bar"].settings.checked(
+            {**changes, "elements": elements, "substructures": 1}
+        )
+        problem = discretise(settings)
+        (law,) = problem.rubbing.values()
+        total = structure_of(settings).bound @ law.weights
+        assert total == pytest.approx(whole, rel=1e-4)
+
+
+@pytest.mark.parametrize("interpolation", ["bilinear", "biquadratic"])
+def test_all_strength_of_a_fault_is_there_whatever_the_mesh(interpolation):
+    table = profile(5, 600.0, least=0.9)
+    whole = 0.6 * 1e7 * integral(table, over=np.array([0.0, 600.0]))
+    for elements in (12, 48):
+        values = {"normal_profile": table, "elements": elements, "interpolation": interpolation}
+        settings = CATALOGUE["fault"].settings.checked({**values, "overpressure": 0.0})
+        (law,) = discretise(settings).rubbing.values()
+        nodal = settings.strength_at_nodes()[:, 0]
+        assert nodal @ law.by_point(law.weights[:, None])[:, 0] == pytest.approx(whole, rel=1e-4)
+
+
+def test_a_notch_between_nodes_stretches_the_bar():
+    notched = [[0.0, 1.0], [0.511, 1.0], [0.512, 0.01], [0.513, 0.01], [0.514, 1.0]]
+    ends = []
+    for elements in (10, 1000):
+        values = {"section_profile": notched, "friction": 0.0, "load": "ramp", "instants": 2}
+        settings = CATALOGUE["bar"].settings.checked({**values, "elements": elements})
+        ends.append(incremental(discretise(settings)).displacement[-1, -1])
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
+def pressed(elements: int) -> tuple[float, list[str]]:
+    """Press the block on an asperity; give the force, and what is said."""
+    values = {**PRESSED, "gap": ASPERITY, "elements": elements}
+    settings = CATALOGUE["block"].settings.checked(values)
+    solution = solve(discretise(settings), method_of(settings), watch=False)
+    assert solution.status.ending is Ending.CONVERGED
+    force = solution.iterate.contact("support").normal_force[:, -1].sum()
+    return abs(float(force)), left_out(settings)
+
+
+def test_an_asperity_between_nodes_touches_and_the_mesh_that_sees_it_is_named():
+    coarse, said = pressed(48)
+    (message,) = said
+    assert "332 elements would see it" in message
+    fine, nothing = pressed(332)
+    assert nothing == []
+    # A point carries in the plane as 1 / log(size): half as much again on shares 7 times as wide.
+    assert fine < coarse < 1.5 * fine
+
+
+SMALL = {"elements": 24, "substructures": 4, "instants": 31}
+GRADED = [[0.0, 100.0], [0.4, 1.0], [1.0, 3.0]]
+NOTCHED = [[0.0, 1.0], [0.51, 1.0], [0.511, 0.01], [0.512, 0.01], [0.513, 1.0]]
+
+
+def varying(**changes):
+    return BarSettings.checked({"method": "paper", **SMALL, **changes})
+
+
+@pytest.mark.parametrize("table", [GRADED, NOTCHED], ids=["graded", "notched"])
+def test_every_element_is_as_stiff_as_all_that_lies_in_it(table):
+    chosen = varying(section_profile=table, length=2.0)
+    scene = bar(chosen)
+    fine = np.linspace(0.0, 2.0, 24 * 20_000 + 1)
+    middles = 0.5 * (fine[1:] + fine[:-1])
+    compliance = np.mean(1.0 / np.interp(middles, *np.transpose(table)).reshape(24, -1), axis=1)
+    assert scene.stiffness * scene.section == pytest.approx(
+        chosen.young * chosen.section / compliance, rel=2e-4
+    )
+    stiffness = assembled_stiffness(discretise(chosen))
+    assert -stiffness.diagonal(1) / 24 == pytest.approx(scene.section)
+    assert abs(stiffness.sum(axis=1)).max() <= 1e-13 * abs(stiffness).max()
+
+
+@pytest.mark.parametrize(
+    ("table", "allowed"),
+    [
+        ([[0.0, 1.0], [1.0, 0.0]], "above 0"),
+        ([[0.0, 1.0], [1.0, -2.0]], "above 0"),
+        ([[0.0, 1e-9]], "from 1e-8 to 1e8"),
+        ([[0.0, 1e-4], [1.0, 1.1e4]], "at most 1e8 times"),
+        ("gap", "uniform, rising, falling"),
+    ],
+)
+def test_a_section_that_vanishes_or_is_too_uneven_is_refused(table, allowed):
+    with pytest.raises(SettingError, match="section_profile") as refusal:
+        varying(section_profile=table)
+    assert allowed in str(refusal.value)
+    varying(section_profile=[[0.0, 1e-4], [1.0, 1e4]])

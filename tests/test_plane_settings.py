@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from plane import solved
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.discrete.stack.equilibrium import wrench
-from solver.latin import iterations
-from solver.loads import PRESETS, PULLS, load_path
-from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
-from solver.scenes.block import BlockSettings, block
-from solver.scenes.layers import LayersSettings, layers
-from solver.scenes.method import method_of
-from solver.scenes.sides import PRESCRIBED
+from solver.scenes.block import BlockSettings
+from solver.scenes.layers import LayersSettings
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
 SMALL = {"elements": 8, "elements_up": 4, "instants": 11}
@@ -36,14 +28,6 @@ def refusal(kind, **values):
     with pytest.raises(SettingError) as caught:
         kind.checked(values)
     return str(caught.value)
-
-
-@pytest.mark.parametrize("kind", PRESCRIBED)
-@pytest.mark.parametrize("side", ["left", "right", "top"])
-def test_a_side_prescribes_the_components_that_its_kind_says(side, kind):
-    given = BlockSettings.checked({"left": "clamped", side: kind}).side(side)
-    normal, tangential = (given.y, given.x) if side == "top" else (given.x, given.y)
-    assert (normal.prescribed, tangential.prescribed) == PRESCRIBED[kind]
 
 
 @pytest.mark.parametrize(("side", "sign"), [("left", -1.0), ("right", 1.0), ("top", 1.0)])
@@ -73,13 +57,6 @@ def test_only_what_a_side_uses_applies():
     assert not {"left_normal_traction", "left_tangential_displacement"} & applies
     assert not [name for name in applies if name.startswith("right_")]
     assert "start" not in applies
-
-
-def test_a_table_has_its_own_size():
-    table = [[0.0, 0.0], [1.0, -3e-5]]
-    settings = BlockSettings.checked({"top_normal_load": table})
-    assert settings.side("top").y.mean[-1] == -3e-5
-    assert not settings.applies("top_normal_displacement")
 
 
 @pytest.mark.parametrize(
@@ -114,46 +91,6 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
 
 
 @pytest.mark.parametrize(
-    "values",
-    [
-        {**PRESSED, "top_tangential_traction": 1e7},
-        {**PRESSED, "top_tangential_traction": 3e7, "left": "clamped"},
-        {**PRESSED, "top_normal_slope": 2.9},
-        {**DRAGGED, "body_force_x": 4e6, "friction": 1.0},
-        {"top": "free", "body_force_x": 1.0, "body_force_y": -2.0, "friction": 0.6},
-    ],
-)
-def test_loads_that_can_be_held_are_taken(values):
-    BlockSettings.checked(values)
-
-
-@pytest.mark.parametrize("presets", [PRESETS, PULLS])
-def test_waves_vanish_exactly_where_they_end(presets):
-    for name in ("sine", "delayed"):
-        assert load_path(name, np.array([0.0, 3.0]), 3.0, 900.0, 1, presets).tolist() == [0.0, 0.0]
-
-
-def test_the_wrench_is_that_of_forces_at_their_lever_arms():
-    settings = BlockSettings.checked(
-        {
-            **PRESSED,
-            "length": 0.2,
-            "top_normal_slope": 0.6,
-            "left": "traction",
-            "left_normal_traction": -1e6,
-            "left_normal_slope": 0.3,
-            "body_force_y": -1e8,
-        }
-    )
-    x, y, moment = wrench(block(settings))
-    force_top, force_left, weight = -7e7 * 0.2, 1e6 * 0.05, -1e8 * 0.2 * 0.05
-    assert x[-1] == pytest.approx(force_left)
-    assert y[-1] == pytest.approx(force_top + weight)
-    arm_top, arm_left = 0.1 + 0.6 * 0.2 / 6.0, 0.025 + 0.3 * 0.05 / 6.0
-    assert moment[-1] == pytest.approx(force_top * arm_top + weight * 0.1 - force_left * arm_left)
-
-
-@pytest.mark.parametrize(
     ("kind", "values", "name"),
     [
         (BlockSettings, {"substructures": 49}, "substructures"),
@@ -171,67 +108,6 @@ def test_the_wrench_is_that_of_forces_at_their_lever_arms():
 )
 def test_what_does_not_fit_together_is_refused_by_name(kind, values, name):
     assert name in refusal(kind, **values)
-
-
-def test_a_substructure_that_k_does_not_hold_is_refused_in_words():
-    settings = BlockSettings.checked({"elements": 4, "elements_up": 2, "instants": 2})
-    problem = discretise(settings)
-    loose = [
-        replace(part, elasticity=replace(part.elasticity, stiffness=-part.elasticity.stiffness))
-        for part in problem.substructures
-    ]
-    with pytest.raises(RefusedError, match="k_scale"):
-        next(iterations(replace(problem, substructures=tuple(loose)), method_of(settings)))
-
-
-def test_fewer_elements_take_substructures_down_with_them():
-    settings = BlockSettings().with_change("elements", 3)
-    assert (settings.elements, settings.substructures) == (3, 3)
-    settings = settings.with_change("elements_up", 1)
-    assert (settings.elements_up, settings.substructures_up) == (1, 1)
-
-
-def test_normal_and_tangential_search_directions_are_scaled_apart():
-    problem = discretise(LayersSettings.checked(SMALL))
-    plain = method_of(LayersSettings.checked(SMALL)).direction.of(problem)
-    scaled = method_of(
-        LayersSettings.checked({**SMALL, "k_normal_scale": 3.0, "k_friction_scale": 5.0})
-    ).direction.of(problem)
-    factor = np.ones(problem.n_rows)
-    for law in problem.rubbing.values():
-        factor[np.concatenate(law.normal.component.sides)] = 3.0
-        factor[np.concatenate(law.tangent.sides)] = 5.0
-    np.testing.assert_allclose(scaled, factor * plain)
-
-
-def test_the_moment_on_the_layers_has_the_size_that_was_asked_for():
-    settings = LayersSettings.checked({"bending": "moment", "moment": 70.0, "bend_load": "ramp"})
-    scene = layers(settings)
-    right = scene.sides["right"].x
-    extreme = right.slope[-1]
-    assert right.each_body
-    assert -extreme * scene.height**2 / 6.0 * scene.bodies == pytest.approx(70.0)
-
-
-def test_every_degree_of_freedom_carries_a_row_and_free_sides_move():
-    iterate = solved("block", **SMALL, **PRESSED, substructures=2, substructures_up=2)
-    problem = iterate.problem
-    assert set(problem.row_dofs) == set(range(problem.n_dofs))
-    inside = problem.inside
-    moved = inside.displacement(iterate.displacement, [-1])[:, 1, 0]
-    top, bottom = inside.nodes[:, 1] > 0.049, inside.nodes[:, 1] < 0.001
-    assert np.all(moved[top] < moved[bottom])
-
-
-@pytest.mark.parametrize("scene", ["block", "layers"])
-def test_the_default_opens_sticks_and_slips_both_ways(scene):
-    iterate = solved(scene, violation=1e-4)
-    found = {
-        int(status)
-        for name in iterate.problem.rubbing
-        for status in np.unique(iterate.contact(name).status)
-    }
-    assert found == {-1, 0, 1, 2}
 
 
 @pytest.mark.parametrize("scene", ["block", "layers"])

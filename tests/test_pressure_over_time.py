@@ -14,14 +14,12 @@ from solver import Latin, solve
 from solver.discrete.rods.rods import Rods
 from solver.latin import Accuracy, Iterations, Paper
 from solver.reference.choice import reference_of
-from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.contact import IncrementalContact
 from solver.reference.distance import distance_to
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings, bar
-from solver.scenes.strand import strand
 
 STIFFNESS = 659_400.0
 DRAWN = settings(max_examples=25)
@@ -77,16 +75,6 @@ def test_shaken_once_is_shaken_for_good():
     np.testing.assert_allclose(end[first:], end[first], rtol=1e-12)
 
 
-def test_where_the_middle_of_a_bar_slips_there_is_no_closed_form():
-    scene = rod(load="triangle", peak=900.0, pressure_load="loosening")
-    assert closed_form(scene) is None
-    found = reference_of(scene.discretise())
-    at = int(scene.load.argmax()) + 8
-    status = found.status[:, at]
-    assert status[-1] == -1  # from the end, as the load falls
-    assert status[20] == 1  # and on in the middle, as the pressure does
-
-
 @DRAWN
 @given(st.lists(st.floats(-1500.0, 1500.0), min_size=8, max_size=8), FACTORS)
 def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, factors):
@@ -105,7 +93,7 @@ def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, f
 
 @pytest.mark.parametrize("method", [Latin(), Latin(direction=Paper())])
 @pytest.mark.parametrize("law", ["coulomb", "compliant", "slip-dependent"])
-@pytest.mark.parametrize("path", ["loosening", "tightening", "shaken"])
+@pytest.mark.parametrize("path", ["loosening", "shaken"])
 def test_latin_and_both_incremental_solvers_find_the_same(path, law, method):
     values = {"load": "sine", "peak": 700.0, "pressure_load": path, "friction_law": law}
     problem = rod(**values, elements=20, substructures=4, instants=41).discretise()
@@ -118,54 +106,6 @@ def test_latin_and_both_incremental_solvers_find_the_same(path, law, method):
     tight = replace(method, finish=None, stop=Accuracy(1e-3) | Iterations(2000))
     iterate = solve(problem, tight).iterate
     assert distance_to(found, problem).of_friction_force(iterate) < 1e-3
-
-
-@pytest.mark.parametrize("grip", ["force", "displacement"])
-def test_a_strand_is_certified_under_a_pressure_that_changes(grip):
-    own = {"load": "hold", "peak": 250.0, "pressure_load": "shaken", "grip": grip, "pressure": 5e3}
-    problem = discretise(CATALOGUE["strand"].settings.checked(own))
-    found = solve(problem, Latin())
-    assert found.is_certified
-    assert distance_to(reference_of(problem), problem).of_friction_force(found.iterate) < 1e-6
-
-
-def test_the_broken_wire_is_pulled_out_as_the_pressure_falls():
-    own = {"load": "hold", "peak": 250.0, "pressure_load": "loosening", "elements": 200}
-    chosen = CATALOGUE["strand"].settings.checked(own)
-    exact = broken_wire(strand(chosen))
-    assert exact is not None
-    found = reference_of(discretise(chosen))
-    opened = np.ptp(exact.slip[[100, 101]], axis=0)
-    assert np.all(np.diff(opened[26:]) > 0.0)
-    rows = found.displacement
-    wire = rows[201 : 201 + 202]
-    np.testing.assert_allclose(wire[101] - wire[100], opened, atol=5e-3 * opened.max())
-
-
-def test_a_table_whose_instants_are_alike_is_a_bound_that_stays():
-    scene = rod(peak=1100.0, elements=20, substructures=4)
-    same = replace(scene, bound=np.outer(scene.bound, np.ones(101)))
-    for one, other in ((Latin(), Latin()), (Latin(finish=None), Latin(finish=None))):
-        first, second = solve(scene.discretise(), one), solve(same.discretise(), other)
-        assert first.iterate.number == second.iterate.number
-        np.testing.assert_allclose(
-            first.iterate.displacement, second.iterate.displacement, rtol=1e-9, atol=1e-16
-        )
-
-
-def test_a_bound_may_travel_along_the_bar():
-    scene = rod(load="hold", peak=300.0, elements=40, substructures=4)
-    x, t = scene.nodes[:, None], scene.instants
-    moving = replace(scene, bound=1500.0 * (np.abs(x - t) > 0.1))
-    problem = moving.discretise()
-    found = reference_of(problem)
-    free = np.abs(x - t)[1:-1] < 0.08
-    assert np.all(found.contact_force[1:-1][free] == 0.0)
-    solution = solve(problem, Latin())
-    assert solution.is_certified
-    np.testing.assert_allclose(
-        solution.iterate.contact_force, found.contact_force, atol=1e-8 * 300.0
-    )
 
 
 def test_foolish_pressures_are_refused_in_words():

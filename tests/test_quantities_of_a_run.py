@@ -1,10 +1,12 @@
-"""Quantities of a run are what closed forms say, and say so where a run has none."""
+"""Quantities of a run and of the cycles of its load are what closed forms say."""
 
 from __future__ import annotations
 
 import functools
 import math
+import tomllib
 from itertools import islice
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +16,10 @@ from solver.latin import Solution, iterations
 from solver.latin.criteria.status import CANCELLED
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.quantities.cycles import turning_points
+from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities.shakedown import fate_of
 
 STIFFNESS, BOUND = 210e9 * 3.14e-6, 1500.0
 SMALL = {"elements": 20, "instants": 21, "substructures": 2}
@@ -44,31 +47,6 @@ def test_the_end_of_the_bar_moves_as_the_closed_form_says(peak: float) -> None:
     assert taken("end_displacement", run) == pytest.approx(exact, rel=1e-6)
     assert taken("peak_displacement", run) == pytest.approx(exact, rel=1e-6)
     assert taken("peak_slip", run) == pytest.approx(exact, rel=1e-6)
-
-
-@pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])
-def test_a_full_cycle_of_the_bar_dissipates_what_the_closed_form_says(peak: float) -> None:
-    run = ran("bar", load="cycle", peak=peak, instants=41)
-    exact = 2.0 * peak**3 / (3.0 * STIFFNESS * BOUND)
-    assert taken("dissipation@1", run) == pytest.approx(exact, rel=2e-3)
-    # The first pull takes a quarter of a full cycle: a front half as long, over half the way.
-    assert taken("dissipation", run) == pytest.approx(1.25 * exact, rel=2e-3)
-
-
-def test_the_energy_of_a_cycle_converges_with_the_mesh() -> None:
-    exact = 2.0 * 900.0**3 / (3.0 * STIFFNESS * BOUND)
-    errors = [
-        abs(taken("dissipation@1", ran("bar", load="cycle", elements=n, instants=21)) / exact - 1.0)
-        for n in (25, 50, 100)
-    ]
-    assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2]
-
-
-def test_unloading_and_loading_again_is_a_cycle_of_half_the_amplitude() -> None:
-    """Masing's rule."""
-    run = ran("bar", load=((0.0, 0.0), (1.0, 900.0), (2.0, 0.0), (3.0, 900.0)), duration=3.0)
-    exact = 2.0 * 450.0**3 / (3.0 * STIFFNESS * BOUND)
-    assert taken("dissipation@1", run) == pytest.approx(exact, rel=0.02)
 
 
 def test_unloading_the_bar_leaves_half_of_its_displacement() -> None:
@@ -123,12 +101,6 @@ def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
     assert found == pytest.approx(exact, rel=1e-9, nan_ok=True)
 
 
-def test_a_wire_that_never_regains_its_force_says_so() -> None:
-    run = ran("strand", load="ramp", grip="displacement", friction=0.03, peak=2000.0, instants=11)
-    assert taken("recovery_length", run) == math.inf
-    assert math.isnan(taken("recovery_length", ran("strand", broken=0, instants=11)))
-
-
 def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     run = ran(
         "bar", errors=True, method="paper", max_iterations=40, **{**SMALL, "substructures": 5}
@@ -141,12 +113,6 @@ def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     assert taken("iterations_to_displacement@1e-12", run) == math.inf
     assert math.isnan(taken("error_force@41", run))
     assert taken("iterations", run) == 40
-
-
-def test_a_run_without_errors_has_none() -> None:
-    run = ran("bar", **SMALL)
-    for text in ("iterations_to_force@0.1", "seconds_to_displacement@0.1", "error_force"):
-        assert math.isnan(taken(text, run)), text
 
 
 def test_more_instants_take_more_memory_and_a_field_of_them_is_the_least_of_it() -> None:
@@ -168,13 +134,6 @@ def test_modes_are_those_of_the_largest_basis_and_a_smooth_field_needs_fewer() -
     assert displacement == sorted(displacement)
     assert force == sorted(force)
     assert displacement[1] < force[1] <= 21
-
-
-def test_a_pressed_block_carries_what_presses_it() -> None:
-    pressed = {"gap": "flat", "top": "traction", "top_normal_traction": -1e7}
-    run = ran("block", **pressed, **SMALL_BLOCK)
-    assert taken("peak_pressing", run) == pytest.approx(1e7 * 0.1, rel=1e-6)
-    assert math.isnan(taken("peak_pressing", ran("bar", **SMALL)))
 
 
 def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() -> None:
@@ -206,55 +165,6 @@ def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
     assert math.isnan(taken("stiffness", run))
 
 
-def test_compliant_friction_dissipates_by_slip_alone() -> None:
-    """Below the bound the contact gives way, and gives back all that it took."""
-    run = ran("bar", friction_law="compliant", contact_stiffness=1.0, peak=100.0, **SMALL)
-    assert taken("slipped_share", run) == 0.0
-    size = 100.0 * taken("peak_displacement", run)
-    assert abs(taken("dissipation", run)) < 1e-12 * size
-
-
-def test_a_loop_over_an_angle_has_no_displacement() -> None:
-    run = ran("incline", elements=6, elements_up=4, instants=9, substructures=1)
-    for name in ("end_displacement", "residual_displacement", "first_slip_displacement"):
-        assert math.isnan(taken(name, run)), name
-
-
-@pytest.mark.parametrize(
-    ("path", "turns"),
-    [
-        ([0, 1, 2, 1, 0], [2]),
-        ([0, -1, -2, -1, 0], [2]),
-        ([0, 1, 0, -1, 0, 1], [1, 3, 5]),
-        ([0, 1, 0, -1, 0, 0.5], [1, 3]),
-        ([0, 1, 1, 0, 0, 1, 1, 0], [1, 3, 5, 7]),
-        ([0, 0.5, 0.49, 1, 0], [3]),
-        ([0, 0, 0], []),
-    ],
-)
-def test_turning_points_are_where_a_path_turns_back(path: list[float], turns: list[int]) -> None:
-    assert turning_points(np.array(path, dtype=float)) == turns
-
-
-def test_there_are_no_cycles_beyond_those_of_the_load() -> None:
-    run = ran("bar", load="cycle", peak=900.0, instants=41)
-    assert math.isnan(taken("dissipation@2", run))
-
-
-def test_every_quantity_can_be_taken_of_every_scene() -> None:
-    for scene in CATALOGUE:
-        run = ran(
-            scene, errors=True, **(SMALL_BLOCK if CATALOGUE[scene].kind == "plane" else SMALL)
-        )
-        for name, quantity in QUANTITIES.items():
-            if name == "memory" and scene != "bar":  # it takes a process of its own
-                continue
-            needed = quantity.parameter is not None and quantity.parameter.needed
-            found = reading(f"{name}@0.1" if needed else name)
-            assert isinstance(found(run), int | float), name
-            assert found.title
-
-
 @pytest.mark.parametrize(
     ("scene", "changes"),
     [
@@ -282,13 +192,10 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
             assert not math.isnan(value), name
 
 
-@pytest.mark.parametrize("method", ["fast", "paper"])
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(
-    scene: str, method: str
-) -> None:
+def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(scene: str) -> None:
     """Also at iterates on the way, such as one at which nothing touches yet."""
-    settings = CATALOGUE[scene].settings.checked({"method": method})
+    settings = CATALOGUE[scene].settings.checked({"method": "paper"})
     for iterate in islice(iterations(discretise(settings), method_of(settings)), 2):
         run = FinishedRun(settings, Solution(iterate, [], CANCELLED), has_errors=False)
         for values in (run.displacement, run.force):
@@ -296,7 +203,153 @@ def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(
             assert sizes.min(initial=1e300) > 1e-12 * sizes.max(initial=0.0)
 
 
-def test_a_broken_strand_and_a_wire_that_comes_back_leave_no_residue() -> None:
-    run = finished_run(CATALOGUE["strand"].settings.checked({}), errors=False, indicators=False)
-    assert taken("holding_friction", run) == 0.0
-    assert taken("ratchet", run) == 0.0
+TIMES = {"load": "cycles", "instants": 161}
+LESSON = Path(__file__).parents[1] / "app/lessons/shakedown.toml"
+ROCKED = {
+    "gap": "flat",
+    "elements": 16,
+    "elements_up": 8,
+    "substructures": 1,
+    "instants": 121,
+    "top": "traction",
+    "body_force_y": -2e8,
+    "top_normal_traction": -1e6,
+    "top_normal_load": "cycles",
+    "top_tangential_load": "hold",
+}
+"""A block that its weight holds down, rocked from above."""
+
+
+def cut(run: FinishedRun) -> LoadCycles:
+    return cycles_of(run.settings, run.iterate)
+
+
+def of(slip: list[list[float]], net: list[list[float]] | None = None, **more: Any) -> LoadCycles:
+    """Make cycles of points whose slip, and what is left of it, is given."""
+    slips = np.array(slip, dtype=float)
+    values = {
+        "ends": list(range(slips.shape[1] + 1)),
+        "energy": slips.sum(axis=0),
+        "slip": slips,
+        "net": np.zeros_like(slips) if net is None else np.array(net, dtype=float),
+        "work": slips,
+        "before": np.ones(len(slips)),
+        "is_repeated": True,
+    }
+    return LoadCycles(**{**values, **more})
+
+
+def word(cycles: LoadCycles) -> str | None:
+    fate = fate_of(cycles)
+    return None if fate is None else fate.word
+
+
+@pytest.mark.parametrize(
+    ("slip", "said"),
+    [
+        ([[2, 1, 0, 0]], "elastic shakedown"),
+        ([[2, 1, 0.5]], "shakedown with slip that dies"),
+        ([[8, 4, 1]], "shakedown with slip that dies"),
+        ([[2, 2, 2]], "steady slip"),
+        ([[9, 2, 2, 2]], "steady slip"),
+        # It falls, but to what it will not fall below; or too slowly to tell.
+        ([[2, 1.5, 1.25]], None),
+        ([[1, 0.97, 0.941]], None),
+        ([[1, 2, 3]], None),
+        ([[2, 2]], None),
+        # Each point for itself: what is largest says nothing of where.
+        ([[2, 1, 2], [1, 2, 1]], None),
+    ],
+)
+def test_slip_is_called_what_it_has_been_for_three_cycles(
+    slip: list[list[float]], said: str | None
+) -> None:
+    assert word(of(slip)) == said
+
+
+@pytest.mark.parametrize(
+    ("net", "said"),
+    [
+        ([1, 1, 1], "ratcheting"),
+        ([-1, -1, -1], "ratcheting"),
+        ([1, 0.1, 0.01], "steady slip"),
+        ([1, -1, 1], "steady slip"),
+        ([1, 0.8, 0.6], "steady slip"),
+    ],
+)
+def test_only_what_goes_on_one_way_ratchets(net: list[float], said: str) -> None:
+    fate = fate_of(of([[2, 2, 2]], [net]))
+    assert fate is not None
+    assert (fate.word, fate.net) == (said, net[-1])
+
+
+def test_nothing_is_said_of_what_never_slips_or_of_cycles_that_differ() -> None:
+    still = of([[0, 0, 0]])
+    assert word(still) == "elastic shakedown"
+    assert word(of([[0, 0, 0]], before=np.zeros(1))) is None
+    assert word(of([[2, 2, 2]], is_repeated=False)) is None
+
+
+@pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])
+def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> None:
+    run = ran("bar", peak=peak, **TIMES)
+    cycles = cut(run)
+    exact = 2.0 * peak**3 / (3.0 * STIFFNESS * BOUND)
+    np.testing.assert_allclose(cycles.energy, exact, rtol=3e-3)
+    assert [reading(f"dissipation@{n}")(run) for n in range(1, 6)] == pytest.approx(cycles.energy)
+    assert math.isnan(reading("dissipation@6")(run))
+    # The end moves by u to one side and the other, and so twice to and fro.
+    assert cycles.slip[-1] == pytest.approx(4.0 * peak**2 / (2.0 * STIFFNESS * BOUND), rel=1e-6)
+
+
+def lesson(**changes: Any) -> FinishedRun:
+    settings = tomllib.loads(LESSON.read_text(encoding="utf-8"))["settings"]
+    frozen = {name: _frozen(value) for name, value in settings.items()}
+    return ran("block", **{**frozen, **changes})
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(tuple(one) for one in value) if isinstance(value, list) else value
+
+
+def test_the_lesson_on_shakedown_shows_slip_that_dies_and_slip_that_does_not() -> None:
+    dying, steady = fate_of(cut(lesson())), fate_of(cut(lesson(friction=0.15)))
+    assert dying is not None
+    assert steady is not None
+    assert (dying.word, steady.word) == ("shakedown with slip that dies", "steady slip")
+    assert dying.ratio < 0.9 < 0.99 < steady.ratio < 1.01
+    assert fate_of(cut(lesson(friction=0.6))) is None
+
+
+def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
+    """Below its friction at every instant, and yet farther in each cycle, at all points alike."""
+    moved = []
+    for shear in (2e6, -2e6):
+        run = ran(
+            "block",
+            **ROCKED,
+            top_normal_slope=math.copysign(10.0, shear),
+            top_tangential_traction=shear,
+        )
+        cycles = cut(run)
+        assert word(cycles) == "ratcheting"
+        assert np.ptp(cycles.net[:, -1]) < 0.3 * np.abs(cycles.net[:, -1]).max()
+        moved.append(cycles.net[:, -1])
+    assert moved[0].min() > 0.0
+    np.testing.assert_allclose(moved[1], -moved[0][::-1], rtol=1e-6)
+    assert reading("ratchet")(run) == np.abs(moved[1]).max()
+
+
+COMES_BACK = {"fault": {"injection_load": "pulses"}}
+"""Of scenes whose usual load does not, one that does."""
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
+    """One more of the preset is always so many cycles more of the load."""
+    settings = CATALOGUE[scene].settings
+    values = {"instants": 401, **COMES_BACK.get(scene, {})}
+    counted = [cycles_in(settings.checked({**values, "cycles": n})) for n in (2, 3, 9)]
+    more = counted[1] - counted[0]
+    assert more >= 1
+    assert counted[2] == counted[0] + 7 * more

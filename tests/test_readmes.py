@@ -1,12 +1,13 @@
-"""The papers are in their drawers: what they point to is there, and so is what the code cites."""
+"""What the papers point to is there, and what they promise is tested."""
 
 from __future__ import annotations
 
 import re
-import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
 from solver.cli import main
 
@@ -18,10 +19,6 @@ SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
 METHOD = ROOT / "solver" / "latin" / "README.md"
 READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
-LONGEST = 160
-"""Lines of the first page."""
-NEVER_THERE = "theory" + ".md"
-SOURCES = [path for folder in ("solver", "app", "tests") for path in (ROOT / folder).rglob("*.py")]
 
 
 def words(path: Path) -> str:
@@ -43,10 +40,6 @@ def paths_in(readme: Path) -> set[str]:
     text = re.sub(r"https?://\S+|`NAME[^`]*`", "", readme.read_text(encoding="utf-8"))
     files = re.findall(r"(?<![\w/.])[\w./-]+\.(?:py|md|png|svg|css)\b", text)
     return {*files, *re.findall(r"`([\w./-]+/)`", text)}
-
-
-def test_the_first_page_is_short() -> None:
-    assert len(FRONT.read_text(encoding="utf-8").splitlines()) <= LONGEST
 
 
 @pytest.mark.parametrize("readme", READMES, ids=NAMES)
@@ -77,16 +70,6 @@ def test_every_link_leads_somewhere(readme: Path) -> None:
         assert not place or place in map(anchor, headings(page)), target
 
 
-def test_the_map_names_every_folder_of_the_code() -> None:
-    folders = {f"{path.parent.relative_to(ROOT)}/" for path in SOURCES}
-    rooms = {
-        f"{readme.parent.relative_to(ROOT)}/{name}"
-        for readme in (PAGE, MATHEMATICS, METHOD)
-        for name in paths_in(readme)
-    }
-    assert folders <= paths_in(FRONT) | rooms
-
-
 @pytest.mark.parametrize("readme", READMES, ids=NAMES)
 def test_every_command_that_is_named_is_one(
     readme: Path, capsys: pytest.CaptureFixture[str]
@@ -98,24 +81,26 @@ def test_every_command_that_is_named_is_one(
     assert set(re.findall(r"python -m solver (\w+)", words(readme))) <= known
 
 
-def test_every_section_that_is_cited_exists() -> None:
-    numbers = {heading.partition(" ")[0].rstrip(".") for heading in headings(MATHEMATICS)}
-    cited = {
-        (path.name, number)
-        for path in SOURCES
-        for number in re.findall(r"solver/README\.md, (\d+(?:\.\d+)*)", words(path))
-    }
-    assert len(cited) > 20
-    assert {number for _, number in cited} <= numbers, sorted(cited)
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROMISED = [
+    line.rpartition(" :: ")[2]
+    for line in PROJECT["project"]["classifiers"]
+    if re.fullmatch(r"Programming Language :: Python :: 3\.\d+", line)
+]
 
 
-def test_nothing_is_cited_that_is_not_here() -> None:
-    listed = subprocess.run(
-        ["git", "-c", "safe.directory=*", "ls-files"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.split("\n")
-    texts = [ROOT / name for name in listed if name and not name.endswith(".png")]
-    assert not [path for path in texts if path.exists() and NEVER_THERE in words(path)]
+def minor(version: str) -> int:
+    return int(version.split(".")[1])
+
+
+def test_what_may_be_installed_is_what_is_promised() -> None:
+    allowed = SpecifierSet(PROJECT["project"]["requires-python"])
+    minors = sorted(map(minor, PROMISED))
+    assert minors == list(range(minors[0], minors[-1] + 1))
+    assert all(f"3.{number}" in allowed for number in minors)
+    assert f"3.{minors[0] - 1}.99" not in allowed
+
+
+def test_the_container_has_one_of_them() -> None:
+    (version,) = re.findall(r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M)
+    assert version in PROMISED

@@ -1,21 +1,41 @@
-"""A run ends where it should, resumes to the bit, and its iterates are snapshots."""
+"""A run starts, ends and resumes as it should, alike by threads, and refuses what it cannot do."""
 
 from __future__ import annotations
 
 import dataclasses
 import importlib
+import math
+from collections.abc import Callable
 from dataclasses import replace
-from itertools import islice, pairwise
+from itertools import islice
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options, sample
 
-from solver.latin import Checkpoint, Ending, iterations, solve
+from solver.latin import (
+    PGD,
+    Accuracy,
+    Anderson,
+    Auto,
+    Checkpoint,
+    Ending,
+    Indicator,
+    Iterations,
+    Latin,
+    Paper,
+    iterations,
+    solve,
+)
+from solver.latin.blocks import Blocks
+from solver.latin.linear import coarse, response
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
-from solver.scenes import discretise
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
 
@@ -61,29 +81,6 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
     assert solution.records[-1].error_force < 1e-8
 
 
-def test_started_where_it_ended_the_run_stops_at_once():
-    chosen = options(**SMALL)
-    problem = discretise(chosen)
-    ended = solve(problem, method_of(chosen)).iterate
-    again = solve(problem, method_of(chosen), start=ended.checkpoint)
-    assert again.status.ending is Ending.CONVERGED
-    assert again.iterate.number == ended.number + 1
-    assert again.iterate.seconds > ended.seconds
-
-
-def test_a_run_that_nobody_resumes_keeps_nothing_for_it_and_says_so():
-    chosen = options(**SMALL, acceleration="anderson")
-    problem = discretise(chosen)
-    kept, light = (
-        list(islice(iterations(problem, method_of(chosen), resumable=resumable), 6))[-1]
-        for resumable in (True, False)
-    )
-    assert np.array_equal(kept.outgoing, light.outgoing)
-    assert kept.checkpoint.history
-    with pytest.raises(ValueError, match="resumable"):
-        _ = light.checkpoint
-
-
 @pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 500.0}], ids=str)
 @pytest.mark.parametrize("elements", [30, 32])
 def test_resuming_from_a_checkpoint_continues_bit_by_bit(change, elements):
@@ -126,23 +123,6 @@ def test_iterates_are_read_only():
         iterate.checkpoint.outgoing[0, 0] = 1.0
 
 
-def test_iterates_stay_as_they_are_when_the_iteration_goes_on():
-    chosen = options(**SMALL)
-    problem = discretise(chosen)
-    kept, copies = [], []
-    for iterate in islice(iterations(problem, method_of(chosen)), 6):
-        kept.append(iterate)
-        copies.append(
-            [iterate.outgoing.copy(), iterate.incoming.copy(), iterate.local_displacement.copy()]
-        )
-    for iterate, copy in zip(kept, copies, strict=True):
-        fields = [iterate.outgoing, iterate.incoming, iterate.local_displacement]
-        assert all(np.array_equal(one, other) for one, other in zip(fields, copy, strict=True))
-    for before, after in pairwise(kept):
-        assert np.array_equal(before.incoming, after.local_incoming)
-        assert not np.array_equal(before.outgoing, after.outgoing)
-
-
 def test_a_cancelled_and_an_exhausted_run_keep_their_last_iterate():
     chosen = options(**SMALL)
     problem = discretise(chosen)
@@ -167,3 +147,61 @@ def test_a_run_whose_numbers_overflow_says_where_and_keeps_the_last_good_iterate
         solution = solve(problem, method_of(chosen), start=huge)
     assert solution.status.ending is Ending.DIVERGED
     assert "at iteration 2" in solution.status.advice
+
+
+LARGE = {
+    "block": {"elements": 192, "elements_up": 96, "substructures": 8, "substructures_up": 4},
+    "layers": {"elements": 192, "elements_up": 16, "substructures": 8, "search_direction": "paper"},
+    "bar": {"elements": 2000, "acceleration": "anderson"},
+    "strand": {"elements": 800},
+}
+
+
+@pytest.mark.parametrize("scene", LARGE)
+def test_iterates_are_the_same_to_the_bit_whatever_the_threads(scene):
+    settings = CATALOGUE[scene].settings.checked(LARGE[scene])
+    problem = discretise(settings)
+    assert len(Blocks(problem.n_rows, problem.n_instants).slices) > 1
+    one, several = (
+        next(islice(iterations(problem, method_of(settings.replace(threads=threads))), 8, None))
+        for threads in (1, 3)
+    )
+    assert np.array_equal(one.outgoing, several.outgoing)
+    assert np.array_equal(one.local_displacement, several.local_displacement)
+
+
+SMALL_BAR = {"elements": 20, "instants": 11, "substructures": 4, "search_direction": "paper"}
+
+
+def singular(*arguments: Any, **options: Any) -> Any:
+    raise RuntimeError("Factor is exactly singular")
+
+
+@pytest.mark.parametrize("module", [response, coarse], ids=["substructure", "coarse problem"])
+def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
+    module: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = BarSettings.checked(SMALL_BAR)
+    monkeypatch.setattr(module, "splu", singular)
+    with pytest.raises(RefusedError, match="k_scale"):
+        next(iterations(discretise(settings), method_of(settings)))
+
+
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda: Auto(scale=0.0), "Auto.scale"),
+        (lambda: Paper(along=-1.0), "Paper.along"),
+        (lambda: PGD(modes=0), "PGD.modes"),
+        (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
+        (lambda: Anderson(memory=0), "Anderson.memory"),
+        (lambda: Accuracy(0.0), "Accuracy.share"),
+        (lambda: Indicator(-1.0), "Indicator.eta"),
+        (lambda: Iterations(0), "Iterations.most"),
+        (lambda: Latin(relaxation=1.5), "Latin.relaxation"),
+        (lambda: Latin(threads=0), "Latin.threads"),
+    ],
+)
+def test_a_part_refuses_its_own_numbers(make: Callable[[], object], name: str) -> None:
+    with pytest.raises(RefusedError, match=rf"^{name} = .* is refused; allowed: a number"):
+        make()

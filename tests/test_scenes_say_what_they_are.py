@@ -4,16 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from solver.scenes import CATALOGUE, words_of
-from solver.scenes.words import acting, counted
-
-LONGEST = 140
-"""Letters that a line has room for across a page of 1280 pixels, beside its controls."""
 
 
 def words(scene: str, changes: dict[str, Any]) -> str:
@@ -44,21 +37,3 @@ def words(scene: str, changes: dict[str, Any]) -> str:
 )
 def test_a_scene_says_what_it_is(scene: str, changes: dict[str, Any], said: str) -> None:
     assert said in words(scene, changes)
-
-
-@pytest.mark.parametrize("scene", list(CATALOGUE))
-def test_by_default_it_is_one_line(scene: str) -> None:
-    assert len(words(scene, {})) <= LONGEST
-
-
-@given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=30))
-def test_what_is_done_is_done_by_a_load_of_that_sign(path: list[float]) -> None:
-    said = acting(np.array(path), "pulled", "pushed")
-    assert ("to and fro" in said) == (min(path) < 0.0 < max(path))
-    assert ("pushed" in said) == (min(path) < 0.0 >= max(path))
-    assert said.startswith("not") == (not any(path))
-
-
-def test_few_are_counted_in_words() -> None:
-    assert counted(2) == "two"
-    assert counted(20) == "20"

@@ -12,12 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.arrays import Array
-from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.slip_space import (
     MOST_POINTS,
-    SlipSpace,
     largest_swing,
     slip_space,
 )
@@ -25,7 +22,6 @@ from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import ends_of
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantities import QUANTITIES, reading
-from solver.study.quantities.slips import slips_of
 
 N_CYCLES = 4
 LOADS = {"layers": "bend_load", "block": "top_tangential_load"}
@@ -35,11 +31,6 @@ FREE = {
     **MESH,
     **{"gap": "flat", "elements": 12, "elements_up": 6, "friction": 0.2},
     **{"top": "traction", "top_normal_load": ((0.0, -1e8),)},
-}
-ROLLER = {
-    **MESH,
-    **{"gap": "flat", "elements": 8, "elements_up": 4, "friction": 1.0, "left": "roller"},
-    **{"top": "traction", "top_normal_load": ((0.0, -1e7),), "top_normal_slope": 0.5},
 }
 
 
@@ -74,13 +65,6 @@ def goes_on(run: FinishedRun) -> bool:
     return bool((run.iterate.status[:, last(run)][:, 1:] != 0).any())
 
 
-def forces(run: FinishedRun) -> tuple[Array, Array]:
-    """Give pressing and friction forces of the only interface, shape (n_points, n_instants)."""
-    (name,) = run.problem.rubbing
-    contact = run.iterate.contact(name)
-    return contact.normal_force, contact.tangential_force
-
-
 SMALL = 1e-4
 """Deflection, m, under which the two layers stick wherever they do so at all."""
 
@@ -95,17 +79,6 @@ def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_a
         run = ran("layers", TWINS, share * swing, first * swing)
         assert goes_on(run) == expected, share
         assert first == 0.0 or np.abs(run.iterate.status[:, : last(run).start]).any()
-
-
-def test_the_limit_of_two_equal_layers_is_where_a_point_is_pulled_by_twice_its_friction() -> None:
-    """The dual, of forces that a run without any slip has."""
-    run = ran("layers", {**TWINS, "friction": 10.0}, SMALL)
-    assert not goes_on(run)
-    pressing, friction = (one[:, last(run)] for one in forces(run))
-    swing = np.ptp(friction, axis=1)
-    mu = CATALOGUE["layers"].settings.checked({}).friction
-    most = 2.0 * mu * pressing.min(axis=1)[swing > 0.0] / swing[swing > 0.0]
-    assert factor(ran("layers", TWINS, SMALL)) == pytest.approx(most.min(), rel=1e-5)
 
 
 SHEAR, PUSH = 1.2e7, 1.7e7
@@ -125,83 +98,6 @@ def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> No
     swing = SHEAR * factor(ran("block", FREE, SHEAR))
     assert not goes_on(ran("block", FREE, 0.99 * swing))
     assert goes_on(ran("block", FREE, 0.99 * swing, PUSH))
-
-
-@pytest.mark.parametrize(("share", "energy"), [(0.95, 0.0), (0.98, 7.59e-3), (1.01, 5.56e-2)])
-def test_a_block_pressed_by_displacement_slips_for_ever_from_rest_a_little_below_the_limit(
-    share: float, energy: float
-) -> None:
-    """The factor bounds what may cease; from this start slip does up to 0.975 of it."""
-    given = {"gap": "flat", "elements": 12, "elements_up": 6, "friction": 0.2, "cycles": 5}
-    settings = CATALOGUE["block"].settings.checked({**given, "instants": 161})
-    limit = reading("shakedown_factor")(finished_run(settings, errors=False, indicators=False))
-    swing = share * limit * settings.top_tangential_displacement
-    run = finished_run(
-        settings.replace(top_tangential_displacement=swing), errors=False, indicators=False
-    )
-    taken = [reading(f"dissipation@{cycle}")(run) for cycle in (2, 4)]
-    assert taken == pytest.approx([energy, energy], rel=1e-2, abs=1e-6)
-
-
-def test_how_the_pressing_begins_is_no_part_of_the_factor() -> None:
-    """Only the last cycle counts: a push before it changes nothing of what could stay."""
-    pushed, not_pushed = (factor(ran("block", FREE, SHEAR, first)) for first in (PUSH, 0.0))
-    assert pushed == pytest.approx(not_pushed, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("scene", "given", "swing"),
-    [("layers", TWINS, 4e-3), ("block", FREE, SHEAR), ("block", ROLLER, 1e6)],
-)
-def test_the_planes_are_where_the_forces_of_a_run_come_to_their_bounds(
-    scene: str, given: dict[str, Any], swing: float
-) -> None:
-    """With closed contacts A w - b is what friction, either way, is beyond its bound."""
-    run = ran(scene, given, swing, 1.4 * swing)
-    space, some = slip_space(run.problem), slice(16, None)
-    ((law, slip, _),) = slips_of(run.iterate)
-    pressing, friction = forces(run)
-    assert not np.any(run.iterate.status[:, some] == OPEN)
-    moves = len(law.positions) - space.matrix.shape[1]
-    moved = np.cumsum(law.mean_by_point(slip), axis=1)[moves:]
-    beyond = space.matrix @ moved - space.limit
-    mu = run.settings.values()["friction"]
-    bound, held = mu * pressing[moves:], friction[moves:]
-    expected = np.concatenate([held - bound, -held - bound, -pressing[:moves]])
-    if scene == "layers":
-        expected, beyond = (one[: 2 * len(held)] for one in (expected, beyond))
-    slack = 1e-6 * np.abs(expected).max()
-    np.testing.assert_allclose(beyond[:, some], expected[:, some], atol=slack)
-
-
-def test_a_corner_that_only_presses_ends_the_swing_where_it_opens() -> None:
-    """A side on rollers holds it, so that no friction tells that it opens."""
-    run = ran("block", ROLLER, 1e6)
-    space = slip_space(run.problem)
-    rubbing = 2 * space.matrix.shape[1]
-    assert len(space.matrix) == rubbing + 1
-    without = SlipSpace(space.matrix[:rubbing], space.limit[:rubbing])
-    assert largest_swing(without, last(run))[0] > 1.03 * factor(run)
-    for first in (0.0, 5e6, -5e6):
-        beyond = ran("block", ROLLER, 1.01e6 * factor(run), first)
-        assert (beyond.iterate.status[0, last(beyond)] == OPEN).any()
-
-
-@pytest.mark.parametrize("given", [FREE, ROLLER, {**FREE, "friction": 0.6}])
-def test_with_the_slip_that_is_found_all_contacts_press_at_all_instants(
-    given: dict[str, Any],
-) -> None:
-    """Two planes of a point, added up, are its pressing force, within rounding."""
-    run = ran("block", given, 1e6)
-    space = slip_space(run.problem)
-    found, slip = largest_swing(space, last(run))
-    limit = space.limit[:, last(run)]
-    mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)[:, None]
-    room = mean + found * (limit - mean) - (space.matrix @ slip)[:, None]
-    count = space.matrix.shape[1]
-    pressing = np.concatenate([room[:count] + room[count : 2 * count], room[2 * count :]])
-    assert pressing.min() >= -1e-6 * np.abs(limit).max()
-    assert np.abs(room.min()) <= 1e-6 * np.abs(limit).max()
 
 
 @pytest.mark.parametrize(
@@ -224,19 +120,6 @@ def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> N
 def last_of(settings: Any) -> slice:
     ends = ends_of(settings)
     return slice(ends[-2], ends[-1] + 1)
-
-
-def test_a_fault_whose_strength_alone_is_driven_has_no_factor_on_a_load() -> None:
-    fault = {
-        "elements": 8,
-        "elements_up": 4,
-        "instants": 81,
-        "cycles": 3,
-        "injection_load": "pulses",
-    }
-    settings = CATALOGUE["fault"].settings.checked(fault)
-    assert QUANTITIES["ratchet"].applies(settings)
-    assert not QUANTITIES["shakedown_factor"].applies(settings)
 
 
 def test_a_spring_that_catches_a_block_and_too_many_points_are_refused() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,7 @@ import pytest
 
 from solver.cli import main
 from solver.discrete.problem import Problem
-from solver.discrete.slab import slab_of
 from solver.latin import (
-    PGD,
     Accuracy,
     Ending,
     FromStatus,
@@ -22,13 +19,10 @@ from solver.latin import (
     Iterations,
     Latin,
     Seconds,
-    iterations,
     solve,
 )
 from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
-from solver.laws.play import play
-from solver.reference.choice import incremental_solver, reference_of
-from solver.reference.condensation import NoReferenceError
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
@@ -104,51 +98,6 @@ def test_what_repeats_itself_takes_one_iteration() -> None:
     assert distance.of_friction_force(whole.iterate) < 0.01
 
 
-def test_sliders_of_one_point_begin_together() -> None:
-    """Pairs on both sides of a cut could not stick together, if they began apart."""
-    problem = cyclic("block", 2)
-    slab = first_slab(problem, ROUGH, CYCLE)
-    *_, found = islice(iterations(slab.problem, slab.latin), 5)
-    later = next_slab(problem, slab, found, CYCLE)
-    assert later is not None
-    law = later.problem.friction
-    last = law.tangential.slider(found.local_displacement, None)[:, -1]
-    assert not np.array_equal(law.mean_by_point(last)[law.points], last)
-    start = law.tangential.start
-    assert start is not None
-    assert np.array_equal(law.mean_by_point(start)[law.points], start)
-
-
-def test_bases_are_those_of_the_slab_before() -> None:
-    problem = cyclic("bar", 3)
-    method = replace(TIGHT, linear=PGD(modes=6), stop=Iterations(5))
-    slab = first_slab(problem, method, CYCLE)
-    *_, found = islice(iterations(slab.problem, slab.latin), 5)
-    later = next_slab(problem, slab, found, CYCLE)
-    assert later is not None
-    assert later.start is not None
-    assert later.start.reduction is not None
-    for own, before in zip(later.start.reduction.modes, found.bases, strict=True):
-        assert np.array_equal(own.outgoing, before.outgoing)
-        assert np.array_equal(own.time_functions, before.time_functions[:, -CYCLE:])
-    goes_on = next(iterations(later.problem, later.latin, later.start))
-    assert goes_on.displacement.shape == (problem.n_dofs, CYCLE)
-
-
-def test_factors_are_made_once() -> None:
-    problem = cyclic("block", 2)
-    slab = first_slab(problem, TIGHT, CYCLE)
-    found = next(iterations(slab.problem, slab.latin))
-    later = next_slab(problem, slab, found, CYCLE)
-    assert later is not None
-    shared = slab.latin.linear.responses
-    assert shared is not None
-    assert later.latin.linear.responses is shared
-    part = problem.substructures[0]
-    first = shared.of(part.elasticity, found.k[part.rows])
-    assert shared.of(part.elasticity, found.k[part.rows]) is first
-
-
 def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     problem = cyclic("block", 3)
     distance = distance_to(reference_of(problem), problem)
@@ -165,12 +114,6 @@ def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     assert ended.iterate.displacement.shape == (problem.n_dofs, problem.n_instants)
 
 
-def test_a_slab_of_all_instants_is_the_whole_run() -> None:
-    problem = cyclic("bar")
-    found = solve_in_slabs(problem, Latin(), problem.n_instants)
-    assert found.is_certified
-
-
 def test_the_command_solves_in_slabs(capsys: pytest.CaptureFixture[str], tmp_path: Any) -> None:
     asked = ["run", "bar", "--set", "load=cycles", "--set", "elements=20", "--set", "instants=33"]
     out = tmp_path / "result.npz"
@@ -180,21 +123,6 @@ def test_the_command_solves_in_slabs(capsys: pytest.CaptureFixture[str], tmp_pat
     assert np.load(out)["displacement"].shape[1] == 33
     assert main([*asked, "--slab", "0"]) == 2
     assert "slab = 0 is refused" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("points", [3, 200])
-def test_a_play_goes_on_where_it_stood(points: int) -> None:
-    draw = np.random.default_rng(0)
-    target, reach = draw.normal(size=(points, 30)), draw.uniform(0.1, 1.0, points)
-    whole = play(target, reach)
-    assert np.array_equal(play(target[:, 11:], reach, whole[:, 10]), whole[:, 11:])
-
-
-def test_incremental_solvers_do_not_go_on() -> None:
-    problem = cyclic("bar", 2)
-    later = slab_of(problem, slice(5, 9), {name: np.zeros(21 + 3) for name in problem.rubbing})
-    with pytest.raises(NoReferenceError):
-        incremental_solver(later)
 
 
 @pytest.mark.parametrize(

@@ -7,16 +7,13 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from contact_problems import block
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
-from solver.reference.distance import distance_to, held_instants
-from solver.reference.glued import jumps
-from solver.reference.self_stress import base_of
+from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings
 from solver.scenes.method import method_of
@@ -83,19 +80,6 @@ def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
     assert np.all(forces.spring <= np.maximum(forces.up, 0.0) + noise)
 
 
-@pytest.mark.parametrize("young", [1e10, STEEL, 1e12, 1e18])
-def test_the_spring_holds_what_friction_does_not_there_and_back(young):
-    values = InclineSettings.checked({**SMALL, "instants": 61, "young": young})
-    forces = Slope(reference_of(discretise(values)), values)
-    rising = (np.tan(forces.angle) > 0.31) & (np.arange(61) <= 30)
-    np.testing.assert_allclose(forces.spring[rising], forces.down[rising], rtol=1e-10)
-    returns = (np.arange(61) > 30) & (forces.up < 0.95 * forces.spring.max())
-    assert returns.sum() > 3
-    np.testing.assert_allclose(forces.spring[returns], forces.up[returns], rtol=1e-10)
-    waits = (np.arange(61) > 30) & (forces.up > 1.05 * forces.spring.max())
-    np.testing.assert_allclose(forces.spring[waits], forces.spring.max(), rtol=1e-4)
-
-
 HARD = {
     "steel": {"young": STEEL},
     "a slope of 20 degrees": {"young": STEEL, "slope": 20.0},
@@ -121,39 +105,6 @@ def test_a_run_ends_certified_and_its_forces_balance(case):
     assert Slope(run.iterate, values).unbalanced(values) < 1e-12
 
 
-def test_forces_are_those_of_a_body_and_a_spring_that_are_both_so_much_stiffer():
-    same = [
-        reference_of(
-            discretise(
-                InclineSettings.checked(
-                    {**SMALL, "young": 1e7 * size, "spring": 2e6 * size, "weight": 1e3 * size}
-                )
-            )
-        )
-        for size in (1.0, 1e9)
-    ]
-    soft, hard = same
-    np.testing.assert_allclose(hard.contact_force, 1e9 * soft.contact_force, atol=1e-3)
-    np.testing.assert_allclose(hard.displacement, soft.displacement, atol=1e-14)
-
-
-def test_nothing_says_where_a_block_without_friction_lies_on_level_ground():
-    values = InclineSettings.checked({**SMALL, "friction": 0.0})
-    problem = discretise(values)
-    found = reference_of(problem)
-    held = held_instants(problem, found.contact_force)
-    level = values.path("slope_load") == 0.0
-    assert np.array_equal(held, ~level)
-    assert level.sum() == 2
-    distance = distance_to(found, problem)
-    for instant in (20, 10):
-        field = found.displacement.copy()
-        field[:, instant] += 1e-4
-        fields = type(found)(**{**vars(found), "displacement": field})
-        assert (distance.of_displacement(fields) == 0.0) == level[instant]
-    assert held_instants(discretise(InclineSettings.checked(SMALL)), found.contact_force)[0]
-
-
 @pytest.mark.parametrize("stiffness", [1e-3, 1.0, 1e9])
 @pytest.mark.parametrize(
     ("scene", "changes"),
@@ -168,7 +119,6 @@ def test_nothing_says_where_a_block_without_friction_lies_on_level_ground():
                 "elements_up": 3,
             },
         ),
-        ("strand", {}),
         ("layers", {"elements_up": 1, "layers": 3}),
     ],
 )
@@ -179,28 +129,6 @@ def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiff
     found = reference_of(problem)
     assert found.converged.all()
     assert kkt_residual(found, problem) < 1e-10
-
-
-def test_a_body_that_contact_alone_holds_has_three_rigid_motions_and_a_held_one_none():
-    problem = discretise(InclineSettings.checked(SMALL))
-    assert problem.motions.shape[1] == 3
-    strained = [
-        np.abs(part.elasticity.stiffness @ problem.motions[part.dofs]).max()
-        for part in problem.substructures
-    ]
-    assert max(strained) < 1e-13
-    assert discretise(CATALOGUE["block"].settings.checked({})).motions is None
-    two = block(bodies=2, elements=(4, 2), cuts=(1, 1), height=0.3).discretise()
-    assert two.motions.shape[1] == 6
-
-
-def test_a_spring_on_a_node_that_rubs_follows_from_what_rubs():
-    problem = discretise(InclineSettings.checked(SMALL))
-    own = jumps(problem)
-    rigid = np.arange(own.shape[0]) < own.shape[0] - 2
-    base, ties = base_of(own, rigid)
-    assert np.array_equal(base, np.flatnonzero(rigid))
-    assert abs(ties @ own[base] - own).max() == 0.0
 
 
 def course_of(values, n):
@@ -224,30 +152,6 @@ def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
     if method == "paper":  # an acceleration makes much of rounding on its way
         np.testing.assert_allclose(soft, steel, rtol=0.3, atol=1e-6)
         np.testing.assert_allclose(hard, steel, rtol=0.3, atol=1e-6)
-
-
-def test_a_shifted_local_stage_balances_the_load_at_every_instant():
-    values = InclineSettings.checked({**SMALL, "method": "paper"})
-    problem = discretise(values)
-    iterate = next(islice(iterations(problem, method_of(values)), 4, None))
-    angle = np.radians(values.path("slope_load"))
-    force = problem.scales.force * iterate.boundary_local_force
-    ground, spring = problem.rubbing["support"], problem.rubbing["spring"]
-    along = force[ground.tangent.above].sum(axis=0) + force[spring.normal.component.above][0]
-    np.testing.assert_allclose(along, values.weight * np.sin(angle), atol=1e-9 * values.weight)
-    own = problem.scales.force * iterate.k[:, None] * (iterate.local_incoming - iterate.incoming)
-    assert np.abs(own).max() > 1e-3 * values.weight  # it had to be shifted for that
-
-
-@pytest.mark.parametrize("method", ["fast", "paper"])
-def test_a_body_that_slides_goes_on_from_a_checkpoint_to_the_bit(method):
-    values = InclineSettings.checked({**SMALL, "method": method, "finish": "none"})
-    problem, latin = discretise(values), method_of(values)
-    straight = list(islice(iterations(problem, latin), 12))
-    again = next(islice(iterations(problem, latin, straight[4].checkpoint), 6, None))
-    assert again.number == 12
-    np.testing.assert_array_equal(again.outgoing, straight[-1].outgoing)
-    np.testing.assert_array_equal(again.local_incoming, straight[-1].local_incoming)
 
 
 @pytest.mark.parametrize("finish", ["none", "at-once"])

@@ -1,37 +1,41 @@
-"""`python -m solver study` measures what it says, and its tables follow from its numbers."""
+"""`python -m solver study` measures what it says: curves, growth, and who is first where."""
 
 from __future__ import annotations
 
 import csv
+import math
 import os
 import re
 import subprocess
 import sys
-import time
 from dataclasses import replace
-from itertools import count
+from typing import Any
 
 import numpy as np
 import pytest
 
 from solver import report_commands
 from solver.cli import main
+from solver.reference.incremental import incremental
 from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.study.chart import HUES
 from solver.study.page import NO_CHARTS
+from solver.study.speed import crossover as measuring
+from solver.study.speed.crossover import FACTORS, crossover, equal_at
+from solver.study.speed.crossover_report import crossover_notes
 from solver.study.speed.error_against_time import (
     FORMS,
     INCREMENTAL,
     LEVELS,
     ErrorCurve,
+    Peer,
+    PeerError,
     Study,
     error_against_time,
 )
-from solver.study.speed.growth import MEASURED, Growth, Size, growth
-from solver.study.speed.study_panels import error_panels
-from solver.study.speed.study_report import growth_table, table, winners
+from solver.study.speed.growth import growth
+from solver.study.speed.study_report import winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
@@ -85,55 +89,6 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
         assert words in page
 
 
-def test_the_curves_have_every_method_with_times_that_increase(measured):
-    found = rows(measured[0] / "curves.csv")
-    assert list(found[0]) == [
-        *("method", "kind", "step", "seconds", "error_displacement", "error_force")
-    ]
-    assert {row["method"] for row in found} == {*FORMS, INCREMENTAL}
-    for method in FORMS:
-        seconds = [float(row["seconds"]) for row in found if row["method"] == method]
-        assert (np.diff(seconds) > 0.0).all()
-        assert len(seconds) > 1
-
-
-def test_the_first_iteration_pays_for_the_set_up(measured):
-    for one in measured[1].courses:
-        assert one.seconds.min() > 0.0
-        if one.kind == "latin":
-            assert one.seconds[0] > one.seconds_per_iteration
-
-
-def test_accelerated_forms_end_below_a_millionth(measured):
-    for one in measured[1].courses:
-        if "Anderson" in one.method:
-            assert one.error_force[-1] <= 1e-6
-            assert one.error_displacement[-1] <= 1e-6
-
-
-def test_one_clock_bills_all_methods(monkeypatch):
-    seconds = map(float, count())
-    monkeypatch.setattr(time, "perf_counter", lambda: next(seconds))
-    monkeypatch.setattr("solver.study.speed.growth.MEASURED", MEASURED[:1])
-    settings = BarSettings.checked({"elements": 6, "instants": 6, "substructures": 3})
-    for one in error_against_time(settings, 1).courses:
-        assert (one.seconds >= 1.0).all()
-    sizes = [size for one in growth(settings) if one.setting == "instants" for size in one.sizes]
-    assert all(size.seconds >= 1.0 for size in sizes)
-
-
-def test_the_levels_agree_with_the_curves(measured):
-    curves = rows(measured[0] / "curves.csv")
-    for row in rows(measured[0] / "levels.csv"):
-        times = [
-            float(point["seconds"])
-            for point in curves
-            if point["method"] == row["method"]
-            and float(point["error_force"]) <= float(row["level"])
-        ]
-        assert row["seconds"] == (str(min(times)) if times else "")
-
-
 def test_the_table_names_the_first_of_the_levels(measured):
     folder, study = measured
     for level, found in zip(LEVELS.values(), winners(study)[1:], strict=True):
@@ -154,46 +109,6 @@ def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
     assert head[-1] == f"LATIN / {INCREMENTAL}"
     assert coarse[1:] == [INCREMENTAL, "20", "LATIN multiscale", "30", "1.5"]
     assert fine[-2:] == ["200", "10"]
-
-
-def test_where_latin_wins_or_never_arrives_the_report_says_so():
-    study = study_of(
-        course("LATIN multiscale", "latin", [0.01, 0.02], [0.05, 0.005]),
-        course(INCREMENTAL, "incremental", [0.04], [0.0]),
-    )
-    _, first, second, third, _ = winners(study)
-    assert first == ["10 %", "LATIN multiscale", "10", "LATIN multiscale", "10", "0.25"]
-    assert second[-1] == "0.5"
-    assert third[3:] == ["none gets there", "-", "-"]
-    assert table(study)[1][3] == "not reached"
-
-
-@pytest.mark.parametrize(
-    ("words", "name"),
-    [
-        (["--repeats", "0"], "--repeats"),
-        (["--set", "elements=x"], "elements"),
-        (["--set", "colour=1"], "colour"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(tmp_path, capsys, words, name):
-    assert main(["study", "bar", "--out", str(tmp_path / "out"), *words]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert len(err.splitlines()) == 1
-    assert name in err
-    assert not (tmp_path / "out").exists()
-
-
-def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_measured(
-    tmp_path, monkeypatch, capsys
-):
-    monkeypatch.setattr(
-        report_commands, "error_against_time", lambda *given: pytest.fail("measured")
-    )
-    (tmp_path / "file").write_text("in the way", encoding="utf-8")
-    assert main([*TINY, "--out", str(tmp_path / "file")]) == 2
-    assert "a folder that can be made and written to" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("trouble", [KeyboardInterrupt, MemoryError])
@@ -226,13 +141,6 @@ def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
     assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
 
 
-def test_the_exponent_is_the_slope_and_needs_two_sizes():
-    sizes = tuple(Size(n, 1e-6 * n**1.5, None, None) for n in (10, 20, 40))
-    assert Growth("elements", "a", sizes).exponent.value == pytest.approx(1.5)
-    assert Growth("elements", "a", sizes[:1]).exponent is None
-    assert growth_table([Growth("elements", "a", sizes)])[1][2] == "1.50 ± 0.00"
-
-
 def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     sizes = {"elements": (2, 8, 16), "substructures": (1, 4)}
     monkeypatch.setitem(CATALOGUE, "bar", replace(CATALOGUE["bar"], sizes=sizes))
@@ -263,11 +171,58 @@ def test_the_report_states_the_threads_that_the_command_line_sets(given, stated)
     assert f"BLAS threads: {stated};" in done.stdout
 
 
-def test_every_method_of_a_study_has_a_color_of_its_own():
-    names = [(name, "latin") for name in FORMS]
-    names += [(INCREMENTAL, "incremental"), *((f"other {number}", "peer") for number in range(4))]
-    courses = tuple(course(name, kind, [0.1, 0.2], [0.1, 0.01]) for name, kind in names)
-    for panel in error_panels(Study(BarSettings.checked({"method": "paper"}), 1, "", courses, ())):
-        hues = [curve.hue for curve in panel.curves]
-        assert len(set(hues)) == len(hues) == len(names)
-        assert max(hues) <= len(HUES)
+SMALL_ONES: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 12, "instants": 11, "substructures": 3},
+    "strand": {"elements": 6, "instants": 5, "substructures": 2, "wires": 4},
+    "layers": {"elements": 8, "instants": 5, "layers": 4, "substructures": 1},
+}
+
+
+@pytest.mark.parametrize("scene", list(SMALL_ONES))
+def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
+    settings = CATALOGUE[scene].settings.checked(SMALL_ONES[scene])
+    found = crossover(settings)
+    name = CATALOGUE[scene].grows[0]
+    assert found.setting == name
+    assert found.sizes == [round(factor * getattr(settings, name)) for factor in FACTORS]
+    last = settings.instants - 1
+    assert found.instants == [round(factor * last) + 1 for factor in FACTORS]
+    assert (found.ratios > 0.0).all()
+
+
+def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settings = CATALOGUE["strand"].settings.checked({**SMALL_ONES["strand"], "wires": 2})
+    monkeypatch.setattr(measuring, "LONGEST", 0.0)
+    found = crossover(settings)
+    assert found.sizes == [1, 2, 4]
+    said = {one.size: one.said for one in found.duels}
+    assert said[1] == "there is no such size"
+    assert said[2].startswith("left out: it would take about")
+    assert any("Wires 4" in line and "left out" in line for line in crossover_notes(found))
+
+
+def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
+    assert equal_at([4, 16, 64], [4.0, 2.0, 0.5]) == pytest.approx(32.0)
+    assert equal_at([4, 16, 64], [4.0, math.nan, 0.25]) == pytest.approx(16.0)
+    assert equal_at([4, 16], [0.5, 0.4]) is None
+    assert equal_at([4, 16], [4.0, 2.0]) is None
+
+
+def test_other_solvers_stand_in_a_study_with_what_they_said_where_they_gave_up():
+    settings = BarSettings.checked(
+        {"elements": 6, "instants": 5, "substructures": 2, "max_iterations": 5}
+    )
+
+    def exact_or_nothing(problem, tolerance):
+        if tolerance < 0.1:
+            raise PeerError("gave up at instant 1: no more digits")
+        return incremental(problem)
+
+    study = error_against_time(settings, 1, peers=[Peer("other", (0.5, 1e-9), exact_or_nothing)])
+    *_, found = study.courses
+    assert (found.method, found.kind, list(found.steps)) == ("other", "peer", [0.5])
+    assert found.error_force[0] < 1e-9
+    assert found.seconds[0] > 0.0
+    assert study.troubles == ("other at tolerance 1e-09 gave up at instant 1: no more digits.",)

@@ -1,25 +1,32 @@
-"""The command sweeps, goes on where it was, and refuses what is foolish in a line."""
+"""Sweeps: the command, its plan, and adaptive ones."""
 
 from __future__ import annotations
 
 import csv
 import json
-import sys
+from itertools import pairwise
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
-from processes import started, wait_for
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.interpolate import LinearNDInterpolator
 from sweeps import TINY, Here, rows_of, tiny
 
 from solver import sweep_command
+from solver.arrays import Array
 from solver.cli import main
-from solver.study.chart import Chart, Map, Panel, PanelCurve
+from solver.definitions import SettingError
+from solver.scenes.bar import BarSettings
+from solver.study.chart import Map
 from solver.study.page import write_page
-from solver.study.sweep import Plan
-from solver.study.sweep.chart import chart_of, charts, ordered
-from solver.study.sweep.point import Row
+from solver.study.sweep import Plan, Row, plan_from_plain, plan_of
+from solver.study.sweep.adaptive import Chooser, sweep_adaptively
+from solver.study.sweep.chart import chart_of, ordered
+from solver.study.sweep.order import snake
+from solver.study.sweep.plan import axis_of
 
 SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
 
@@ -118,14 +125,6 @@ def test_a_folder_keeps_one_sweep(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 @pytest.mark.usefixtures("here")
-def test_a_run_that_fails_is_a_line_and_the_exit_code_says_so(tmp_path: Path) -> None:
-    assert command(tmp_path, vary="substructures=2,30") == 1
-    fits, refused = table(tmp_path)
-    assert (fits["ending"], refused["ending"]) == ("converged", "refused")
-    assert "substructures = 30" in refused["reason"]
-
-
-@pytest.mark.usefixtures("here")
 def test_fields_can_be_kept(tmp_path: Path) -> None:
     assert command(tmp_path) == 0
     assert command(tmp_path, "--fields") == 0
@@ -167,66 +166,8 @@ def test_a_setting_that_does_nothing_is_told(
     assert capsys.readouterr().err == ""
 
 
-def test_a_killed_command_is_gone_on_with(tmp_path: Path) -> None:
-    asked = [sys.executable, "-m", "solver", "sweep", "bar", "--vary", "peak=300:900:60"]
-    asked += [*SMALL, "--of", "iterations", "--on", "processes:1", "--out", str(tmp_path)]
-    journal = tmp_path / "sweep.jsonl"
-    with started(asked):
-        wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
-    kept = journal.read_bytes()
-    assert 3 < kept.count(b"\n") < 60
-    assert main(asked[3:]) == 0
-    assert journal.read_bytes().startswith(kept[: kept.rfind(b"\n") + 1])
-    numbers = [json.loads(line)["number"] for line in journal.read_bytes().splitlines()[1:]]
-    assert sorted(numbers) == list(range(60))
-
-
-@pytest.mark.usefixtures("here")
-def test_parquet_is_written_where_it_can_be(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert command(tmp_path) == 0
-    assert not (tmp_path / "sweep.parquet").exists()
-    written: dict[Path, dict[str, list[object]]] = {}
-
-    class Table(dict[str, list[object]]):
-        def replace_schema_metadata(self, metadata: dict[str, str]) -> Table:
-            assert json.loads(metadata["slipfront"])["of"] == ["peak_displacement", "iterations"]
-            return self
-
-    arrow, parquet = ModuleType("pyarrow"), ModuleType("pyarrow.parquet")
-    arrow.__dict__.update(table=Table, parquet=parquet)
-    parquet.__dict__.update(write_table=lambda table, file: written.update({file: table}))
-    monkeypatch.setitem(sys.modules, "pyarrow", arrow)
-    monkeypatch.setitem(sys.modules, "pyarrow.parquet", parquet)
-    assert command(tmp_path) == 0
-    (columns,) = written.values()
-    assert columns["peak"] == [300.0, 500.0, 700.0, 900.0]
-    assert columns["ending"] == ["converged"] * 4
-
-
 def holding(value: float, number: int = 0, ending: str = "converged") -> Row:
     return Row(number, ending, "", (value,))
-
-
-def test_progress_says_what_is_left(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sweep_command, "SELDOM", -1.0)
-    ticks = iter([0.0, 2.0, 4.0])
-    clock = SimpleNamespace(monotonic=lambda: next(ticks))
-    monkeypatch.setattr(sweep_command, "time", clock)
-    rows = [holding(1.0), holding(2.0, 1)]
-    assert list(sweep_command.told(rows, 5, 1)) == rows
-    lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
-    assert lines == ["2 of 5 runs, 6 s left", "3 of 5 runs, 4 s left"]
-
-
-def curves_of(chart: Chart) -> tuple[PanelCurve, ...]:
-    """Give the curves through answers."""
-    assert isinstance(chart, Panel)
-    return tuple(curve for curve in chart.curves if curve.line == "solid")
 
 
 @pytest.mark.parametrize(
@@ -256,64 +197,165 @@ def axis_name(plan: Plan) -> str:
     return ordered(plan)[0].name
 
 
-def test_a_map_has_its_values_where_they_belong_whatever_their_order() -> None:
-    plan = tiny(["peak=900,300,500", "friction=0.7:0.1:7"], ["iterations"])
-    chart = chart_of(plan, [holding(7.0, 8)])
-    assert isinstance(chart, Map)
-    assert chart.x_values.tolist() == [300.0, 500.0, 900.0]
-    assert chart.y_values[-1] == 0.7
-    assert np.argwhere(np.isfinite(chart.z)).tolist() == [[5, 0]]
-    assert plan.point(8) == {"peak": 300.0, "friction": 0.6}
+BAR = BarSettings.checked({})
+ANY = settings(max_examples=60)
 
 
-@pytest.mark.parametrize("turned", [False, True])
-def test_names_make_a_curve_each(turned: bool) -> None:
-    vary = ["k_scale=0.1:10:3:log", "acceleration=none,anderson"]
-    plan = tiny(vary[::-1] if turned else vary, ["iterations"])
-    rows = [holding(float(plan.point(n)["k_scale"]), n) for n in range(6)]
-    (panel,) = charts(plan, rows)
-    curves = curves_of(panel)
-    assert [curve.label for curve in curves] == ["Acceleration none", "Acceleration anderson"]
-    assert all(curve.y.tolist() == [0.1, 1.0, 10.0] for curve in curves)
-    assert panel.x.logarithmic
-    assert panel.y.logarithmic
+def values_of(text: str) -> list[Any]:
+    return list(axis_of(BAR, text).values)
 
 
-def test_rows_become_points_whatever_came_of_them_and_say_it() -> None:
-    plan = tiny(["friction=0.1:0.5:5"], ["iterations_to_force@0.1"])
-    rows = [
-        Row(4, "converged", "", (3.0,)),
-        Row(0, "exhausted", "Raise max_iterations.", (12.0,)),
-        Row(1, "converged", "", (np.inf,)),
-        Row(2, "refused", "no", (np.nan,)),
-    ]
-    chart = chart_of(plan, rows)
-    runs = chart.runs
-    assert runs is not None
-    assert runs.numbers.tolist() == [4, 0, 1, 2]
-    assert runs.holds.tolist() == [True, False, False, False]
-    assert [said.partition(": ")[2] for said in runs.said] == [
-        "3",
-        "12; exhausted: Raise max_iterations.",
-        "never",
-        "refused: no",
-    ]
-    (curve,) = curves_of(chart)
-    assert curve.x.tolist() == [0.1, 0.2, 0.3, 0.5]
-    assert np.isfinite(curve.y).tolist() == [False, False, False, True]
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("friction=0.1:0.6:6", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]),
+        ("k_scale=0.01:100:5:log", [0.01, 0.1, 1.0, 10.0, 100.0]),
+        ("load=triangle,sine,triangle", ["triangle", "sine"]),
+        ("multiscale=true,false", [True, False]),
+        ("substructures=1:4:31", [1, 2, 3, 4]),
+    ],
+)
+def test_a_range_holds_its_ends_and_what_is_between_and_a_list_each_value_once(
+    text: str, values: list[Any]
+) -> None:
+    assert values_of(text) == values
 
 
-def test_shares_are_drawn_in_per_cent() -> None:
-    chart = chart_of(tiny(["friction=0.1,0.2"], ["slipped_share"]), [holding(0.25)])
-    assert chart.runs is not None
-    assert chart.runs.values.tolist() == [25.0]
-    assert chart.y.unit == "%"
-    assert chart.runs.said[0].endswith(": 25 %")
+FOOLISH = [
+    (["frction=0.1:0.6:3"], ["iterations"], "did you mean friction?"),
+    (["friction"], ["iterations"], "name a setting and its values"),
+    (["friction=0.1:0.6"], ["iterations"], "three numbers"),
+    (["friction=0.1:0.6:1"], ["iterations"], "whole number from 2"),
+    (["friction=0.1:0.1:5"], ["iterations"], "the two ends differ"),
+    (["friction=-0.1:0.1:5"], ["iterations"], "inside this range"),
+    (["peak=-1:1:5:log"], ["iterations"], "above zero"),
+    (["load=sine:ramp:3"], ["iterations"], "list its values"),
+    (["friction=0.1,,0.2"], ["iterations"], "write a number"),
+    (["friction=0.1,0.2", "friction=0.3,0.4"], ["iterations"], "each of them once"),
+    (["friction=0.1:1:150", "peak=1:900:150"], ["iterations"], "22500"),
+    (["friction=0.1,0.2", "peak=1,2", "elements=9,10"], ["iterations"], "vary one or two"),
+    (["friction=0.1,0.2"], [], "at least one"),
+    (["friction=0.1,0.2"], ["dissipated"], "choose one of these"),
+    (["friction=0.1,0.2"], ["iterations@3"], "takes no parameter"),
+]
 
 
-def test_names_alone_make_points_without_lines() -> None:
-    chart = chart_of(tiny(["load=sine,ramp"], ["iterations"]), [holding(1.0)])
-    assert chart.x.names == ("sine", "ramp")
-    assert all(len(curve.x) == 0 for curve in curves_of(chart))
-    assert chart.runs is not None
-    assert chart.runs.x.tolist() == [0.0]
+@pytest.mark.parametrize(("vary", "of", "words"), FOOLISH, ids=lambda value: str(value)[:40])
+def test_a_foolish_plan_is_refused_in_a_line(vary: list[str], of: list[str], words: str) -> None:
+    with pytest.raises(SettingError) as refusal:
+        plan_of(BAR, vary, of)
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_plan_survives_as_json_and_another_has_another_digest() -> None:
+    table = BAR.replace(load=((0.0, 0.0), (1.0, 900.0)))
+    plan = plan_of(table, ["friction=0.1:0.6:3", "method=fast,paper"], ["dissipation@1", "modes"])
+    again = plan_from_plain(json.loads(json.dumps(plan.plain())))
+    assert again.digest == plan.digest
+    assert again.axes == plan.axes
+    assert again.settings_at(5).values() == plan.settings_at(5).values()
+    digests = {
+        plan_of(base, vary, of).digest
+        for base in (BAR, BAR.replace(peak=1.0))
+        for vary in (["friction=0.1,0.2"], ["friction=0.1,0.3"])
+        for of in (["iterations"], ["modes"])
+    }
+    assert len(digests) == 8
+
+
+@ANY
+@given(st.lists(st.integers(1, 12), min_size=1, max_size=2))
+def test_the_path_goes_through_every_point_once_from_neighbour_to_neighbour(
+    shape: list[int],
+) -> None:
+    path = snake(shape)
+    size = shape[0] * shape[-1] if len(shape) == 2 else shape[0]
+    assert sorted(path) == list(range(size))
+    for one, next_one in pairwise(path):
+        places = [divmod(number, shape[-1]) for number in (one, next_one)]
+        assert sum(abs(a - b) for a, b in zip(*places, strict=True)) == 1
+
+
+ES, LENGTH = 210e9 * 3.14e-6, 1.0
+
+
+def energy(peak: float, bound: float) -> float:
+    """Energy of a cycle of the bar; once it slides whole, as if all that is pulled further did."""
+    front = min(peak, bound * LENGTH)
+    return 2.0 * front**3 / (3.0 * ES * bound) + 1e-3 * max(peak - bound * LENGTH, 0.0)
+
+
+def energies(plan: Plan) -> Array:
+    found = []
+    for number in range(plan.size):
+        at = {"friction": 0.3, **plan.point(number)}
+        found.append(energy(at["peak"], 5000.0 * at["friction"]))
+    return np.array(found)
+
+
+def chosen(plan: Plan, exact: Array, runs: int, at_once: int = 4) -> list[int]:
+    """Let a chooser take its samples, some of them always under way."""
+    chooser, under_way = Chooser(plan, runs), list[int]()
+    found: list[int] = []
+    while True:
+        asked = chooser.ask(at_once - len(under_way))
+        found += asked
+        under_way += asked
+        if not under_way:
+            return found
+        done = under_way.pop(0)
+        chooser.tell(Row(done, "converged", "", (float(exact[done]),)))
+
+
+def error(plan: Plan, exact: Array, points: list[int]) -> float:
+    """Largest error of the logarithm between points, over its range."""
+    grid = np.stack(np.unravel_index(np.arange(plan.size), plan.shape), axis=1).astype(float)
+    height, at = np.log(exact), np.array(sorted(points))
+    if len(plan.shape) == 1:
+        drawn = np.interp(grid[:, 0], grid[at, 0], height[at])
+    else:
+        scaled = grid / (np.array(plan.shape) - 1.0)
+        drawn = LinearNDInterpolator(scaled[at], height[at])(scaled)
+    return float(np.abs(drawn - height).max() / np.ptp(height))
+
+
+def even(plan: Plan, along: int) -> list[int]:
+    lines = [np.linspace(0, count - 1, along).round().astype(int) for count in plan.shape]
+    places = np.meshgrid(*lines, indexing="ij")
+    return [int(number) for number in np.ravel_multi_index(tuple(places), plan.shape).ravel()]
+
+
+@pytest.mark.parametrize("runs", [20, 40])
+def test_the_energy_over_the_peak_takes_half_the_runs_of_a_grid(runs: int) -> None:
+    plan = tiny(["peak=300:2400:841"], ["dissipation@1"])
+    exact = energies(plan)
+    points = chosen(plan, exact, runs)
+    assert len(set(points)) == runs
+    assert error(plan, exact, points) < error(plan, exact, even(plan, 2 * runs))
+
+
+def test_a_sweep_takes_no_more_runs_than_it_may_and_goes_on_from_those_it_has() -> None:
+    plan = tiny(["peak=300:900:61"], ["peak_displacement"])
+    pool = Here()
+    rows = list(sweep_adaptively(plan, pool, 9))
+    assert len({row.number for row in rows}) == len(rows) == 9
+    assert {0, plan.size - 1} <= {row.number for row in rows}
+    more = list(sweep_adaptively(plan, pool, 12, known=rows))
+    assert len({row.number for row in [*rows, *more]}) == 12
+    assert list(sweep_adaptively(plan, pool, 12, known=[*rows, *more])) == []
+
+
+@pytest.mark.parametrize(
+    ("vary", "runs", "words"),
+    [
+        (["load=sine,ramp"], 9, "ranges of numbers"),
+        (["peak=1:9:9", "method=fast,paper"], 20, "ranges of numbers"),
+        (["peak=1:9:9", "friction=0.2"], 20, "ranges of numbers"),
+        (["peak=1:9:9"], 3, "at least 4 runs"),
+        (["peak=1:9:9", "friction=0.2:0.3:9"], 9, "at least 16 runs"),
+    ],
+)
+def test_what_cannot_be_sampled_is_refused(vary: list[str], runs: int, words: str) -> None:
+    with pytest.raises(SettingError, match=words):
+        Chooser(tiny(vary, ["iterations"]), runs)

@@ -1,36 +1,28 @@
-"""A sweep has a row for every point, whatever becomes of a run or of its process."""
+"""Sweeps have a row for every point, whatever becomes of it, and what closed forms say of it."""
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import signal
 import time
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from multiprocessing import Pipe
-from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import PATIENCE, is_alive, wait_for
+from processes import is_alive, wait_for
 from sweeps import Here, rows_of, tiny
 
+from solver.cli import main
 from solver.definitions import SettingError
-from solver.latin.finish.cost import Costs
-from solver.latin.finish.status_step import states_of
-from solver.laws import OPEN
-from solver.reference.choice import incremental_solver, reference_of
-from solver.running import calls
-from solver.running.executors import Processes, opened
+from solver.running.executors import opened
 from solver.running.pool import EndedError, OverdueError
-from solver.running.processes import start_process
-from solver.scenes import CATALOGUE, discretise
-from solver.study.quantities.finished import finished_run
-from solver.study.sweep import VersionsDifferError, sweep
+from solver.scenes import CATALOGUE
+from solver.study.exponent import exponent_of
+from solver.study.sweep import Plan, sweep
 from solver.study.sweep import point as points
-from solver.study.sweep.nearest import KEPT, Nearest
-from solver.study.sweep.point import field_file
+from solver.study.sweep.growth import growth
+from solver.study.sweep.point import Row
 
 
 def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
@@ -50,14 +42,6 @@ def test_processes_give_the_same_rows_as_this_one() -> None:
         rows = rows_of(plan, pool)
     expected = np.array([row.values for row in rows_of(plan)])
     assert np.array([row.values for row in rows]) == pytest.approx(expected, rel=1e-9)
-
-
-def test_points_that_are_done_are_left_out() -> None:
-    plan = tiny(["peak=300:900:5"], ["iterations"])
-    assert [row.number for row in rows_of(plan, done={0, 2, 4})] == [1, 3]
-    pool = Here()
-    assert rows_of(plan, pool, done=range(5)) == []
-    assert pool.calls == 0
 
 
 def test_a_run_that_fails_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,55 +90,6 @@ def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> No
 def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of: str) -> None:
     plan = tiny(["friction=0.4:0.42:6"], ["peak_displacement", of])
     assert not any(row.was_warm for row in rows_of(plan))
-
-
-def test_a_run_that_fits_no_other_starts_alone() -> None:
-    for vary in ("elements=12,24", "instants=11,21"):
-        assert not any(row.was_warm for row in rows_of(tiny([vary], ["peak_displacement"])))
-
-
-def test_a_step_that_costs_more_than_a_run_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    plan = tiny(["friction=0.45:0.47:3"], ["peak_displacement"])
-    dear = Costs(condensing=1e3, system=1e-3, iteration=1e-3, n_instants=21)
-    monkeypatch.setattr("solver.study.quantities.finished.costs_of", lambda problem, moving: dear)
-    assert not any(row.was_warm for row in rows_of(plan))
-
-
-def test_the_nearest_run_is_the_start_and_the_oldest_are_forgotten() -> None:
-    nearest = Nearest((3, 4000))
-    assert nearest.to(5) is None
-    states = {number: np.full((1, 1), number % 100, np.int8) for number in (0, 3999, 4001, 8100)}
-    for number, one in states.items():
-        nearest.keep(number, one)
-    # one of 3 lines away is farther than 100 of 4000 places
-    assert nearest.to(10) is states[0]
-    assert nearest.to(8001) is states[8100]
-    for number in range(KEPT):
-        nearest.keep(4002 + number, states[0])
-    assert nearest.to(8100) is states[0]
-
-
-@pytest.mark.parametrize("scene", ["bar", "block"])
-def test_a_foolish_start_costs_little_and_changes_nothing(scene: str) -> None:
-    settings = tiny(["friction=0.4,0.5"], ["dissipation"], scene).settings
-    problem = discretise(settings)
-    right = reference_of(problem)
-    states = states_of(finished_run(settings).iterate)
-    foolish = np.where(states == OPEN, OPEN, 1).astype(np.int8)
-    for guess in (states, -foolish, foolish):
-        found = incremental_solver(problem).march(guess=guess)
-        assert found.contact_force == pytest.approx(
-            right.contact_force, abs=1e-9 * np.abs(right.contact_force).max()
-        )
-        assert found.steps <= right.steps + 3 * problem.n_instants
-
-
-def test_fields_are_kept_where_they_are_asked_for(tmp_path: Path) -> None:
-    plan = tiny(["peak=300,900"], ["peak_displacement"])
-    rows = rows_of(plan, fields=str(tmp_path))
-    for row in rows:
-        with np.load(tmp_path / field_file(row.number)) as found:
-            assert np.abs(found["displacement"]).max() == row.values[0]
 
 
 def test_a_process_that_is_killed_takes_no_row_with_it() -> None:
@@ -215,23 +150,6 @@ def test_a_point_is_not_given_up_for_one_lost_process() -> None:
     assert [row.number for row in rows if row.holds] == list(range(6))
 
 
-def test_closing_a_sweep_ends_what_runs() -> None:
-    plan = tiny(["peak=300:900:9"], ["iterations"])
-    with opened("processes:1") as pool:
-        assert isinstance(pool, Processes)
-        running = sweep(plan, pool)
-        next(running)
-        running.close()
-        assert pool.submit(int, 3).result() == 3
-        sleeping = pool.submit(time.sleep, 60.0)
-        wait_for(sleeping.running)
-        assert not sleeping.cancel()
-        with pytest.raises(EndedError):
-            sleeping.result()
-        pid = pool.submit(os.getpid).result()
-    wait_for(lambda: not is_alive(pid))
-
-
 def test_an_executor_ends_with_all_that_it_does() -> None:
     with opened("processes:2") as pool:
         calls = [pool.submit(time.sleep, 60.0) for _ in range(4)]
@@ -241,77 +159,76 @@ def test_an_executor_ends_with_all_that_it_does() -> None:
         pool.submit(int)
 
 
-def test_an_error_of_a_call_is_told() -> None:
-    with opened("processes:1") as pool:
-        with pytest.raises(ZeroDivisionError):
-            pool.submit(divmod, 1, 0).result()
-        assert pool.submit(divmod, 7, 2).result() == (3, 1)
-
-
-def test_a_call_whose_process_has_gone_keeps_nothing_of_what_was_sent(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    process, _ = start_process(calls.obey, preloaded=["solver.running.calls"])
-    ours, theirs = Pipe()
-    theirs.close()
-    monkeypatch.setattr(calls, "start_process", lambda *_, **__: (process, ours))
-    call = calls.Call(partial(int))
-    with pytest.raises(EndedError) as ended:
-        calls.ProcessSlot(None).do(call)
-    assert ended.value.__context__ is None
-
-
-def test_a_call_that_runs_nowhere_any_more_has_left_no_process(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    ended: list[int | None] = []
-    clear = calls.ProcessSlot.clear
-
-    def watched(slot: calls.ProcessSlot) -> None:
-        if slot._process is not None:
-            ended.append(call.pid)
-        clear(slot)
-
-    monkeypatch.setattr(calls.ProcessSlot, "clear", watched)
-    call = calls.Call(partial(time.sleep, 600.0))
-    slot = calls.ProcessSlot(None)
-    with ThreadPoolExecutor(1) as thread:
-        done = thread.submit(slot.do, call)
-        wait_for(lambda: call.pid is not None)
-        pid = call.pid
-        assert call.set_running_or_notify_cancel()
-        assert not call.cancel()
-        with pytest.raises(EndedError):
-            done.result(timeout=PATIENCE)
-    assert ended == [pid]
-    assert call.pid is None
-
-
-def test_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    plan = tiny(["peak=300,900"], ["iterations"])
-    with opened("processes:1") as pool:
-        monkeypatch.setattr("solver.study.sweep.drive.versions", lambda: "numpy 1.0")
-        with pytest.raises(VersionsDifferError, match=r"here are numpy 1\.0"):
-            rows_of(plan, pool)
-
-
 @pytest.mark.parametrize(
-    "on",
-    [
-        "",
-        "process",
-        "processes:",
-        "processes:0",
-        "processes:-1",
-        "processes:x",
-        "threads",
-        "processes:2:2",
-        "processes:1000",
-        "dask",
-        "processes: 2",
-    ],
+    "on", ["", "process", "processes:0", "processes:x", "processes:2:2", "processes:1000", "dask"]
 )
 def test_a_foolish_executor_is_refused_in_a_line(on: str) -> None:
     with pytest.raises(SettingError, match=r"processes:COUNT, or dask://HOST:PORT") as refusal:
         opened(on).__enter__()
     assert "\n" not in str(refusal.value)
+
+
+STIFFNESS, PRESSURE = 210e9 * 3.14e-6, 5000.0
+
+
+def end_of(plan: Plan, number: int) -> float:
+    """Displacement of the end of a bar under a monotone pull."""
+    at = plan.point(number)
+    return at["peak"] ** 2 / (2.0 * STIFFNESS * at["friction"] * PRESSURE)
+
+
+def test_the_design_chart_of_the_end_displacement_is_the_closed_form_to_second_order() -> None:
+    sizes, errors = (15, 30, 60), []
+    for elements in sizes:
+        vary = ["friction=0.23,0.31,0.4", "peak=370:1010:5"]
+        plan = tiny(vary, ["end_displacement"], load="ramp", elements=elements, instants=2)
+        rows = rows_of(plan)
+        assert all(row.holds for row in rows)
+        exact = [end_of(plan, row.number) for row in rows]
+        found = [row.values[0] for row in rows]
+        errors.append(np.abs(np.array(found) / exact - 1.0).mean())
+        assert errors[-1] < 2.0 / elements**2
+    law = exponent_of(sizes, errors)
+    assert law is not None
+    assert -2.6 < law.value < -1.6
+
+
+def test_the_energy_of_a_cycle_over_the_peak_is_the_closed_form() -> None:
+    plan = tiny(["peak=500:1100:4"], ["dissipation@1"], load="cycle", elements=100)
+    for row in rows_of(plan):
+        peak = plan.point(row.number)["peak"]
+        exact = 2.0 * peak**3 / (3.0 * STIFFNESS * 0.3 * PRESSURE)
+        assert row.values[0] == pytest.approx(exact, rel=2e-4)
+
+
+def test_iterations_over_k_are_those_of_single_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    plan = tiny(["k_scale=0.1:10:3:log", "finish=none,at-once"], ["iterations"])
+    for row in rows_of(plan):
+        own = [f"{name}={value}" for name, value in plan.settings_at(row.number).changed().items()]
+        main(["run", "bar", "--json", *(part for one in own for part in ("--set", one))])
+        assert json.loads(capsys.readouterr().out)["iterations"] == row.values[0]
+
+
+@pytest.mark.parametrize("power", [-2.0, 0.5, 1.0])
+def test_an_exponent_is_found_with_a_margin_that_holds_it(power: float) -> None:
+    sizes = np.geomspace(50.0, 3200.0, 7)
+    noise = np.random.default_rng(1)
+    held = 0
+    for _ in range(400):
+        law = exponent_of(sizes, 3.0 * sizes**power * np.exp(0.1 * noise.standard_normal(7)))
+        assert law is not None
+        held += abs(law.value - power) <= law.margin
+    assert 0.92 < held / 400 < 0.98
+
+
+def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
+    plan = tiny(["elements=10:40:3:log", "method=fast,paper"], ["iterations"])
+    rows = [
+        Row(n, "converged", "", (float(plan.point(n)["elements"] ** (1 + n % 2)),))
+        for n in range(6)
+    ]
+    assert growth(plan, rows) == [
+        "iterations, method=fast: elements^(1.00 ± 0.00), of 3 runs",
+        "iterations, method=paper: elements^(2.00 ± 0.00), of 3 runs",
+    ]
+    assert growth(tiny(["elements=10,20,40"], ["iterations"]), rows[:3]) == []

@@ -7,12 +7,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,9 +19,8 @@ from sweeps import rows_of, tiny
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.running.cluster import Caller
 from solver.running.executors import opened
-from solver.running.pool import GoneError, Pool
+from solver.running.pool import Pool
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 
@@ -108,62 +105,6 @@ def test_a_client_that_is_killed_is_gone_on_with(cluster: Cluster, tmp_path: Pat
     assert sorted(numbers) == list(range(40))
 
 
-class Hasty(Caller):
-    """A client that takes a scheduler which it had found for gone after a second."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._timeout = 1.0
-
-
-def test_a_sweep_waits_for_workers_and_a_scheduler_that_is_gone_is_told(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("solver.running.cluster.Caller", Hasty)
-    doomed = Cluster(tmp_path)
-    journal = tmp_path / "out" / "sweep.jsonl"
-    asked = ["sweep", "bar", "--vary", "peak=300:900:2000"]
-    asked += ["--of", "iterations", "--on", doomed.on, "--out", str(journal.parent)]
-    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
-
-    def end() -> None:
-        with suppress(AssertionError):
-            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
-        doomed.end()
-
-    try:
-        with opened(doomed.on) as pool:
-            running = sweep(tiny(["peak=300,900"], ["iterations"]), pool)
-            assert pool.width == 1
-            doomed.worker()
-            assert len(list(running)) == 2
-        ending = Thread(target=end)
-        ending.start()
-        assert main(asked) == 1
-        ending.join()
-    finally:
-        doomed.end()
-    said = capfd.readouterr()
-    assert "does not answer any more; the same command goes on from here" in said.err
-    assert "Traceback" not in said.err
-    assert "of 2000 runs" in said.out
-
-
-def test_a_client_that_has_given_up_its_scheduler_takes_calls_back_without_a_word(
-    cluster: Cluster, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    with opened(cluster.on) as pool:
-        calls = [pool.submit(time.sleep, 0.2) for _ in range(4)]
-        with monkeypatch.context() as patch:
-            patch.setattr(pool._client, "status", "closed")
-            for call in calls:
-                call.cancel()
-            with pytest.raises(GoneError):
-                pool.submit(time.sleep, 0.0)
-            pool.shutdown(cancel_futures=True)
-    assert not caplog.records
-
-
 def test_workers_of_other_versions_are_refused(pool: Pool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("solver.study.sweep.drive.versions", lambda: "numpy 1.0")
     with pytest.raises(VersionsDifferError, match=points.versions()):
@@ -192,14 +133,6 @@ def test_a_cluster_that_does_not_answer_is_refused_in_a_line(
     assert len(str(refusal.value).splitlines()) == 1
 
 
-def test_a_client_that_finds_no_scheduler_is_left_closed() -> None:
-    for address in ("127.0.0.1:9", "nowhere", ":x"):
-        client = Caller.__new__(Caller)
-        with pytest.raises((OSError, ValueError)):
-            client.__init__(f"tcp://{address}", timeout=0.5, set_as_default=False)
-        assert client.status in ("closed", "newly-created")
-
-
 def test_without_distributed_a_cluster_is_refused_in_a_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -207,3 +140,30 @@ def test_without_distributed_a_cluster_is_refused_in_a_line(
     monkeypatch.delitem(sys.modules, "solver.running.cluster", raising=False)
     with pytest.raises(SettingError, match=r"pip install 'slipfront\[cluster\]'"):
         opened("dask://127.0.0.1:9").__enter__()
+
+
+def test_a_scheduler_that_is_gone_is_told(
+    cluster: Cluster,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The last of all, which ends the cluster."""
+    monkeypatch.setattr("solver.running.cluster.PATIENCE", 1.0)
+    journal = tmp_path / "sweep.jsonl"
+    asked = ["sweep", "bar", "--vary", "peak=300:900:2000", "--of", "iterations"]
+    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+
+    def end() -> None:
+        with suppress(AssertionError):
+            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
+        cluster.end()
+
+    ending = Thread(target=end)
+    ending.start()
+    assert main([*asked, "--on", cluster.on, "--out", str(tmp_path)]) == 1
+    ending.join()
+    said = capfd.readouterr()
+    assert "does not answer any more; the same command goes on from here" in said.err
+    assert "Traceback" not in said.err
+    assert "of 2000 runs" in said.out

@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from refusals import refusal
 
+from app.link import read as read_address
 from solver.cli import main
 from solver.curves import GivenCurve, curve_of
 from solver.definitions import SettingError
+from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
-from solver.study.other_programs.brought import read_brought
 from solver.tables import read_table
-from solver.units import examples_of, size_in
 
 TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 FORCES = {"N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "daN": 10.0}
@@ -105,21 +106,6 @@ def test_points_are_those_that_were_given(file: Written) -> None:
 
 
 @pytest.mark.parametrize(
-    "head",
-    [
-        "time_s,force_kN",
-        "time,force kN",
-        't,"Kraft in kN"',
-        "s,kN",
-        "t,force-kN",
-        "t,Kraft (in kN)",
-    ],
-)
-def test_a_unit_is_found_wherever_it_stands(head: str) -> None:
-    assert read(f"{head}\n0,0\n1,0.9\n").points[1] == [1.0, 900.0]
-
-
-@pytest.mark.parametrize(
     ("text", "points"),
     [
         ("time (s),displacement (mm),force (N)\n0,0,0\n1,5,7\n", [[0, 0], [1, 7]]),
@@ -146,19 +132,13 @@ def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> Non
     [
         ("displacement,force\n0,0\n1,1\n", "no time .*a loop, as force over displacement"),
         ("0,0\n1,1\n0.5,0\n", "line 3: time must increase.*of a loop"),
-        ("frequency,force\n0,0\n1,1\n", "no time"),
-        ("time,top_normal_load\n0,0\n1,1\n", "no force .*'top_normal_load'"),
         ("time,velocity\n0,0\n1,1\n", "no force in N, kN, MN .*'velocity'"),
-        ("time,displacement\n0,0\n1,1\n", "no force in N, kN, MN"),
         ("time,force [mm]\n0,0\n1,1\n", "line 1 says mm: give it in N, kN, MN"),
-        ("time,force_KN\n0,0\n1,1\n", "line 1 says KN: give it in N, kN, MN"),
-        ("time,force lbf\n0,0\n1,1\n", "line 1 says lbf"),
         ("Zeit;Kraft\ns;V\n0;0\n1;1\n", "line 2 says V: give it in N"),
         ("time [ms],force [kN]\ns,kN\n0,0\n1,1\n", "line 2 says s, and line 1 ms"),
         ("time,A,B\n0,0,0\n1,1,1\n", "no force .*'A', 'B'.*name one of them load"),
         ("time,force,Kraft\n0,0,0\n1,1,1\n", "'force' and 'Kraft' may both be meant"),
         ("time s force kN\n0 0\n1 1\n", "line 1 has 4 names for 2 columns"),
-        ("time,s,force,kN\n0,0\n1,1\n", "line 1 has 4 names for 2 columns"),
         ("time,force\n0,0,0,5\n1,0,1,5\n", "line 1 has 2 names for 4 columns"),
         ("time,force\n0,0\n1,1,1\n", "line 3 has 3 cells for 2 columns"),
         ("0,0,0\n1,1,1\n", "3 columns: name time and force in its first line"),
@@ -166,7 +146,6 @@ def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> Non
         ("0;0\n0.5;1.234,5\n1.5;2.5\n", "line 2 has '1.234,5', with a decimal comma"),
         ("Rate (Hz),100\n0,0\n1,1\n", "line 1 is 'Rate .Hz.,100', not 2 finite numbers"),
         ("time,force\n0,0\nmuch,1\n", "line 3 has 'much' as time"),
-        ("time,force\nmuch,1\n2,1\n", "line 2"),
     ],
     ids=repr,
 )
@@ -183,17 +162,6 @@ def test_a_path_of_a_side_is_in_the_unit_of_what_is_given_there() -> None:
         read(text, name, "block", top="traction")
     pressure = read("time,Druck [N/mm2]\n0,0\n1,2\n", name, "block", top="traction")
     assert pressure.points[1] == [1.0, 2e6]
-
-
-def test_every_curve_has_units_that_its_refusals_name() -> None:
-    for entry in CATALOGUE.values():
-        values = entry.settings.checked({})
-        for name, definition in values.definitions().items():
-            if not hasattr(definition, "presets"):
-                continue
-            for unit in values.curve_units(name):
-                for example in examples_of(unit).replace("plain numbers or ", "").split(", "):
-                    assert size_in(example, unit), (name, unit, example)
 
 
 def test_the_command_says_what_it_understood(tmp_path: Path, capsys: Any) -> None:
@@ -222,17 +190,85 @@ def test_anything_else_is_read_or_refused_in_words(data: bytes | str) -> None:
     assert np.isfinite(points).all()
 
 
-def test_results_of_another_program_are_read_by_the_same_rules() -> None:
-    text = (
-        "Löser 7;1,2\nStatus;Ort x [mm];Zeit_ms;Reibkraft in kN/m;\n"
-        "haftet;100;0;0,5;\nhaftet;200;500;1;\ngleitet;300;500;1,5;\ngleitet;400;1000;2;\n"
-    )
-    for encoding in ("utf-16", "cp1252"):
-        brought = read_brought(text.encode(encoding), "a.csv", CATALOGUE["bar"].settings())
-        np.testing.assert_allclose(brought.positions, [0.1, 0.2, 0.3, 0.4])
-        np.testing.assert_allclose(brought.times, [0.0, 0.5, 0.5, 1.0])
-        np.testing.assert_allclose(brought.values, [500.0, 1000.0, 1500.0, 2000.0])
-        assert brought.message == (
-            "Ort x in mm, Zeit in ms, Reibkraft in kN/m, 4 points, from 0.5 to 2 kN/m; "
-            "passed over: 'Status'"
-        )
+def test_a_csv_is_found_beside_the_settings_file_or_in_the_working_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "deep"
+    folder.mkdir()
+    (folder / "path.csv").write_text("time,force\n0,0\n0.5, 100\n1,-1e2\n", encoding="utf-8-sig")
+    (folder / "run.toml").write_text('scene = "bar"\nload = "path.csv"\n', encoding="utf-8")
+    expected = ((0.0, 0.0), (0.5, 100.0), (1.0, -100.0))
+    assert settings_from_command("deep/run.toml", [])[0].load == expected
+    assert settings_from_command("bar", ["load=deep/path.csv"])[0].load == expected
+
+
+@pytest.mark.parametrize(
+    ("rows", "remedy"),
+    [
+        ("", "no points"),
+        ("0,0\n\n1\n", "line 3"),
+        ("0,0\n1,2,3\n", "line 2"),
+        ("0,0\n1,much\n", "line 2"),
+        ("0;0\n0,5;1.5\n", "line 2"),
+        ('0,0\n1,"1,000"\n', "line 2"),
+        ("time;force\ns;lbf\n0;0\n", "line 2 says lbf: give it in N, kN, MN"),
+        ("0,0\n1,nan\n", "line 2"),
+        ("1,0\n0,0\n", "must increase"),
+    ],
+    ids=repr,
+)
+def test_a_bad_csv_is_refused_with_its_line(tmp_path, rows, remedy):
+    file = tmp_path / "load.csv"
+    file.write_text(rows, encoding="utf-8")
+    text = refusal(lambda: settings_from_command("bar", [f"load={file}"]))
+    assert text.startswith("load = ")
+    assert "allowed: ramp, triangle" in text
+    assert remedy in text
+
+
+def test_a_csv_that_is_missing_binary_or_a_folder_is_refused(tmp_path):
+    binary = tmp_path / "binary.csv"
+    binary.write_bytes(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR")
+    nul = tmp_path / "nul.toml"
+    nul.write_text('scene = "bar"\nload = "a\\u0000b"\n')
+    for path, remedy in (
+        (tmp_path / "none.csv", "no readable CSV file"),
+        (tmp_path, "no readable CSV file"),
+        (binary, "it is no text: save the table as CSV"),
+    ):
+        text = refusal(lambda path=path: settings_from_command("bar", [f"load={path}"]))
+        assert "load = " in text
+        assert remedy in text
+    assert "no readable CSV file" in refusal(lambda: settings_from_command(str(nul), []))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "scene = bar",
+        'scene = "bar"\npeak =',
+        'scene = "bar"\nscene = "bar"',
+        "\x00",
+        'scene = "bar"\npeak = ' + "9" * 5000,
+    ],
+    ids=lambda text: text[:20],
+)
+def test_a_broken_settings_file_is_refused(text):
+    assert "allowed: TOML" in refusal(lambda: settings_from_toml(text))
+
+
+@pytest.mark.parametrize("path", ["/etc/passwd", "load.csv", "../load.csv"])
+def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "load.csv").write_text("0,0\n1,100\n", encoding="utf-8")
+    opened = []
+    monkeypatch.setattr(Path, "read_text", lambda self, *rest, **more: opened.append(self))
+    for text in (path, f'"{path}"'):
+        place, complaint = read_address(f"?load={text}")
+        assert place.settings.load == "sine"
+        assert "choose a preset" in complaint
+    assert not opened
+
+
+def test_an_uploaded_file_never_names_another():
+    text = 'scene = "bar"\nload = "/etc/passwd"\n'
+    assert "choose a preset" in refusal(lambda: settings_from_toml(text))

@@ -35,15 +35,6 @@ def driven(size: float) -> dict[str, tuple[str, dict[str, Any]]]:
     return {
         "overlap": ("block", {**clamped, "gap": overlap}),
         "overlap at one end": ("block", {**clamped, "gap": gap(-size, size)}),
-        "overlap beside a tiny weight": (
-            "block",
-            {**clamped, "gap": overlap, "body_force_y": -1e-6 * size * YOUNG},
-        ),
-        "overlap beside a spring": ("block", {**clamped, "gap": overlap, "spring": 1e6}),
-        "overlap under rollers": (
-            "block",
-            {**PLANE, "top": "roller", "left": "roller", "gap": gap(-size, -0.5 * size)},
-        ),
         "overlap, dragged": (
             "block",
             {**moved, "gap": overlap, "top_tangential_displacement": 0.5 * size},
@@ -86,7 +77,7 @@ def test_a_run_is_certified_whatever_drives_it_and_however_little(
     assert solve(problem, method_of(chosen)).is_certified
 
 
-@pytest.mark.parametrize("size", [1e-14, 1e-6, 1e-3, 1.0, 1e6])
+@pytest.mark.parametrize("size", [1e-14, 1e-3, 1e6])
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_an_overlap_between_rollers_presses_as_uniaxial_strain_does(
     size: float, friction: float
@@ -101,7 +92,7 @@ def test_an_overlap_between_rollers_presses_as_uniaxial_strain_does(
     np.testing.assert_allclose(pressed, modulus * size / 0.05 * 0.1, rtol=1e-10)
 
 
-@pytest.mark.parametrize("size", [1e-9, 1e-6, 1e-3, -1e-9, -1e-6, -1e-3, -0.1])
+@pytest.mark.parametrize("size", [1e-9, 1e-3, -1e-6, -0.1])
 @pytest.mark.parametrize("tilt", [1.0, 2.0])
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_body_that_falls_or_rises_onto_its_support_presses_with_its_weight(
@@ -125,10 +116,3 @@ def test_forces_that_rounding_of_a_fall_hides_are_not_called_found() -> None:
     values = {**PLANE, "top": "free", "body_force_y": -WEIGHT, "gap": gap(1e6, 1e6)}
     found = reference_of(discretise(CATALOGUE["block"].settings.checked(values)))
     assert not found.converged[1:].any()
-
-
-@pytest.mark.parametrize(("moved", "elements"), [(1e4, 50), (1.0, 1000), (1.0, 3000)])
-def test_a_bar_that_its_support_drags_far_is_certified(moved: float, elements: int) -> None:
-    values = {"peak": 0.0, "support_displacement": moved, "elements": elements, "instants": 21}
-    chosen = CATALOGUE["bar"].settings.checked(values)
-    assert solve(discretise(chosen), method_of(chosen)).is_certified

@@ -1,0 +1,219 @@
+"""The stability matrix and the survey of random runs: how they judge, and what they write."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import math
+import re
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from small_scenes import SMALL
+
+from solver import report_commands
+from solver.cli import main
+from solver.latin import Ending
+from solver.reference.choice import reference_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.bar import BarSettings
+from solver.study.audit.audit import Audited, Verdict, audit, judge
+from solver.study.audit.cases import (
+    METHODS,
+    PASSING,
+    REFUSED,
+    RIGHT,
+    UNCLEAR,
+    UNSOLVED,
+    Case,
+    graded,
+)
+from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
+from solver.study.audit.draws import draw
+from solver.study.audit.outcome import AT_ROUNDING, Outcome
+from solver.study.audit.residual import kkt_residual
+from solver.study.audit.stability import COLUMNS, cases_of
+from solver.study.audit.survey import drawn, survey_report
+from solver.study.quantities.finished import BROKEN
+from solver.study.quantities.finished import REFUSED as REFUSED_RUN
+
+GOOD = Outcome(
+    ending=Ending.CONVERGED,
+    advice="Both indicators are low.",
+    iterations=10,
+    seconds=0.1,
+    indicator=1e-21,
+    behaviour=1e-9,
+    error_displacement=1e-9,
+    error_force=1e-8,
+    finite=True,
+    condition_structure=1e3,
+    condition_substructure=10.0,
+)
+
+
+def changed(**changes):
+    return dataclasses.replace(GOOD, **changes)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "verdict"),
+    [
+        (GOOD, Verdict.RIGHT),
+        (changed(error_force=1e-5), Verdict.WRONG),
+        (changed(error_displacement=0.5), Verdict.WRONG),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.UNSOLVED),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""), Verdict.WRONG),
+        (changed(ending=Ending.STALLED), Verdict.RIGHT),
+        (changed(error_force=math.nan), Verdict.WRONG),
+        (changed(error_displacement=math.nan), Verdict.WRONG),
+        (changed(finite=False, ending=Ending.DIVERGED), Verdict.WRONG),
+        (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
+        (changed(doubt="it is one of several", finite=False), Verdict.WRONG),
+        (Outcome(REFUSED_RUN, "load = 1 is refused"), Verdict.REFUSED),
+        (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG),
+        (changed(error_force=0.5, certified=True, residual=1e-13), Verdict.WRONG),
+        (changed(error_force=0.5, doubt="one", certified=True, residual=1e-13), Verdict.RIGHT),
+        (changed(certified=True, residual=2.0 * AT_ROUNDING), Verdict.WRONG),
+        (changed(certified=True, residual=3e-7, floor=3e-7), Verdict.RIGHT),
+        (changed(certified=True), Verdict.WRONG),
+    ],
+)
+def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
+    assert judge(outcome, 1e-6, 1e-6) is verdict
+
+
+def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
+    wrong = changed(error_force=0.5, ending=Ending.STALLED)
+    unclear = changed(doubt="the reference finds no solution", error_force=math.nan)
+    refused = Outcome(REFUSED_RUN, "load = 1 is refused")
+    for found, passing in (
+        (wrong, {UNSOLVED, UNCLEAR}),
+        (unclear, {UNCLEAR}),
+        (refused, {REFUSED}),
+        (GOOD, {RIGHT, UNSOLVED, UNCLEAR}),
+    ):
+        for expected in PASSING:
+            row = Audited(Case("a", "b", {}, expected).trial("fast"), found)
+            assert row.passed is (expected in passing)
+
+
+def test_a_warning_breaks_a_run(monkeypatch):
+    def warns(problem):
+        warnings.warn("overflow", RuntimeWarning, stacklevel=1)
+
+    monkeypatch.setattr("solver.study.audit.outcome.reference_of", warns)
+    (row,) = audit([Case("load", "zero", {"peak": 0.0}).trial("fast")])
+    assert row.outcome.ending == BROKEN
+    assert "overflow" in row.outcome.advice
+    assert row.verdict is Verdict.WRONG
+
+
+def test_condition_numbers_are_those_of_the_dense_matrices():
+    uneven = {"elements": 9, "substructures": 3, "section_profile": graded(50.0, 9)}
+    problem = discretise(BarSettings.checked({"method": "paper", **uneven}))
+    k = 3.0 * problem.direction
+    whole, largest = np.zeros((10, 10)), 0.0
+    for part in problem.substructures:
+        own = part.elasticity.stiffness.toarray()
+        whole[np.ix_(part.dofs, part.dofs)] += own
+        trace = np.eye(len(part.dofs))[part.elasticity.trace]
+        largest = max(largest, np.linalg.cond(own + trace.T @ np.diag(k[part.rows]) @ trace))
+    assert condition_of_structure(problem) == pytest.approx(np.linalg.cond(whole[1:, 1:]))
+    assert condition_of_substructures(problem, k) == pytest.approx(largest)
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch, capsys):
+    few = [Case("load", "zero <N>", {"peak": 0.0}, quick=True), Case("friction", "0")]
+    monkeypatch.setattr(report_commands, "cases_of", lambda scene, quick: few[: 1 if quick else 2])
+    folder = tmp_path / "made by" / "the command"
+    code = main(["stability", "--quick", "--out", str(folder)])
+    return folder, code, capsys.readouterr()
+
+
+def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
+    folder, code, (out, err) = written
+    assert (code, err) == (0, "")
+    assert {file.name for file in folder.iterdir()} == {"stability.csv", "stability.html"}
+    with (folder / "stability.csv").open(encoding="utf-8", newline="") as file:
+        found = list(csv.DictReader(file))
+    assert [row["method"] for row in found] == list(METHODS)
+    assert all(row["verdict"] == "right" for row in found)
+    assert tuple(found[0]) == COLUMNS
+    page = (folder / "stability.html").read_text(encoding="utf-8")
+    assert "zero &lt;N&gt;" in page
+    assert "2 of 2 runs pass" in page
+    assert "2 of 2 runs pass" in out
+    assert not re.search(r"https?:|src=|href|@import|<script|url\(", page)
+
+
+def test_one_scene_alone_can_be_asked(tmp_path, capsys):
+    assert {case.scene for case in cases_of("strand")} == {"strand"}
+    assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
+    assert "In other units" not in capsys.readouterr().out
+    assert main(["stability", "cable", "--out", str(tmp_path)]) == 2
+    assert ", ".join(CATALOGUE) in capsys.readouterr().err
+
+
+NEAR = Outcome(Ending.CONVERGED, "It is.", error_displacement=1e-3, error_force=5e-3)
+
+
+def nearly(**changes):
+    return dataclasses.replace(NEAR, **changes)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_a_row_is_drawn_alike_whatever_was_drawn_before(scene):
+    assert draw(scene, 3, 7).values() == draw(scene, 3, 7).values()
+    assert draw(scene, 3, 7).values() != draw(scene, 3, 8).values()
+    assert draw(scene, 3, 7).values() != draw(scene, 4, 7).values()
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_the_equations_alone_tell_a_solution_from_what_is_near_it(scene):
+    problem = discretise(CATALOGUE[scene].settings.checked(SMALL[scene]))
+    found = reference_of(problem)
+    fields = SimpleNamespace(displacement=found.displacement, contact_force=found.contact_force)
+    assert kkt_residual(fields, problem) < AT_ROUNDING
+    weaker = SimpleNamespace(
+        displacement=found.displacement, contact_force=0.999 * found.contact_force
+    )
+    further = SimpleNamespace(
+        displacement=1.001 * found.displacement, contact_force=found.contact_force
+    )
+    assert kkt_residual(weaker, problem) > 100.0 * AT_ROUNDING
+    assert kkt_residual(further, problem) > 100.0 * AT_ROUNDING
+
+
+def test_the_command_writes_a_table_and_a_page_of_its_own(tmp_path, capsys):
+    assert main(["survey", "bar", "--runs", "3", "--seed", "1", "--out", str(tmp_path)]) == 0
+    table, page = (tmp_path / f"survey.{kind}" for kind in ("csv", "html"))
+    with table.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["row"] for row in rows] == ["0", "1", "2"]
+    text = page.read_text(encoding="utf-8")
+    assert text.count("<tr>") >= 4
+    assert "http" not in text
+    assert "median iterations" in capsys.readouterr().out
+    main(["survey", "bar", "--row", "1", "--seed", "1", "--out", str(tmp_path)])
+    with table.open(encoding="utf-8", newline="") as file:
+        (alone,) = csv.DictReader(file)
+    assert alone["settings"] == rows[1]["settings"]
+    assert alone["error_force"] == rows[1]["error_force"]
+
+
+def test_a_wrong_row_is_listed_with_what_repeats_it():
+    wrong = Audited(drawn(draw("bar", 9, 4), 9, 4), nearly(error_force=0.5, error_displacement=1))
+    right = Audited(drawn(draw("bar", 9, 5), 9, 5), nearly(error_force=0.0))
+    report = survey_report([wrong, right])
+    text = "\n".join(report.lines())
+    assert "survey bar --seed 9 --row 4" in text
+    assert wrong.trial.again[1] in text
+    assert "--row 5" not in text
+    assert "1 of 2 runs pass" in text
+    assert not report.passes
+    counted = {verdict: runs for verdict, runs, _ in report.counts()[1:]}
+    assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}

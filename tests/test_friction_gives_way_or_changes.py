@@ -1,0 +1,358 @@
+"""Friction that gives way before it slips, or changes with slip (solver/README.md, 8 and 14)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from contact_problems import local_stage, rubbing_points
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from small_scenes import SMALL
+
+from solver.discrete.rods.rods import Rods
+from solver.latin import Ending, Latin, solve
+from solver.laws import Compliant, Contact
+from solver.laws.slip_dependent import SlipDependent
+from solver.reference.choice import reference_of
+from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
+from solver.reference.distance import distance_to
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.study.audit.residual import kkt_residual
+
+LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
+COMPLIANT = {"friction_law": "compliant"}
+
+
+def run(scene="bar", **values):
+    chosen = CATALOGUE[scene].settings.checked({**SMALL[scene], **COMPLIANT, **values})
+    problem = discretise(chosen)
+    return solve(problem, method_of(chosen), distance=distance_to(reference_of(problem), problem))
+
+
+def pulled(force, stiffness):
+    """Give the end displacement of a clamped bar under a monotone pull, and its slip zone."""
+    density = stiffness * AXIAL / LENGTH**2
+    return pulled_compliant_bar(force, LENGTH, AXIAL, BOUND, density)
+
+
+@pytest.mark.parametrize("stiffness", [3.0, 1e3])
+@pytest.mark.parametrize("peak", [100.0, 1400.0])
+def test_a_pulled_bar_moves_as_in_closed_form_and_the_better_the_finer(stiffness, peak):
+    exact, _ = pulled(peak, stiffness)
+    errors = []
+    for elements in (50, 200):
+        found = run(
+            load=[[0.0, 0.0], [1.0, peak]],
+            instants=11,
+            elements=elements,
+            contact_stiffness=stiffness,
+        )
+        assert found.status.ending is Ending.CONVERGED
+        errors.append(abs(found.iterate.displacement[-1, -1] - exact) / exact)
+    assert errors[1] < 2e-3
+    assert errors[1] < 0.6 * errors[0]
+
+
+def test_where_nothing_slips_the_bar_stands_on_springs():
+    peak, stiffness = 100.0, 100.0
+    assert pulled(peak, stiffness)[1] == 0.0
+    found = run(
+        load=[[0.0, 0.0], [1.0, peak]], instants=5, elements=400, contact_stiffness=stiffness
+    )
+    assert not found.iterate.status.any()
+    x = np.linspace(0.0, LENGTH, 401)
+    beta = np.sqrt(stiffness) / LENGTH
+    exact = peak * np.sinh(beta * x) / (AXIAL * beta * np.cosh(beta * LENGTH))
+    np.testing.assert_allclose(found.iterate.displacement[:, -1], exact, atol=1e-3 * exact[-1])
+
+
+def test_unloading_and_reloading_follow_masings_rule():
+    peak, stiffness = 1200.0, 100.0
+    path = [[0.0, 0.0], [0.2, peak], [0.6, -peak], [1.0, peak]]
+    found = run(load=path, instants=81, elements=200, contact_stiffness=stiffness).iterate
+    end = found.displacement[-1]
+    load = np.interp(np.linspace(0.0, 1.0, 81), *np.array(path).T)
+    top = pulled(peak, stiffness)[0]
+    for instant in range(20, 49, 4):
+        exact = top - 2.0 * pulled((peak - load[instant]) / 2.0, stiffness)[0]
+        assert abs(end[instant] - exact) < 3e-3 * top
+    assert abs(end[-1] - end[16]) < 1e-6 * top
+    forces = np.linspace(0.0, peak, 400)
+    curve = np.array([pulled(force, stiffness)[0] for force in forces])
+    exact = 8.0 * np.trapezoid(forces, curve) - 4.0 * peak * top
+    loop = np.trapezoid(load[16:], end[16:])
+    assert loop == pytest.approx(exact, rel=0.02)
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+@pytest.mark.parametrize("stiffness", [1.0, 300.0])
+def test_every_scene_ends_with_a_certified_solution(scene, stiffness):
+    found = run(scene, contact_stiffness=stiffness)
+    assert found.is_certified
+    assert found.records[-1].error_force < 1e-8
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_a_contact_that_hardly_gives_way_is_coulombs(scene):
+    stiff = run(scene, contact_stiffness=1e9).iterate.friction_force
+    rigid = run(scene, friction_law="coulomb").iterate.friction_force
+    np.testing.assert_allclose(stiff, rigid, atol=1e-5 * np.abs(rigid).max())
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 2**31), st.booleans(), st.booleans())
+def test_along_the_search_direction_slider_and_spring_carry_the_same_force(seed, opens, two):
+    random, sliders, common = rubbing_points(seed, opens=opens, two=two)
+    along = Compliant(2.0).on(sliders, common["weights"], 1.0)
+    law = Contact(tangential=along, **common)
+    moved, force = local_stage(law, random)
+    friction, slider = force[law.tangent.above], along.slider(moved, force)
+    spring = (slider - law.tangent.jump(moved)) / along.softness[:, None]
+    np.testing.assert_allclose(friction, spring)
+    bound = along.bound
+    if opens:
+        bound = bound + along.friction[:, None] * force[law.normal.component.above]
+    assert np.all(np.abs(friction) <= bound + 1e-9)
+    slip = np.diff(slider, axis=1, prepend=0.0)
+    slips = np.abs(slip) > 1e-9
+    np.testing.assert_allclose(friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-8)
+    if two:
+        np.testing.assert_allclose(friction, -force[law.tangent.below], atol=1e-10)
+
+
+STIFFNESS, MOST = 6.6e5, 1500.0
+CHANGING = {"friction_law": "slip-dependent"}
+
+
+def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
+    """Give a clamped pulled_bar of 1 m whose end is pulled, or displaced by force L / ES."""
+    return (
+        Rods(
+            length=1.0,
+            stiffness=STIFFNESS,
+            elements=elements,
+            substructures=1,
+            bound=np.full(elements + 1, bound),
+            load=np.asarray(force, dtype=float),
+            instants=np.linspace(0.0, 1.0, len(force)),
+            duration=1.0,
+            rigid_grip=displaced,
+            friction_law=law,
+        )
+    ).discretise()
+
+
+def gamma(ratio, slip_length):
+    return np.sqrt(MOST * abs(ratio - 1.0) / slip_length / STIFFNESS)
+
+
+@settings(max_examples=80)
+@given(
+    st.integers(0, 2**31),
+    st.booleans(),
+    st.booleans(),
+    st.sampled_from([0.0, 0.4, 1.0, 1.6, 5.0]),
+    st.sampled_from([1e-3, 0.3, 10.0]),
+)
+def test_the_local_stage_obeys_the_bound_that_its_slip_has_left(seed, opens, two, ratio, length):
+    random, plain, common = rubbing_points(seed, opens=opens, two=two)
+    law = Contact(
+        tangential=SlipDependent(ratio, length).on(plain, common["weights"], 1.0), **common
+    )
+    moved, force = local_stage(law, random)
+    slip = np.diff(law.tangent.jump(moved), axis=1, prepend=0.0)
+    gone = np.minimum(np.cumsum(np.abs(slip), axis=1) / length, 1.0)
+    bound = plain.bound
+    if opens:
+        bound = bound + plain.friction[:, None] * force[law.normal.component.above]
+    bound = bound * (1.0 + (ratio - 1.0) * gone)
+    friction = force[law.tangent.above]
+    assert np.all(np.abs(friction) <= bound + 1e-9)
+    slips = np.abs(slip) > 1e-9
+    assert slips.any()
+    np.testing.assert_allclose(friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-7)
+    assert law.behaviour(moved, force, 1e-14).violation(1.0).max() < 1e-7
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 2.0])
+def test_a_point_on_a_spring_moves_as_in_closed_form(ratio):
+    first, spring, length = 0.5 * MOST, STIFFNESS, 2.0 * MOST / STIFFNESS
+    slope = first * (ratio - 1.0) / length
+    force = np.linspace(0.0, 4.0 * MOST, 81)
+    problem = pulled_bar(SlipDependent(ratio, length), force, 1)
+    found = reference_of(problem)
+    early = np.maximum(force - first, 0.0) / (spring + slope)
+    expected = np.where(early < length, early, (force - first * ratio) / spring)
+    assert found.converged.all()
+    np.testing.assert_allclose(found.displacement[-1], expected, atol=1e-12 * expected.max())
+    run = solve(problem, Latin(finish=None), distance=distance_to(found, problem))
+    assert run.status.ending is Ending.CONVERGED
+    assert run.records[-1].error_force < 0.01
+
+
+def test_a_point_whose_friction_falls_faster_than_its_spring_unloads_jumps():
+    force = np.linspace(0.0, MOST, 41)
+    for share, jumps in ((0.98, False), (1.02, True)):
+        length = (
+            0.5 * MOST / (share * STIFFNESS)
+        )  # the slope over the spring's stiffness is the share
+        found = reference_of(pulled_bar(SlipDependent(0.0, length), force, 1))
+        assert (found.jumps_at is not None) is jumps
+        assert np.all(force[~found.converged] > 0.5 * MOST)
+
+
+@pytest.mark.parametrize(("ratio", "length"), [(3.0, 1e-3), (0.5, 1e-3)])
+def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(ratio, length):
+    peak, rate = 900.0, gamma(ratio, length)
+    slope = MOST * abs(ratio - 1.0) / length
+    if ratio > 1.0:
+        exact = MOST / slope * (np.sqrt(1.0 + (peak * rate / MOST) ** 2) - 1.0)
+    else:
+        exact = MOST / slope * (1.0 - np.sqrt(1.0 - (peak * rate / MOST) ** 2))
+    sizes, errors = np.array([25, 50, 100, 200]), []
+    for elements in sizes:
+        found = reference_of(
+            pulled_bar(SlipDependent(ratio, length), np.linspace(0, peak, 21), elements)
+        )
+        errors.append(abs(found.displacement[-1, -1] - exact) / exact)
+    assert errors[-1] < 1e-4
+    # The front ends somewhere inside an element, so errors scatter around their order.
+    assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] > 1.5
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.5])
+@pytest.mark.parametrize("load", ["sine", "random"])
+def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
+    values = {**CHANGING, "friction_ratio": ratio, "slip_length": 3e-4, "load": load}
+    chosen = CATALOGUE["bar"].settings.checked({**values, "instants": 51, "finish": "none"})
+    problem = discretise(chosen)
+    distance = distance_to(reference_of(problem), problem)
+    run = solve(problem, method_of(chosen), distance=distance)
+    assert run.status.ending is Ending.CONVERGED
+    assert run.records[-1].error_force < 0.02
+    whole = solve(problem, method_of(chosen.replace(finish="at-once")), distance=distance)
+    assert whole.is_certified
+    assert whole.records[-1].error_force < 1e-9
+    assert whole.records[-1].behaviour < 1e-9
+
+
+def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
+    length = 4e-4
+    largest = MOST / gamma(0.0, length)
+    force = np.linspace(0.0, 1.2 * largest, 121)
+    problem = pulled_bar(SlipDependent(0.0, length), force, 100)
+    found = reference_of(problem)
+    assert found.jumps_at is not None
+    assert force[found.jumps_at] == pytest.approx(largest, rel=0.015)
+    run = solve(problem, Latin())
+    assert run.is_certified
+    assert f"At {problem.instants[found.jumps_at]:.4g} s" in run.status.advice
+    assert "jumps" in run.status.advice
+
+
+@pytest.mark.parametrize("length", [1e-6, 1e-4])
+@pytest.mark.parametrize("displaced", [False, True])
+def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(length, displaced):
+    found = []
+    for steps in (10, 320):
+        end = np.linspace(0.0, 1.0, steps + 1) * (6e-4 * STIFFNESS if displaced else 800.0)
+        found.append(
+            reference_of(pulled_bar(SlipDependent(0.3, length), end, 40, displaced=displaced))
+        )
+        assert found[-1].converged.all()
+        assert found[-1].jumps_at is None
+    few, many = (one.displacement for one in found)
+    assert np.allclose(few, many[:, ::32], rtol=0.0, atol=1e-9 * np.abs(many).max())
+
+
+STRIP = {
+    **CHANGING,
+    "friction_ratio": 0.3,
+    "length": 1.0,
+    "height": 0.01,
+    "gap": "flat",
+    "friction": 0.3,
+    "plane": "stress",
+    "poisson": 0.0,
+    "top": "traction",
+    "top_normal_traction": -1e6,
+    "right": "pushed",
+    "elements": 100,
+    "elements_up": 2,
+}
+"""A strip that friction alone holds, pulled at one end by a displacement."""
+
+
+def pull_out(length):
+    """Give displacement and force of the strip's end, up to where the other begins to slip.
+
+    Behind the front friction softens over the same distance as long as it goes on, and beyond is
+    its last value.
+    """
+    stiffness, first, ratio = 2.1e11 * 0.01, 0.3e6, 0.3
+    slope = np.sqrt(first * (1.0 - ratio) / length / stiffness)
+    softens = np.linspace(0.0, np.arccos(ratio), 100) / slope
+    slid = np.linspace(0.0, 1.0 - softens[-1], 200)
+    force = first / slope * np.sin(slope * softens)
+    moved = length / (1.0 - ratio) * (1.0 - np.cos(slope * softens))
+    along = (force[-1] + 0.5 * ratio * first * slid) * slid / stiffness
+    forces = np.concatenate([force, force[-1] + ratio * first * slid])
+    return np.concatenate([moved, length + along]), forces
+
+
+@pytest.mark.parametrize(("length", "end"), [(1e-6, 6e-5), (1e-5, 3e-4)])
+def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(length, end):
+    path = [[0.0, 0.0], [0.25, 0.0], [1.0, end]]
+    values = {**STRIP, "slip_length": length, "right_normal_load": path, "instants": 121}
+    chosen = CATALOGUE["block"].settings.checked(values)
+    problem = discretise(chosen)
+    run = solve(problem, method_of(chosen))
+    assert run.status.ending is Ending.CONVERGED
+    assert run.is_certified
+    assert kkt_residual(run.iterate, problem) < 1e-9
+    moved = np.interp(problem.instants, *np.transpose(path))
+    pulled = -run.iterate.friction_force.sum(axis=0)
+    exact = pull_out(length)
+    assert exact[1][-1] == pytest.approx({1e-6: 107.2e3, 1e-5: 144.5e3}[length], rel=1e-3)
+    jumps_at = reference_of(problem).jumps_at
+    assert jumps_at == np.searchsorted(moved, exact[0][-1])
+    assert f"At {problem.instants[jumps_at]:.4g} s" in run.status.advice
+    apart = pulled[:jumps_at] - np.interp(moved[:jumps_at], *exact)
+    assert np.abs(apart).max() < 0.01 * exact[1][-1]
+    # All of it slides on, with the last friction.
+    assert pulled[jumps_at:] == pytest.approx(0.3 * 0.3e6, rel=1e-9)
+
+
+@pytest.mark.parametrize(("ratio", "jumps"), [(0.7, False), (0.75, True), (0.8, False)])
+def test_a_fault_that_softens_is_solved_and_jumps_only_where_its_elements_are_too_long(
+    ratio, jumps
+):
+    values = {**CHANGING, "friction_ratio": ratio, "slip_length": 1e-3}
+    for elements, expected in ((48, jumps), (96, False)):
+        chosen = CATALOGUE["fault"].settings.checked({**values, "elements": elements})
+        run = solve(discretise(chosen), method_of(chosen))
+        assert run.is_certified
+        assert ("jumps" in run.status.advice) is expected
+
+
+@settings(max_examples=15)
+@given(
+    st.integers(0, 2**31),
+    st.sampled_from(["block", "layers", "fault", "incline", "bar", "strand"]),
+    st.sampled_from([0.0, 0.4, 0.8, 2.0]),
+    st.sampled_from([1e-8, 1e-6, 1e-5, 1e-4]),
+)
+def test_what_is_found_obeys_equilibrium_and_the_law_wherever_it_is_found(
+    seed, scene, ratio, length
+):
+    random = np.random.default_rng(seed)
+    values = {**CHANGING, "friction_ratio": ratio, "slip_length": length, "instants": 21}
+    values |= {"friction": random.uniform(0.1, 0.8), "elements": 12}
+    chosen = CATALOGUE[scene].settings.checked(values)
+    problem = discretise(chosen)
+    found = reference_of(problem)
+    if found.converged.all():
+        assert kkt_residual(found, problem) < 1e-8
+    else:
+        assert found.jumps_at is not None

@@ -1,0 +1,290 @@
+"""Results of other programs are compared, and instants are given to them as FCLIB problems."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from solver.cli import main
+from solver.definitions import SettingError
+from solver.discrete.problem import Problem
+from solver.reference.choice import reference_of
+from solver.reference.distance import determinate_forces
+from solver.reference.solution import Reference
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE, discretise, exact_of
+from solver.settings import Settings
+from solver.study.other_programs import fclib
+from solver.study.other_programs.beside import Beside
+from solver.study.other_programs.brought import read_brought
+from solver.study.other_programs.fclib import contacts_of, local_problem, save_fclib
+
+HEAD = "x,t,friction force\n"
+ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
+SMALL: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 30, "instants": 21},
+    "strand": {"wires": 3, "elements": 12, "instants": 11},
+    "block": {"elements": 12, "elements_up": 4, "instants": 11},
+}
+
+
+def settings_of(scene: str = "bar", **changes: Any) -> Settings:
+    return CATALOGUE[scene].settings.checked(SMALL[scene] | changes)
+
+
+@cache
+def solved(scene: str) -> tuple[Settings, Problem, Reference]:
+    settings = settings_of(scene)
+    problem = discretise(settings)
+    return settings, problem, reference_of(problem)
+
+
+def table(quantity: str, x: Any, t: Any, values: Any) -> str:
+    """Write a field, (n_points, n_instants), as another program would."""
+    rows = [
+        f"{place!r},{time!r},{value!r}"
+        for place, line in zip(np.asarray(x).tolist(), np.asarray(values).tolist(), strict=True)
+        for time, value in zip(np.asarray(t).tolist(), line, strict=True)
+    ]
+    return "\n".join([f"x,t,{quantity}", *rows])
+
+
+def own_friction(scene: str) -> tuple[Any, Any, Any]:
+    """Give our force per length or area where it is determinate, with its points and instants."""
+    _, problem, reference = solved(scene)
+    (name, *_), law = problem.rubbing, next(iter(problem.rubbing.values()))
+    places = problem.contact_places[name][-1]
+    sizes = law.by_point(law.weights)[:, None]
+    known = determinate_forces(problem)[places].all(axis=1)
+    force = reference.contact_force[places] / sizes
+    return law.positions[known], problem.instants, force[known]
+
+
+@pytest.mark.parametrize("scene", SMALL)
+@pytest.mark.parametrize("factor", [1.0, 1.25, -1.0])
+def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
+    scene: str, factor: float
+) -> None:
+    settings, problem, reference = solved(scene)
+    x, t, values = own_friction(scene)
+    brought = read_brought(table("friction force", x, t, factor * values), "a.csv", settings)
+    beside = Beside(brought, problem)
+    assert beside.counted == len(brought.times) > 50
+    expected = abs((factor - 1.0) / factor)
+    assert beside.of(reference) == pytest.approx(expected, abs=1e-12)
+
+
+def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
+    """It is given at places that are no nodes, and at instants that are not those of the run."""
+    rng = np.random.default_rng(1)
+    distances = []
+    for elements in (20, 40, 80):
+        settings = settings_of(load="ramp", elements=elements, instants=2 * elements + 1)
+        fine = settings_of(load="ramp", elements=400, instants=401)
+        grid = discretise(fine)
+        friction, _ = exact_of(fine, grid)
+        where = np.sort(rng.choice(np.arange(1, 400), 150, replace=False))
+        when = np.sort(rng.choice(np.arange(1, 401), 60, replace=False))
+        x, t = grid.friction.positions[where], grid.instants[when]
+        text = table(
+            "friction force",
+            x,
+            t,
+            friction.up[np.ix_(where, when)],
+        )
+        brought = read_brought(text, "exact.csv", settings)
+        problem = discretise(settings)
+        distances.append(Beside(brought, problem).of(reference_of(problem)))
+    assert distances[0] > distances[1] > distances[2]
+
+
+def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
+    settings, problem, reference = solved("bar")
+    x, t, values = own_friction("bar")
+    text = table("friction force", x, t, values)
+    # The clamped node shares its friction with the clamp, and the run is over after a second.
+    text += "\n0.0,0.5,1e9\n0.1,1.5,1e9\n0.1,-0.5,1e9"
+    brought = read_brought(text, "a.csv", settings)
+    beside = Beside(brought, problem)
+    assert beside.counted == len(brought.times) - 3
+    assert beside.of(reference) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "it has no points"),
+        (ROWS, "name its columns in the first line"),
+        ("x,friction force\n0.1,1\n", "no column t"),
+        ("x,t\n0.1,1\n", "neither friction force nor displacement"),
+        (
+            "x,t,friction force [N]\n" + ROWS,
+            r"says N: give it in N/m, kN/m, N/mm; divide nodal forces",
+        ),
+        ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
+        (HEAD + ROWS + "0.5,1,nan\n", "line 6 has 'nan' as friction force: leave such rows out"),
+        (HEAD + ROWS + "0.5,much,1\n", "line 6 has 'much' as t: give a number"),
+        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*to 1 m"),
+        (HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n", r"2 of its 3 rows lie in the run.*at least 4"),
+        (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str) -> None:
+    with pytest.raises(SettingError, match=why) as caught:
+        read_brought(text, "theirs.csv", settings_of())
+    assert "theirs.csv" in str(caught.value)
+
+
+def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) -> None:
+    x, t, values = own_friction("bar")
+    path = tmp_path / "theirs.csv"
+    path.write_text(table("friction force", x, t, 1.25 * values))
+    sizes = [f"--set={name}={value}" for name, value in SMALL["bar"].items()]
+    assert main(["compare", "bar", *sizes, "--with", str(path)]) == 0
+    rows = values.size
+    assert capsys.readouterr().out == (
+        f"friction force: 20 % from theirs.csv, at {rows} of {rows} rows\n"
+    )
+    assert main(["compare", "bar", *sizes, "--with", str(path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["distance"] == pytest.approx(0.2)
+    assert (found["interface"], found["rows_compared"]) == ("friction", rows)
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (["--with", "/no/such.csv"], "No such file"),
+        (["--with", "{}", "--interface", "ceiling"], "allowed: friction"),
+    ],
+)
+def test_the_command_refuses_in_words(options: Any, why: str, tmp_path: Any, capsys: Any) -> None:
+    path = tmp_path / "theirs.csv"
+    path.write_text(HEAD + ROWS)
+    assert main(["compare", "bar", *(one.format(path) for one in options)]) == 2
+    assert why in capsys.readouterr().err
+
+
+PLANE = {
+    "block": {"elements": 16, "elements_up": 6, "instants": 21},
+    "layers": {"layers": 3, "elements": 6, "elements_up": 2, "instants": 21},
+}
+INSTANTS = (0, 6, 13)
+
+
+def problem_of(scene, **changes):
+    return discretise(CATALOGUE[scene].settings.checked(PLANE.get(scene, {}) | changes))
+
+
+def gauss_seidel(compliance, free, friction, most=50_000):
+    """Solve point by point: r_N from its opening, and r_T from its slip, cut to the cone."""
+    force = np.zeros_like(free)
+    for _ in range(most):
+        before = force.copy()
+        for normal, mu in zip(range(0, len(free), 2), friction, strict=True):
+            for row in (normal, normal + 1):
+                move = compliance[row] @ force + free[row]
+                force[row] -= move / compliance[row, row]
+                bound = mu * force[normal]
+                low, high = (0.0, np.inf) if row == normal else (-bound, bound)
+                force[row] = min(max(force[row], low), high)
+        if np.abs(force - before).max() <= 1e-13 * np.abs(force).max():
+            return force
+    raise AssertionError("no solution is found")
+
+
+def read_hdf5(path):
+    """Read W, q, mu and what stands under a solution, with no other knowledge than the layout."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path) as file:
+        group = file["fclib_local"]
+        own = {name: group[f"W/{name}"][()] for name in ("nzmax", "m", "n", "nz", "p", "i", "x")}
+        assert own["nz"] == -1
+        assert group["spacedim"][()] == 2
+        assert own["nzmax"][0] == len(own["x"]) == own["p"][-1]
+        shape = own["m"][0], own["n"][0]
+        matrix = sparse.csc_array((own["x"], own["i"], own["p"]), shape=shape).toarray()
+        vectors = group["vectors/q"][()], group["vectors/mu"][()]
+        solution = {name: one[()] for name, one in file.get("solution", {}).items()}
+        words = {name: one[()] for name, one in group["info"].items()}
+        kinds = {group[name].dtype for name in ("spacedim", "W/p", "W/i", "W/nz")}
+    assert kinds == {np.dtype(np.int32)}
+    return matrix, *vectors, solution, words
+
+
+@pytest.mark.parametrize("scene", PLANE)
+def test_a_solver_of_the_file_alone_finds_the_reactions_of_the_reference(scene, tmp_path):
+    problem = problem_of(scene)
+    reference, contacts = reference_of(problem), contacts_of(problem)
+    for instant in INSTANTS:
+        local = local_problem(contacts, reference, instant, scene, certified=True)
+        pytest.importorskip("h5py")
+        path = tmp_path / f"{instant}.hdf5"
+        save_fclib(path, local)
+        compliance, free, friction, solution, words = read_hdf5(path)
+        force = gauss_seidel(compliance, free, friction) if free.any() else 0.0 * free
+        wanted = reference.contact_force[contacts.places, instant]
+        assert np.linalg.norm(force - wanted) <= 1e-8 * np.linalg.norm(wanted)
+        np.testing.assert_array_equal(solution["r"], wanted)
+        assert f"t = {problem.instants[instant]:.6g} s".encode() in words["title"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "why"),
+    [
+        ("bar", {}, "bound that is known beforehand"),
+        ("strand", {}, "bound that is known beforehand"),
+        ("incline", {}, "is a spring"),
+        ("block", {"friction_law": "compliant"}, "gives way"),
+        ("block", {"friction_law": "slip-dependent"}, "changes with slip"),
+    ],
+    ids=str,
+)
+def test_what_fclib_cannot_say_is_refused_with_its_reason(scene, changes, why):
+    with pytest.raises(RefusedError, match=why):
+        contacts_of(problem_of(scene, **changes))
+
+
+def test_a_body_that_contact_alone_holds_has_no_compliance():
+    problem = problem_of("block", top="traction")
+    with pytest.raises(RefusedError, match=r"contact alone holds.*hold a side"):
+        contacts_of(problem)
+
+
+def test_the_command_writes_the_instant_that_is_nearest(tmp_path, capsys):
+    pytest.importorskip("h5py")
+    path = tmp_path / "one.hdf5"
+    sizes = [f"--set={name}={json.dumps(value)}" for name, value in PLANE["block"].items()]
+    assert main(["fclib", "block", *sizes, "--out", str(path), "--instant", "0.31"]) == 0
+    assert "t = 0.296875 s, 17 points" in capsys.readouterr().out
+    compliance, free, friction, solution, _ = read_hdf5(path)
+    assert set(solution) == {"u", "r"}
+    force = gauss_seidel(compliance, free, friction)
+    assert np.linalg.norm(force - solution["r"]) <= 1e-8 * np.linalg.norm(force)
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (["--instant", "7"], "--instant = 7.0 is refused"),
+        (["--instant", "nan"], "a time from 0 to 1 s"),
+        (["--out", "/no/such/folder/one.hdf5"], "No such file or directory"),
+    ],
+)
+def test_the_command_refuses_in_words_before_it_runs(options, why, tmp_path, capsys):
+    pytest.importorskip("h5py")
+    out = ["--out", str(tmp_path / "one.hdf5")]
+    assert main(["fclib", "block", *out, *options]) == 2
+    assert why in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_h5py_it_says_what_to_install(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(fclib, "find_spec", lambda name: None)
+    assert main(["fclib", "block", "--out", str(tmp_path / "one.hdf5")]) == 2
+    assert "slipfront[peers]" in capsys.readouterr().err
