@@ -16,7 +16,6 @@ from pages import (
     holds,
     is_solved,
     iteration,
-    painted,
     slider,
     status,
 )  # fmt: skip
@@ -33,8 +32,7 @@ def test_whoever_opens_the_page_sees_a_search_and_may_have_the_answer_at_once(
     expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
     expect(status(page)).to_contain_text("% wrong")
     first = iteration(page)
-    painted(page, 3)
-    assert iteration(page) > first
+    wait_for(lambda: iteration(page) > first)
     is_solved(page)
     expect(status(page)).to_contain_text(re.compile(r"search: \d+ iterations"))
     button(page, "Answer").click()
