@@ -1,4 +1,4 @@
-"""What one takes away from the page: tables, pictures, a program, a page, a contact problem."""
+"""What one takes away from the page: tables, pictures, a program, a page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import panel as pn
 import panel_material_ui as pmui
 from bokeh.document import Document
 from bokeh.embed import file_html
@@ -28,18 +27,13 @@ from app.browser import Display
 from app.charts import library
 from app.files import download
 from app.frame import Frame, Selection
-from app.messages import Compute
-from app.refusals import message_of
 from app.state import PageState
 from app.units import unit_for
 from app.views.view import View
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
-from app.worker.runner import fclib_file
 from solver.checked import dump
-from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.other_programs.fclib import can_write
 
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
@@ -253,32 +247,7 @@ class TakeAway:
             for title, make in _tables(frame, views).items()
         }
         name = f"slipfront-{settings.scene}"
-        buttons: list[Any] = [
-            download(label, name + end, make, **LOOK) for label, (end, make) in offers.items()
-        ]
-        return [*buttons, *([self._fclib(f"{name}.hdf5")] if can_write() else [])]
-
-    def _fclib(self, filename: str) -> pn.Column:
-        """A button that has the worker make the file, which is there to be saved then."""
-        state = self._state
-
-        def take(result: Any) -> None:
-            if isinstance(result, bytes):
-                made = download("Save it", filename, lambda: result, **LOOK)
-            elif isinstance(result, RefusedError):
-                made = pmui.Typography(message_of(result, state.settings))
-            else:
-                made = pmui.Typography(f"It cannot be written: {result}")
-            column[1:] = [made]
-
-        button = pmui.Button(
-            label="Contact problem of this instant (FCLIB)",
-            variant="outlined",
-            on_click=lambda event: state.compute(Compute(fclib_file, state.selection.phase), take),
-            **LOOK,
-        )
-        column = pn.Column(button, margin=0)
-        return column
+        return [download(label, name + end, make, **LOOK) for label, (end, make) in offers.items()]
 
 
 def slug(title: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from app.frame import Frame
 from solver.settings import Settings
@@ -61,18 +60,7 @@ class Ready:
     """The last picture is on the screen: the newest frame may be sent."""
 
 
-@dataclass(frozen=True)
-class Compute:
-    """Compute something of the newest iterate: a table, a file, a distance.
-
-    `function` is importable, and is called with the worker's `Runner` and `argument`.
-    """
-
-    function: Any
-    argument: Any = None
-
-
-Order = Start | Pace | Step | Needs | Ready | Compute
+Order = Start | Pace | Step | Needs | Ready
 
 
 @dataclass(frozen=True)
@@ -106,15 +94,8 @@ class Failed:
 
 
 @dataclass(frozen=True)
-class Computed:
-    """What a `Compute` came to; an exception where it failed."""
-
-    result: Any
-
-
-@dataclass(frozen=True)
 class Alive:
     """A sign of life."""
 
 
-Report = Began | NewFrame | Costly | Failed | Computed | Alive
+Report = Began | NewFrame | Costly | Failed | Alive

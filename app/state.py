@@ -134,7 +134,6 @@ class PageState(param.Parameterized):
         self.began = 0
         self._sent: Needs | None = None
         self._last_run: Frame | None = None
-        self._waiting: list[Callable[[Any], None]] = []
         self.param.watch(lambda event: self.param.update(prediction=None), "lesson")
         needed = ["selection", "needs", "readings", "brought"]
         self.param.watch(lambda *events: self.send_needs(is_news=False), needed)
@@ -260,8 +259,6 @@ class PageState(param.Parameterized):
                 )
             case messages.Failed(number, text) if number == self.number:
                 self.message = text
-            case messages.Computed(result) if self._waiting:
-                self._waiting.pop(0)(result)
 
     def _show(self, frame: Frame) -> None:
         if frame.run.number != self.number:
@@ -278,11 +275,6 @@ class PageState(param.Parameterized):
                 self.frame, self.ghost = frame, self._ghost_at(frame)
             else:
                 self.send(Ready())
-
-    def compute(self, order: Order, then: Callable[[Any], None]) -> None:
-        """Have the worker compute something of the newest iterate, and do something with it."""
-        self._waiting.append(then)
-        self.send(order)
 
     def send_needs(self, *, is_news: bool = True) -> None:
         """Have frames carry what is seen; a worker that is new is told in any case."""

@@ -94,11 +94,6 @@ class Loop:
                 runner.has_news = runner.iterate is not None
             case messages.Step(count) if runner is not None:
                 runner.pacing.step(count)
-            case messages.Compute(function, argument) if runner is not None:
-                try:
-                    self._send(messages.Computed(function(runner, argument)))
-                except Exception as problem:  # whoever asked is told
-                    self._send(messages.Computed(problem))
             case _:
                 pass
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import time
 from collections.abc import Callable
@@ -16,10 +15,8 @@ from solver.latin import Ending, Iterate, Record, Status, judged, record
 from solver.latin.run_cost import RunCost, run_cost
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted
-from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.study.other_programs.fclib import contacts_of, instant_at, local_problem, write_fclib
 
 HURRY = 0.1
 """Seconds that a run which follows a dragged slider has to end before it is shown."""
@@ -162,29 +159,3 @@ class Runner:
                 error_displacement=distance.of_displacement(self.iterate),
                 error_force=distance.of_friction_force(self.iterate),
             )
-
-
-def fclib_file(runner: Runner, phase: float) -> bytes:
-    """The contact problem of an instant, a share of the interval, in FCLIB's format (HDF5).
-
-    Raises
-    ------
-    RefusedError
-        Where the instant is no problem that FCLIB has, or too large for a page.
-    """
-    settings, problem, iterate = runner.settings, runner.sampler.problem, runner.iterate
-    if iterate is None or not has_reference(settings):
-        can = "python -m solver fclib writes it"
-        raise RefusedError("FCLIB", "so many points of contact", "fewer on a page", can)
-    shown = runner.sampler.run
-    instant = instant_at(float(shown.instants[shown.column(phase)]), problem.instants)
-    local = local_problem(
-        contacts_of(problem),
-        iterate,
-        instant,
-        settings.scene,
-        certified=iterate.residual is not None,
-    )
-    file = io.BytesIO()
-    write_fclib(file, local)
-    return file.getvalue()
