@@ -143,8 +143,7 @@ class Frame:
     """Displacement and force of the loop, shape (2, n_instants)."""
     history: Mapping[str, Floats]
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
-    (n_iterations,). With separated bases also "modes", how many each substructure's has, of
-    shape (n_iterations, n_substructures), of 60 substructures at most."""
+    (n_iterations,)."""
     status: Status | None = None
     """How the run ends, once it does."""
     energy: float = float("nan")

@@ -31,8 +31,8 @@ MOST_INSTANTS, MOST_POINTS = 401, 401
 """Instants, and points of an interface, that a frame has at most."""
 MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of one."""
-MOST_ITERATIONS, MOST_SUBSTRUCTURES = 1000, 60
-"""Entries of the history that a frame has at most, and sizes of bases in each."""
+MOST_ITERATIONS = 1000
+"""Entries of the history that a frame has at most."""
 SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("reduction", "is_answer"))
 
 
@@ -172,8 +172,4 @@ class Sampler:
 
 def _columns(history: Sequence[Record]) -> dict[str, Floats]:
     kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
-    columns = {name: floats(np.array([getattr(entry, name) for entry in kept])) for name in SCALARS}
-    if kept and kept[0].reduction:
-        shown = thinned(len(kept[0].reduction), MOST_SUBSTRUCTURES)
-        columns["modes"] = floats(np.array([[e.reduction[n].modes for n in shown] for e in kept]))
-    return columns
+    return {name: floats(np.array([getattr(entry, name) for entry in kept])) for name in SCALARS}
