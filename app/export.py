@@ -25,11 +25,11 @@ from jinja2 import Template
 
 from app.browser import Display
 from app.charts import library
-from app.files import download
 from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import unit_for
 from app.views.view import View
+from app.widgets import dialog, download
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
 from solver.checked import dump
@@ -225,7 +225,7 @@ class TakeAway:
 
     def __init__(self, state: PageState, display: Display) -> None:
         self._state, self.display = state, display
-        self.view = pmui.Dialog(title="Take away", show_close_button=True, close_on_click=True)
+        self.view = dialog("Take away")
 
     def open(self) -> None:
         """Offer what there is of what is seen."""

@@ -37,9 +37,7 @@ class Pace:
 
 @dataclass(frozen=True)
 class Step:
-    """Do some iterations and wait."""
-
-    count: int = 1
+    """Do one iteration and wait."""
 
 
 @dataclass(frozen=True)

@@ -40,18 +40,12 @@ BESIDE = ("peak_friction", "end_displacement", "stiffness", "dissipation", "stuc
 
 @dataclass(frozen=True)
 class Question:
-    """One or two settings over their values, and a quantity.
-
-    Attributes
-    ----------
-    vary
-        `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`; in SI.
-    of
-        A quantity, as `dissipation` or `iterations_to_force@0.01`.
-    """
+    """One or two settings over their values, and a quantity."""
 
     vary: tuple[str, ...]
+    """`NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`; in SI."""
     of: str
+    """A quantity, as `dissipation` or `iterations_to_force@0.01`."""
 
     def __str__(self) -> str:
         return " ".join((*self.vary, self.of))
@@ -224,10 +218,7 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
 class Span:
     """The fields of one setting, if there is one, and its values.
 
-    Parameters
-    ----------
-    changed
-        Called when somebody has changed a field.
+    `changed` is called when somebody has changed a field.
     """
 
     def __init__(self, label: str, changed: Callable[[], object], *, is_optional: bool) -> None:

@@ -68,11 +68,8 @@ class History:
 
     def add(self, frame: Frame) -> None:
         """Keep a frame; another one of the same iterate takes its place."""
-        last = self.newest
-        if last is not None and (last.iteration, last.is_answer) == (
-            frame.iteration,
-            frame.is_answer,
-        ):
+        last, place = self.newest, (frame.iteration, frame.is_answer)
+        if last is not None and (last.iteration, last.is_answer) == place:
             self._frames.pop()
         self._frames.append(frame)
         while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2:

@@ -140,7 +140,6 @@ class Scene(View):
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
-        assert self._held is not None
         handle, picture, present = self._held
         dragged = handle.value(present, picture.to_local(event.x, event.y))
         low, high = self.state.settings.definitions()[handle.setting].softbounds

@@ -256,10 +256,7 @@ def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
     return sampler.drawn.stress(iterate, needs.stress, sampler.settings)
 
 
-Extra = Callable[["Sampler", Iterate, Needs], Any]
-
-
-EXTRAS: dict[str, Extra] = {
+EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
     "spectra": spectra,
     "axial force": axial_force,
     "slips": slips,

@@ -141,7 +141,6 @@ class DrawnMesh(Drawn):
     def __init__(
         self, problem: Problem, description: Description, columns: NDArray[np.intp]
     ) -> None:
-        assert problem.inside is not None
         self._inside = problem.inside
         self._nodes, quads, self._quad = thinned_mesh(problem.inside)
         self._counts = np.bincount(self._quad)

@@ -92,8 +92,8 @@ class Loop:
             case messages.Pace(pace) if runner is not None:
                 runner.pacing.change(pace)
                 runner.has_news = runner.iterate is not None
-            case messages.Step(count) if runner is not None:
-                runner.pacing.step(count)
+            case messages.Step() if runner is not None:
+                runner.pacing.step()
             case _:
                 pass
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -39,14 +39,9 @@ SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("reduction", "i
 class Sampler:
     """Thin the fields of one problem, and turn nodal forces into forces per length or area.
 
-    Attributes
-    ----------
-    run
-        What all frames share; `complete` adds the reference.
-    problem, settings, loop, columns, rows
-        What is solved, its loop, and the instants, and points by interface, that are shown.
-    drawn, rope
-        The bodies as they are drawn, and the strand if it is one that is bent.
+    `run` is what all frames share, to which `complete` adds the reference. Of what is solved,
+    `columns` are the instants, and `rows` the points by interface, that are shown; `drawn` is the
+    bodies as they are drawn, and `rope` the strand if it is one that is bent.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
@@ -87,12 +82,11 @@ class Sampler:
         )
         self.run = replace(self.run, exact=exact)
         if reference is not None:
+            contact, loop = self._contact(reference, self.problem.rubbing), self._loop(reference)
             self.run = replace(
-                self.run,
-                reference=self._contact(reference, tuple(self.problem.rubbing)),
-                reference_loop=self._loop(reference),
+                self.run, reference=contact, reference_loop=loop,
                 reference_seconds=reference.seconds,
-            )
+            )  # fmt: skip
 
     def frame(
         self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
@@ -149,7 +143,7 @@ class Sampler:
         return np.asarray(law.by_point(law.weights)[self.rows[name]])
 
     def _contact(
-        self, shown: Iterate | Reference, names: Sequence[str]
+        self, shown: Iterate | Reference, names: Iterable[str]
     ) -> Mapping[str, ContactFields]:
         contact = {}
         for name in names:
@@ -163,9 +157,8 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = (
-            self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
-        )
+        force = self.loop.force
+        force = force if isinstance(force, np.ndarray) else force(shown)
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
 

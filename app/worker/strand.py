@@ -45,7 +45,6 @@ class DrawnRope:
     def __init__(self, rope: Rope, columns: NDArray[np.intp]) -> None:
         self._rope, self._columns = rope, columns
         description = rope.described()
-        assert description.height is not None
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
         self._first = len(rope.wires) - len(wires)
