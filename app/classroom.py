@@ -164,8 +164,9 @@ class ClassMember(param.Parameterized):
         room = find(code)
         if room is None:
             if code:
-                ask = "ask for its code; it may have ended"
-                self.message = f"There is no class {code[:20]}: {ask}."
+                self.message = (
+                    f"There is no class {code[:20]}: ask for its code; it may have ended."
+                )
             self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.leader.state

@@ -117,11 +117,7 @@ def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
 
 
 def offline_page(
-    frame: Frame,
-    views: Sequence[View],
-    selection: Selection,
-    ghost: Frame | None,
-    backend: str = "canvas",
+    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None, backend: str
 ) -> str:
     """A run as one page that needs nothing beside it (HTML): its plots at all instants, its tables.
 
@@ -155,10 +151,7 @@ def offline_page(
         for view in copies:
             view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
 
-    changes = _changes(page, len(columns), show)
-    models, names = ([key[i] for key in changes] for i in (0, 1))
-    moved = {"models": models, "names": names, "values": list(changes.values())}
-    slider.js_on_change("value", CustomJS(args=moved, code=SHOW))
+    slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the one that is looked at.
     show(at)
     return file_html(
@@ -185,10 +178,8 @@ def _copies(views: Sequence[View], backend: str) -> list[View]:
     return copies
 
 
-def _changes(
-    page: Document, count: int, show: Callable[[int], None]
-) -> dict[tuple[Model, str], list[Any]]:
-    """Values of all that differs between so many pictures, by model and property."""
+def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
+    """What shows one of so many pictures, with the values of all that differs between them."""
     changes: dict[tuple[Model, str], list[Any]] = {}
     page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
     # At first it is found out what changes at all.
@@ -199,7 +190,10 @@ def _changes(
         for (model, name), values in changes.items():
             value = getattr(model, name)
             values.append(dict(value) if name == "data" else value)
-    return {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
+    changes = {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
+    models, names = ([key[i] for key in changes] for i in (0, 1))
+    moved = {"models": models, "names": names, "values": list(changes.values())}
+    return CustomJS(args=moved, code=SHOW)
 
 
 def _tables(frame: Frame, views: Iterable[View]) -> dict[str, Callable[[], str]]:
@@ -238,7 +232,7 @@ class TakeAway:
         state, settings, views = self._state, frame.run.settings, list(self.display.views)
         page = partial(offline_page, frame, views, state.selection, state.ghost)
         offers = {
-            "The run as one page (.html)": (".html", page),
+            "The run as one page (.html)": (".html", partial(page, "canvas")),
             "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
             "The run as a program (.py)": (".py", partial(program, settings)),
         }

@@ -33,8 +33,6 @@ HELP = (
     "Settings (.toml) that were saved here; or a table (.csv): of time and load, or of x, t and "
     "friction force or displacement, as another program found them, which is drawn beside the run."
 )
-
-
 MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""
 

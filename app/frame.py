@@ -92,7 +92,6 @@ class Run:
     number: int
     """Counts the runs of a page, from 1."""
     settings: Settings
-    """Of the run."""
     sentence: str
     """What the scene is and what acts on it."""
     instants: Floats
@@ -100,7 +99,6 @@ class Run:
     interfaces: Mapping[str, Interface]
     """All interfaces with friction, by name."""
     geometry: Geometry
-    """The undeformed bodies."""
     across: tuple[str, str]
     up: tuple[str, str]
     """Title and SI unit of the loop's displacement and force."""
@@ -130,7 +128,6 @@ class Frame:
     """One iterate of a run."""
 
     run: Run
-    """What it belongs to."""
     iteration: int
     """Its number, from 1."""
     is_answer: bool
@@ -189,8 +186,6 @@ class Selection:
     """Number of the selected substructure, from 0; None is the last."""
     place: float | None = None
     """Position along the bodies that is marked, m."""
-    stress: str = "von Mises"
-    """Component of stress that colours the bodies."""
 
     def interface_of(self, run: Run) -> str:
         """The selected interface of a run, or its default one."""

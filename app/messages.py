@@ -48,7 +48,6 @@ class Needs:
     interface: str = ""
     substructure: int | None = None
     place: float | None = None
-    stress: str = "von Mises"
     readings: tuple[str, ...] = ()
     brought: Brought | None = None
 

@@ -152,10 +152,6 @@ def bathtub(settings: Settings, name: str = "acceleration") -> Question:
     return Question(tuple(vary), of)
 
 
-def _design(settings: Settings) -> Question | None:
-    return _map(settings, "friction", _load(settings), "dissipation")
-
-
 def _fretting(settings: Settings) -> Question | None:
     if not has_cycles(settings):
         return None
@@ -200,7 +196,10 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
         "Iterations over the factor on k, for several numbers of substructures.",
         partial(bathtub, name="substructures"),
     ),
-    "The design chart": ("Energy dissipated over friction and load.", _design),
+    "The design chart": (
+        "Energy dissipated over friction and load.",
+        lambda settings: _map(settings, "friction", _load(settings), "dissipation"),
+    ),
     "The fretting map": (
         "Share of the contact that slips at once in the last cycle, over the load and what "
         "presses: 0 is stick, 1 gross slip.",

@@ -35,7 +35,6 @@ PACES = {
     "20 a second": 20.0,
     "fastest": math.inf,
 }
-
 TABS = ["Live", "What if", "Reports"]
 VIEWS = ["page", "present", "embed"]
 """With controls, for a projector, for a frame in another page."""
@@ -276,7 +275,7 @@ class PageState(param.Parameterized):
     def send_needs(self, *, is_news: bool = True) -> None:
         """Have frames carry what is seen; a worker that is new is told in any case."""
         seen = self.selection
-        looked_at = seen.interface, seen.substructure, seen.place, seen.stress
+        looked_at = seen.interface, seen.substructure, seen.place
         needs = Needs(self.needs, *looked_at, tuple(self.readings), self.brought)
         if is_news or needs != self._sent:
             self._sent = needs

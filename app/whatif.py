@@ -130,7 +130,8 @@ class WhatIf:
 
     def chart(self) -> Chart:
         """What has come so far, in the units that are read."""
-        return in_units(chart_of(self.sweep.plan, list(self.sweep.rows), 0, _measured))
+        plan, rows = self.sweep.plan, list(self.sweep.rows)
+        return in_units(chart_of(plan, rows, 0, lambda v, unit: unit_for(abs(v), unit)(v, 4)))
 
     # Fields
 
@@ -256,10 +257,6 @@ def nearest(chart: Chart, x: float, y: float) -> int | None:
         away = np.hypot(away, (places - scale(at)) / (np.ptp(places) or 1.0))
     nearest = int(away.argmin())
     return int(known[nearest]) if isinstance(chart, Map) or away[nearest] < NEAR else None
-
-
-def _measured(value: float, unit: str) -> str:
-    return unit_for(abs(value), unit)(value, 4)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:

@@ -27,7 +27,7 @@ from app.lessons.handout import handout
 from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
-from app.widgets import button, dialog
+from app.widgets import button, dialog, download
 from solver.lessons.lesson import SUBJECTS, Control, Lesson
 
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
@@ -181,12 +181,8 @@ class LessonPanel:
 
     def _onward(self, lesson: Lesson) -> list[Any]:
         """The way to the next lesson, which a follower waits for, and the handout."""
-        on_paper = pmui.FileDownload(
-            callback=lambda: handout(self._state, lesson, self._curve),
-            filename=f"{lesson.name}.html",
-            label="Handout",
-            size="small",
-        )
+        make = partial(handout, self._state, lesson, self._curve)
+        on_paper = download("Handout", f"{lesson.name}.html", make, size="small")
         following, poll = dict(pairwise(LESSONS)).get(lesson.name), self._state.poll
         if following is None or not (poll is None or poll.leads):
             return [on_paper]

@@ -111,30 +111,16 @@ class Axis:
 class View:
     """A figure, made when it is first seen, below a legend that names what is there.
 
-    A click on an entry of the legend hides its curve.
-
-    Parameters
-    ----------
-    state
-        Of the page; what is done in the figure, as a tap, selects there.
-
-    Attributes
-    ----------
-    name
-        What its tab is called.
-    needs
-        Names of the extras of a frame that it shows.
-    applies
-        Whether it says anything about a run with such settings.
-    x, y
-        The axes.
-    sources
-        What is drawn, by name.
+    A click on an entry of the legend hides its curve. What is done in the figure, as a tap, selects
+    in the state of the page. `x` and `y` are the axes, `sources` what is drawn, by name.
     """
 
     name: ClassVar[str]
+    """What its tab is called."""
     needs: ClassVar[frozenset[str]] = frozenset()
+    """Names of the extras of a frame that it shows."""
     applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
+    """Whether it says anything about a run with such settings."""
 
     def __init__(self, state: PageState) -> None:
         self.state, self._type = state, TEXT

@@ -28,8 +28,7 @@ HEARTBEAT = 2.0
 
 def main(connection: Connection) -> None:
     """Take orders until the server, or the page, is gone."""
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)
+    os.nice(NICENESS)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # A run that diverges is told by its status.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")

@@ -94,6 +94,8 @@ class Sampler:
         """What is shown of an iterate, with the extras that views need."""
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, bool(self.run.reference), self.loop)
+        kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
+        scalars = {n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS}
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
@@ -101,7 +103,7 @@ class Sampler:
             contact=self._contact(iterate, self._names(needs)),
             deformed=self.drawn.deformed(iterate),
             loop=self._loop(iterate),
-            history=_columns(history),
+            history=scalars,
             status=status,
             energy=float(run.dissipated.sum()),
             residual=iterate.residual,
@@ -161,8 +163,3 @@ class Sampler:
         force = force if isinstance(force, np.ndarray) else force(shown)
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
-
-
-def _columns(history: Sequence[Record]) -> dict[str, Floats]:
-    kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
-    return {name: floats(np.array([getattr(entry, name) for entry in kept])) for name in SCALARS}
