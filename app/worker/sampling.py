@@ -83,10 +83,10 @@ class Sampler:
         self.run = replace(self.run, exact=exact)
         if reference is not None:
             contact, loop = self._contact(reference, self.problem.rubbing), self._loop(reference)
+            seconds = reference.seconds
             self.run = replace(
-                self.run, reference=contact, reference_loop=loop,
-                reference_seconds=reference.seconds,
-            )  # fmt: skip
+                self.run, reference=contact, reference_loop=loop, reference_seconds=seconds
+            )
 
     def frame(
         self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
