@@ -23,6 +23,7 @@ from app.messages import Needs, Order, Ready
 from app.server import address_for_others, how_to_open
 from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
+from app.widgets import button, dialog
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 """Of a code; none of them is taken for a digit."""
@@ -139,7 +140,7 @@ class ClassMember(param.Parameterized):
         self.room: Classroom | None = None
         self.left: Classroom | None = None
         self._is_due = False
-        state.param.watch(lambda *events: self._on_change(), SHARED)
+        state.param.watch(lambda *events: self.leads and self.room.notify(), SHARED)
         state.param.watch(lambda event: self.room and self.room.notify(), "prediction")
         state.param.watch(lambda event: self._on_address(event.new), "room")
 
@@ -163,8 +164,9 @@ class ClassMember(param.Parameterized):
         room = find(code)
         if room is None:
             if code:
-                ask = "ask for its code; it may have ended"
-                self.message = f"There is no class {code[:20]}: {ask}."
+                self.message = (
+                    f"There is no class {code[:20]}: ask for its code; it may have ended."
+                )
             self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.leader.state
@@ -247,10 +249,6 @@ class ClassMember(param.Parameterized):
         if not isinstance(order, Ready | Needs):
             self.leave()
 
-    def _on_change(self) -> None:
-        if self.leads:
-            self.room.notify()
-
     def _take(self) -> None:
         """Show what the leader shows."""
         self._is_due = False
@@ -305,13 +303,11 @@ class ClassDialog:
     def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
-        self._act = _button("", lambda: self._offer()[1](), variant="text")
-        self._code = _button("Code", lambda: self.open(), variant="text")
+        self._act = button("", lambda: self._offer()[1](), variant="text")
+        self._code = button("Code", lambda: self.open(), variant="text")
         parts = self._message, self._act, self._code
         self.view = pn.Row(*parts, visible=False, margin=0, align="center", css_classes=["class"])
-        self.dialog = pmui.Dialog(
-            title="A class", width_option="sm", show_close_button=True, close_on_click=True
-        )
+        self.dialog = dialog("A class", width_option="sm")
         member.param.watch(lambda event: self._show(), "message")
 
     def open(self) -> None:
@@ -322,10 +318,10 @@ class ClassDialog:
 
     def _offered(self) -> list[Any]:
         self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
-        join = _button("Join", self._join, variant="outlined")
+        join = button("Join", self._join, variant="outlined")
         return [
             pn.pane.Markdown("Whoever joins a class sees what its leader sees, and predicts too."),
-            _button("Begin a class", self._begin),
+            button("Begin a class", self._begin),
             pn.Row(self._field, join, align="end", margin=(12, 0)),
         ]
 
@@ -339,7 +335,7 @@ class ClassDialog:
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
             below = how_to_open()
-        return [pn.pane.HTML(large + below), _button("End the class", self._end)]
+        return [pn.pane.HTML(large + below), button("End the class", self._end)]
 
     def _begin(self) -> None:
         self._member.begin()
@@ -373,8 +369,3 @@ class ClassDialog:
         self._act.param.update(label=label or " ", visible=bool(label))
         self._code.visible = self._member.leads
         self.view.visible = bool(self._member.message)
-
-
-def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
-    style = {"variant": "contained", "size": "small", **more}
-    return pmui.Button(label=label, on_click=lambda event: act(), **style)

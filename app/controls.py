@@ -15,6 +15,7 @@ from app.browser import Echoes
 from app.files import CurveDialog, FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
+from app.widgets import button
 from solver.definitions import CurveParameter, Parameter, about
 from solver.scenes import CATALOGUE, chief_of, ends_of
 from solver.scenes.entry import Emblem
@@ -102,14 +103,8 @@ class SettingControl:
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            self._edit_button = pmui.Button(
-                label="Edit points",
-                icon="show_chart",
-                variant="text",
-                size="small",
-                margin=(-4, 0, 0, 0),
-                on_click=lambda event: self._edit(),
-            )
+            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
+            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
             return field, pn.Column(field, self._edit_button, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)

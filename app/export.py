@@ -1,4 +1,4 @@
-"""What one takes away from the page: tables, pictures, a program, a page, a contact problem."""
+"""What one takes away from the page: tables, pictures, a program, a page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import panel as pn
 import panel_material_ui as pmui
 from bokeh.document import Document
 from bokeh.embed import file_html
@@ -26,20 +25,15 @@ from jinja2 import Template
 
 from app.browser import Display
 from app.charts import library
-from app.files import download
 from app.frame import Frame, Selection
-from app.messages import Compute
-from app.refusals import message_of
 from app.state import PageState
 from app.units import unit_for
 from app.views.view import View
+from app.widgets import dialog, download
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
-from app.worker.runner import fclib_file
 from solver.checked import dump
-from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.other_programs.fclib import can_write
 
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
@@ -123,11 +117,7 @@ def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
 
 
 def offline_page(
-    frame: Frame,
-    views: Sequence[View],
-    selection: Selection,
-    ghost: Frame | None,
-    backend: str = "canvas",
+    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None, backend: str
 ) -> str:
     """A run as one page that needs nothing beside it (HTML): its plots at all instants, its tables.
 
@@ -161,10 +151,7 @@ def offline_page(
         for view in copies:
             view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
 
-    changes = _changes(page, len(columns), show)
-    models, names = ([key[i] for key in changes] for i in (0, 1))
-    moved = {"models": models, "names": names, "values": list(changes.values())}
-    slider.js_on_change("value", CustomJS(args=moved, code=SHOW))
+    slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the one that is looked at.
     show(at)
     return file_html(
@@ -191,10 +178,8 @@ def _copies(views: Sequence[View], backend: str) -> list[View]:
     return copies
 
 
-def _changes(
-    page: Document, count: int, show: Callable[[int], None]
-) -> dict[tuple[Model, str], list[Any]]:
-    """Values of all that differs between so many pictures, by model and property."""
+def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
+    """What shows one of so many pictures, with the values of all that differs between them."""
     changes: dict[tuple[Model, str], list[Any]] = {}
     page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
     # At first it is found out what changes at all.
@@ -205,7 +190,10 @@ def _changes(
         for (model, name), values in changes.items():
             value = getattr(model, name)
             values.append(dict(value) if name == "data" else value)
-    return {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
+    changes = {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
+    models, names = ([key[i] for key in changes] for i in (0, 1))
+    moved = {"models": models, "names": names, "values": list(changes.values())}
+    return CustomJS(args=moved, code=SHOW)
 
 
 def _tables(frame: Frame, views: Iterable[View]) -> dict[str, Callable[[], str]]:
@@ -231,7 +219,7 @@ class TakeAway:
 
     def __init__(self, state: PageState, display: Display) -> None:
         self._state, self.display = state, display
-        self.view = pmui.Dialog(title="Take away", show_close_button=True, close_on_click=True)
+        self.view = dialog("Take away")
 
     def open(self) -> None:
         """Offer what there is of what is seen."""
@@ -244,7 +232,7 @@ class TakeAway:
         state, settings, views = self._state, frame.run.settings, list(self.display.views)
         page = partial(offline_page, frame, views, state.selection, state.ghost)
         offers = {
-            "The run as one page (.html)": (".html", page),
+            "The run as one page (.html)": (".html", partial(page, "canvas")),
             "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
             "The run as a program (.py)": (".py", partial(program, settings)),
         }
@@ -253,32 +241,7 @@ class TakeAway:
             for title, make in _tables(frame, views).items()
         }
         name = f"slipfront-{settings.scene}"
-        buttons: list[Any] = [
-            download(label, name + end, make, **LOOK) for label, (end, make) in offers.items()
-        ]
-        return [*buttons, *([self._fclib(f"{name}.hdf5")] if can_write() else [])]
-
-    def _fclib(self, filename: str) -> pn.Column:
-        """A button that has the worker make the file, which is there to be saved then."""
-        state = self._state
-
-        def take(result: Any) -> None:
-            if isinstance(result, bytes):
-                made = download("Save it", filename, lambda: result, **LOOK)
-            elif isinstance(result, RefusedError):
-                made = pmui.Typography(message_of(result, state.settings))
-            else:
-                made = pmui.Typography(f"It cannot be written: {result}")
-            column[1:] = [made]
-
-        button = pmui.Button(
-            label="Contact problem of this instant (FCLIB)",
-            variant="outlined",
-            on_click=lambda event: state.compute(Compute(fclib_file, state.selection.phase), take),
-            **LOOK,
-        )
-        column = pn.Column(button, margin=0)
-        return column
+        return [download(label, name + end, make, **LOOK) for label, (end, make) in offers.items()]
 
 
 def slug(title: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from typing import Any
 
@@ -17,6 +16,7 @@ from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.units import units_of_points
 from app.views.colors import LATIN
+from app.widgets import button, dialog, download
 from solver.checked import dump
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
@@ -33,23 +33,8 @@ HELP = (
     "Settings (.toml) that were saved here; or a table (.csv): of time and load, or of x, t and "
     "friction force or displacement, as another program found them, which is drawn beside the run."
 )
-
-
 MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""
-
-
-def download(label: str, filename: str, make: Callable[[], str | bytes], **look: Any) -> Any:
-    """A button that saves what a function makes once it is pressed."""
-
-    def data() -> io.BytesIO:
-        content = make()
-        return io.BytesIO(content if isinstance(content, bytes) else content.encode())
-
-    button = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
-    # Its constructor warns of a variant, whatever it is.
-    button.variant = "outlined"
-    return button
 
 
 def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | Brought, str]:
@@ -80,7 +65,6 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     A run then lasts until the last of its tables ends.
     """
     definition = settings.definitions()[name]
-    assert isinstance(definition, CurveParameter)
     curve = curve_of(table, definition, name, settings.curve_units(name))
     changed = settings.replace(**{name: curve.points})
     message = f"{about(definition).title}: {curve.message}."
@@ -122,10 +106,7 @@ def _path_of(table: Table, source: str, settings: Settings) -> str:
 class FilesPanel:
     """Buttons that save settings and open files, and what was understood of these.
 
-    Parameters
-    ----------
-    copy
-        Has the browser copy the link to what is shown; returns what it had to leave out.
+    `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
     """
 
     def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
@@ -137,23 +118,16 @@ class FilesPanel:
         )
         self.file.param.watch(lambda event: self._open(), "value")
         self.message = pmui.Typography("", variant="body2", width=width, margin=0)
-        self._remove = pmui.Button(icon="close", on_click=lambda event: self._forget(), **outlined)
+        self._remove = button("", self._forget, icon="close", **outlined)
         self.view = pn.Column(
-            pmui.Button(
-                label="Copy link", icon="link", on_click=lambda event: self._copy_link(), **outlined
-            ),
+            button("Copy link", self._copy_link, icon="link", **outlined),
             download(
                 "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
             ),
             self.file,
             self.message,
             self._remove,
-            pmui.Button(
-                label="All settings to default",
-                icon="restart_alt",
-                on_click=lambda event: state.adopt(default_settings(state.settings.scene)),
-                **outlined,
-            ),
+            button("All settings to default", self._reset, icon="restart_alt", **outlined),
             margin=0,
         )
         state.param.watch(lambda event: self._show(), "brought")
@@ -161,6 +135,9 @@ class FilesPanel:
 
     def _copy_link(self) -> None:
         self.message.object = f"The link to what is shown is copied. {self._copy()}"
+
+    def _reset(self) -> None:
+        self._state.adopt(default_settings(self._state.settings.scene))
 
     def _open(self) -> None:
         state = self._state
@@ -191,16 +168,12 @@ class FilesPanel:
 class CurveDialog:
     """A dialog that has the points of one path; what is done there holds at once.
 
-    Attributes
-    ----------
-    source, text
-        The points in their units, as they are dragged, and the same as a table.
+    They are in their units in `source`, where they are dragged, and as a table in `text`.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
         self._name, self._state = name, state
         definition = state.settings.definitions()[name]
-        assert isinstance(definition, CurveParameter)
         self._columns = definition.abscissa, definition.ordinate
         self._is_updating = False
         self.source = ColumnDataSource({"x": [], "y": []})
@@ -217,15 +190,13 @@ class CurveDialog:
         self._file.param.watch(lambda event: self._take(event.new, self._file.filename), "value")
         self._message = pn.pane.Markdown("", margin=(0, 5))
         self._figure = self._plot()
-        self.view = pmui.Dialog(
+        self.view = dialog(
+            f"{about(definition).title}: points",
             pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),
             "Drag a point; tap to add one, tap it and press Backspace to take it away.",
             self.text,
             self._file,
             self._message,
-            title=f"{about(definition).title}: points",
-            show_close_button=True,
-            close_on_click=True,
             width_option="sm",
         )
 

@@ -92,7 +92,6 @@ class Run:
     number: int
     """Counts the runs of a page, from 1."""
     settings: Settings
-    """Of the run."""
     sentence: str
     """What the scene is and what acts on it."""
     instants: Floats
@@ -100,7 +99,6 @@ class Run:
     interfaces: Mapping[str, Interface]
     """All interfaces with friction, by name."""
     geometry: Geometry
-    """The undeformed bodies."""
     across: tuple[str, str]
     up: tuple[str, str]
     """Title and SI unit of the loop's displacement and force."""
@@ -130,7 +128,6 @@ class Frame:
     """One iterate of a run."""
 
     run: Run
-    """What it belongs to."""
     iteration: int
     """Its number, from 1."""
     is_answer: bool
@@ -143,8 +140,7 @@ class Frame:
     """Displacement and force of the loop, shape (2, n_instants)."""
     history: Mapping[str, Floats]
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
-    (n_iterations,). With separated bases also "modes", how many each substructure's has, of
-    shape (n_iterations, n_substructures), of 60 substructures at most."""
+    (n_iterations,)."""
     status: Status | None = None
     """How the run ends, once it does."""
     energy: float = float("nan")
@@ -190,8 +186,6 @@ class Selection:
     """Number of the selected substructure, from 0; None is the last."""
     place: float | None = None
     """Position along the bodies that is marked, m."""
-    stress: str = "von Mises"
-    """Component of stress that colours the bodies."""
 
     def interface_of(self, run: Run) -> str:
         """The selected interface of a run, or its default one."""

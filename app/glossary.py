@@ -6,6 +6,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import HELP
+from app.widgets import dialog
 
 WORDS = {
     "LATIN": "The method: in turns it obeys the contact laws point by point and the elasticity of "
@@ -35,15 +36,10 @@ WORDS = {
 }
 
 
-def dialog() -> pmui.Dialog:
+def glossary() -> pmui.Dialog:
     """A dialog of both."""
-    return pmui.Dialog(
-        pn.pane.HTML(f"{_table(HELP)}{_table(WORDS)}", sizing_mode="stretch_width"),
-        title="Keys and words",
-        width_option="md",
-        show_close_button=True,
-        close_on_click=True,
-    )
+    tables = pn.pane.HTML(f"{_table(HELP)}{_table(WORDS)}", sizing_mode="stretch_width")
+    return dialog("Keys and words", tables, width_option="md")
 
 
 def _table(entries: dict[str, str]) -> str:

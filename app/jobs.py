@@ -58,12 +58,8 @@ def executor() -> Pool:
 class Job:
     """A command that is waiting, running, or done.
 
-    Parameters
-    ----------
-    arguments
-        As after `python -m solver`; they may name the file `SETTINGS` and the folder `OUT`.
-    settings
-        Text of that file.
+    Its arguments, as after `python -m solver`, may name the folder `OUT`, and the file `SETTINGS`,
+    whose text the settings are.
     """
 
     def __init__(self, arguments: Sequence[str], settings: str = "") -> None:
@@ -138,12 +134,7 @@ def share_of(named: str, users: int) -> str:
 class Sweep:
     """Runs of a plan, on a thread of its own.
 
-    Attributes
-    ----------
-    rows
-        Those that have come.
-    message
-        Why it came to nothing, or empty.
+    `rows` are those that have come; `message` says why it came to nothing, or is empty.
     """
 
     _under_way: ClassVar[set[Sweep]] = set()

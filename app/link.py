@@ -212,15 +212,10 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
         else:
             refused.append(f"{name[:40]} is too long for it: open its file")
     settings = _together(base, {name: parse(text) for name, text in pairs.items()}, refused)
-    return Place(settings, **given), _message(refused)
-
-
-def _message(refused: list[str]) -> str:
-    if not refused:
-        return ""
-    more = len(refused) - MOST_TOLD
     told = "; ".join(text.rstrip(".") for text in refused[:MOST_TOLD])
-    return f"From the address: {told}{f'; and {more} more' if more > 0 else ''}."
+    if len(refused) > MOST_TOLD:
+        told += f"; and {len(refused) - MOST_TOLD} more"
+    return Place(settings, **given), f"From the address: {told}." if refused else ""
 
 
 def _base(name: str, scene: str, refused: list[str]) -> Settings:

@@ -169,8 +169,7 @@ class Card:
         """The figure of a view with the frame; it is made when it is first seen."""
         state = self._state
         if view not in self._panes:
-            pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
-            self._panes[view] = pane
+            self._panes[view] = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
         return self._panes[view]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from app.frame import Frame
 from solver.settings import Settings
@@ -38,9 +37,7 @@ class Pace:
 
 @dataclass(frozen=True)
 class Step:
-    """Do some iterations and wait."""
-
-    count: int = 1
+    """Do one iteration and wait."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +48,6 @@ class Needs:
     interface: str = ""
     substructure: int | None = None
     place: float | None = None
-    stress: str = "von Mises"
     readings: tuple[str, ...] = ()
     brought: Brought | None = None
 
@@ -61,18 +57,7 @@ class Ready:
     """The last picture is on the screen: the newest frame may be sent."""
 
 
-@dataclass(frozen=True)
-class Compute:
-    """Compute something of the newest iterate: a table, a file, a distance.
-
-    `function` is importable, and is called with the worker's `Runner` and `argument`.
-    """
-
-    function: Any
-    argument: Any = None
-
-
-Order = Start | Pace | Step | Needs | Ready | Compute
+Order = Start | Pace | Step | Needs | Ready
 
 
 @dataclass(frozen=True)
@@ -106,15 +91,8 @@ class Failed:
 
 
 @dataclass(frozen=True)
-class Computed:
-    """What a `Compute` came to; an exception where it failed."""
-
-    result: Any
-
-
-@dataclass(frozen=True)
 class Alive:
     """A sign of life."""
 
 
-Report = Began | NewFrame | Costly | Failed | Computed | Alive
+Report = Began | NewFrame | Costly | Failed | Alive

@@ -8,11 +8,11 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app import glossary
 from app.browser import listen
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.export import TakeAway
+from app.glossary import glossary
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show
 from app.live import STYLE, Live, column
@@ -74,7 +74,7 @@ class Page:
         self._beside = pn.FlexBox(self._live.view, margin=0)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        take_away, self._words = TakeAway(state, self._live.display), glossary.dialog()
+        take_away, self._words = TakeAway(state, self._live.display), glossary()
         dialogs = [self._lesson.dialog, self._class.dialog, take_away.view, self._words]
         self.template = pmui.Page(
             title="Slipfront",

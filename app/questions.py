@@ -40,18 +40,12 @@ BESIDE = ("peak_friction", "end_displacement", "stiffness", "dissipation", "stuc
 
 @dataclass(frozen=True)
 class Question:
-    """One or two settings over their values, and a quantity.
-
-    Attributes
-    ----------
-    vary
-        `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`; in SI.
-    of
-        A quantity, as `dissipation` or `iterations_to_force@0.01`.
-    """
+    """One or two settings over their values, and a quantity."""
 
     vary: tuple[str, ...]
+    """`NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`; in SI."""
     of: str
+    """A quantity, as `dissipation` or `iterations_to_force@0.01`."""
 
     def __str__(self) -> str:
         return " ".join((*self.vary, self.of))
@@ -158,10 +152,6 @@ def bathtub(settings: Settings, name: str = "acceleration") -> Question:
     return Question(tuple(vary), of)
 
 
-def _design(settings: Settings) -> Question | None:
-    return _map(settings, "friction", _load(settings), "dissipation")
-
-
 def _fretting(settings: Settings) -> Question | None:
     if not has_cycles(settings):
         return None
@@ -206,7 +196,10 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
         "Iterations over the factor on k, for several numbers of substructures.",
         partial(bathtub, name="substructures"),
     ),
-    "The design chart": ("Energy dissipated over friction and load.", _design),
+    "The design chart": (
+        "Energy dissipated over friction and load.",
+        lambda settings: _map(settings, "friction", _load(settings), "dissipation"),
+    ),
     "The fretting map": (
         "Share of the contact that slips at once in the last cycle, over the load and what "
         "presses: 0 is stick, 1 gross slip.",
@@ -224,10 +217,7 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
 class Span:
     """The fields of one setting, if there is one, and its values.
 
-    Parameters
-    ----------
-    changed
-        Called when somebody has changed a field.
+    `changed` is called when somebody has changed a field.
     """
 
     def __init__(self, label: str, changed: Callable[[], object], *, is_optional: bool) -> None:

@@ -8,10 +8,10 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app.files import download
 from app.jobs import OUT, SETTINGS, Job, follow
 from app.questions import PLAIN
 from app.state import PageState
+from app.widgets import button, download
 from app.worker.references import has_reference
 from solver.checked import dump
 from solver.study.proof.report import PAGE
@@ -47,12 +47,8 @@ DONE: dict[tuple[tuple[str, ...], str], dict[str, bytes]] = {}
 class Reports:
     """The tab.
 
-    Attributes
-    ----------
-    job, title
-        The report that is being made, or was last, and its kind.
-    kind, page, files
-        What is chosen, and what is shown of it: a page, and files to be saved.
+    `job` is the report that is being made, and `title` its kind; `kind` is what is chosen, and
+    `page` and `files` are what is shown of it.
     """
 
     def __init__(self, state: PageState) -> None:
@@ -80,9 +76,8 @@ class Reports:
         fields = (self.kind, self.repeats, self.sizes, self.is_quick)
         for field in fields:
             field.param.watch(lambda event: self._show(), "value")
-        self._start = pmui.Button(icon="play_arrow", on_click=lambda event: self.start(), **LOOKS)
-        self._cancel = pmui.Button(label="Cancel", icon="stop", variant="outlined", **LOOKS)
-        self._cancel.on_click(lambda event: self.cancel())
+        self._start = button("Start", self.start, icon="play_arrow", **LOOKS)
+        self._cancel = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
         self._words = pmui.Typography("", variant="body2", margin=(0, 8))
         self._progress = pmui.Typography("", variant="body2", margin=(6, 8))
         self.files = pn.FlexBox()

@@ -153,9 +153,7 @@ def is_of_an_open_page(record: logging.LogRecord) -> bool:
 class OneLine(logging.Filter):
     """Log a message that is none of Bokeh's in one line, and seldom."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._last = -QUIET
+    _last = -QUIET
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Whether a record is logged; its traceback is not."""

@@ -35,7 +35,6 @@ PACES = {
     "20 a second": 20.0,
     "fastest": math.inf,
 }
-
 TABS = ["Live", "What if", "Reports"]
 VIEWS = ["page", "present", "embed"]
 """With controls, for a projector, for a frame in another page."""
@@ -68,11 +67,8 @@ class History:
 
     def add(self, frame: Frame) -> None:
         """Keep a frame; another one of the same iterate takes its place."""
-        last = self.newest
-        if last is not None and (last.iteration, last.is_answer) == (
-            frame.iteration,
-            frame.is_answer,
-        ):
+        last, place = self.newest, (frame.iteration, frame.is_answer)
+        if last is not None and (last.iteration, last.is_answer) == place:
             self._frames.pop()
         self._frames.append(frame)
         while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2:
@@ -134,7 +130,6 @@ class PageState(param.Parameterized):
         self.began = 0
         self._sent: Needs | None = None
         self._last_run: Frame | None = None
-        self._waiting: list[Callable[[Any], None]] = []
         self.param.watch(lambda event: self.param.update(prediction=None), "lesson")
         needed = ["selection", "needs", "readings", "brought"]
         self.param.watch(lambda *events: self.send_needs(is_news=False), needed)
@@ -260,8 +255,6 @@ class PageState(param.Parameterized):
                 )
             case messages.Failed(number, text) if number == self.number:
                 self.message = text
-            case messages.Computed(result) if self._waiting:
-                self._waiting.pop(0)(result)
 
     def _show(self, frame: Frame) -> None:
         if frame.run.number != self.number:
@@ -279,15 +272,10 @@ class PageState(param.Parameterized):
             else:
                 self.send(Ready())
 
-    def compute(self, order: Order, then: Callable[[Any], None]) -> None:
-        """Have the worker compute something of the newest iterate, and do something with it."""
-        self._waiting.append(then)
-        self.send(order)
-
     def send_needs(self, *, is_news: bool = True) -> None:
         """Have frames carry what is seen; a worker that is new is told in any case."""
         seen = self.selection
-        looked_at = seen.interface, seen.substructure, seen.place, seen.stress
+        looked_at = seen.interface, seen.substructure, seen.place
         needs = Needs(self.needs, *looked_at, tuple(self.readings), self.brought)
         if is_news or needs != self._sent:
             self._sent = needs

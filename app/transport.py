@@ -12,6 +12,7 @@ import panel_material_ui as pmui
 
 from app.browser import Echoes
 from app.state import ANSWER, PACES, SEARCH, PageState, known
+from app.widgets import button
 
 PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
@@ -195,14 +196,13 @@ class Transport:
 
 def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button:
     """A button with an icon alone; an IconButton would keep its first one."""
-    return pmui.Button(
-        label="",
+    return button(
+        "",
+        act,
         icon=icon,
         description=description,
-        on_click=lambda event: act(),
         variant="text",
         color="default",
-        size="small",
         margin=2,
         sx=ROUND,
         stylesheets=[PASSED],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import holoviews as hv
@@ -12,12 +13,12 @@ import panel_material_ui as pmui
 from bokeh.events import Tap
 
 from app.charts import in_units, keys, overlay
-from app.files import download
 from app.jobs import SETTINGS, Job, Sweep, follow
 from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
 from app.refusals import message_of
 from app.state import ANSWER, PageState, answer
 from app.units import sizes_of, unit_for
+from app.widgets import button, download
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
@@ -35,14 +36,9 @@ NEAR = 0.04
 
 
 class WhatIf:
-    """The tab.
+    """The tab: the state has the question, and all that does not vary.
 
-    Parameters
-    ----------
-    state
-        Of the page, with the question; all that does not vary is as there.
-    open_run
-        Opens the run of some settings on the live tab.
+    `open_run` opens the run of some settings on the live tab.
     """
 
     def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
@@ -80,11 +76,12 @@ class WhatIf:
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")
-        self._start = _button("Draw", self.start, icon="play_arrow", variant="contained")
-        self._cancel = _button("Cancel", self.cancel, icon="stop")
-        self.mesh = _button(MESH, self._on_mesh, icon="grid_on")
+        self._start = button("Draw", self.start, icon="play_arrow", **FIELD)
+        look = {"variant": "outlined", **FIELD}
+        self._cancel = button("Cancel", self.cancel, icon="stop", **look)
+        self.mesh = button(MESH, self._on_mesh, icon="grid_on", **look)
         self._ready = {
-            title: _button(title, lambda title=title: self._on_ready(title)) for title in READY
+            title: button(title, partial(self._on_ready, title), **look) for title in READY
         }
         self._help = pmui.Typography("", variant="body2", margin=(2, 8))
         self.message = pmui.Typography("", variant="body2", margin=(2, 8))
@@ -133,8 +130,8 @@ class WhatIf:
 
     def chart(self) -> Chart:
         """What has come so far, in the units that are read."""
-        assert self.sweep is not None
-        return in_units(chart_of(self.sweep.plan, list(self.sweep.rows), 0, _measured))
+        plan, rows = self.sweep.plan, list(self.sweep.rows)
+        return in_units(chart_of(plan, rows, 0, lambda v, unit: unit_for(abs(v), unit)(v, 4)))
 
     # Fields
 
@@ -157,8 +154,8 @@ class WhatIf:
         self._at.param.update(value=at, visible=parameter is not None)
         if parameter is not None:
             self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
-        for title, button in self._ready.items():
-            button.visible = READY[title][1](settings) is not None
+        for title, ready in self._ready.items():
+            ready.visible = READY[title][1](settings) is not None
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
         if self.sweep is None or self.question != before:
@@ -208,7 +205,6 @@ class WhatIf:
     def _draw(self) -> None:
         """Show what has come, and where the page's settings stand."""
         sweep, settings = self.sweep, self.state.settings
-        assert sweep is not None
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
         words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
@@ -252,7 +248,6 @@ class WhatIf:
 
 def nearest(chart: Chart, x: float, y: float) -> int | None:
     """Number in the chart of the run that is meant by a place on it; None where there is none."""
-    assert chart.runs is not None
     known, away = np.flatnonzero(np.isfinite(chart.runs.y)), 0.0
     if not known.size:
         return None
@@ -262,10 +257,6 @@ def nearest(chart: Chart, x: float, y: float) -> int | None:
         away = np.hypot(away, (places - scale(at)) / (np.ptp(places) or 1.0))
     nearest = int(away.argmin())
     return int(known[nearest]) if isinstance(chart, Map) or away[nearest] < NEAR else None
-
-
-def _measured(value: float, unit: str) -> str:
-    return unit_for(abs(value), unit)(value, 4)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
@@ -286,8 +277,3 @@ def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, floa
         elif value in axis.values:
             place[i] = axis.values.index(value)
     return place[0], place[1]
-
-
-def _button(label: str, act: Callable[[], object], **more: Any) -> pmui.Button:
-    look = {"variant": "outlined", **FIELD, **more}
-    return pmui.Button(label=label, on_click=lambda event: act(), **look)

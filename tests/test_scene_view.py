@@ -165,3 +165,13 @@ def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
     areas = 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
     described = geometry.description
     assert areas.sum() == pytest.approx(described.length * described.height, rel=1e-2)
+
+
+def test_a_tap_selects_the_substructure_that_is_there() -> None:
+    view = shown(frame_of(small("bar")))
+    geometry = view.picture.frame.run.geometry  # type: ignore[union-attr]
+    quad = int(np.flatnonzero(geometry.parts == 2)[0])
+    middle = view.picture.nodes[geometry.quads[quad]].mean(axis=0)  # type: ignore[union-attr]
+    x, y = view.picture.layout.page(middle, 0.0)  # type: ignore[union-attr]
+    view._select(SimpleNamespace(x=x, y=y))
+    assert view.state.selection.substructure == 2

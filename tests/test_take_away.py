@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import math
-import pickle
 import re
 import runpy
 from functools import cache
@@ -27,10 +26,9 @@ from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
-from app.worker.runner import Runner, fclib_file
+from app.worker.runner import Runner
 from solver.checked import dump
 from solver.files import settings_from_toml
-from solver.refusal import RefusedError
 
 SMALL: dict[str, dict[str, Any]] = {
     "bar": {"elements": 20, "instants": 21, "substructures": 4},
@@ -118,23 +116,6 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     assert captions == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
     # The page's own figures are as they were.
     assert {view.figure.output_backend for view in away.display.views} == {"canvas"}
-
-
-def test_an_instant_is_taken_away_as_a_contact_problem() -> None:
-    h5py = pytest.importorskip("h5py")
-    runner, _ = ended("block")
-    with h5py.File(io.BytesIO(fclib_file(runner, 0.75))) as file:
-        group = file["fclib_local"]
-        assert group["spacedim"][0] == 2
-        assert len(group["vectors"]["q"]) > 0
-
-
-def test_a_run_that_is_no_such_problem_is_refused_in_words_that_reach_the_page() -> None:
-    runner, _ = ended("bar")
-    with pytest.raises(RefusedError) as refused:
-        fclib_file(runner, 0.75)
-    again = pickle.loads(pickle.dumps(refused.value))
-    assert (str(again), again.remedy) == (str(refused.value), refused.value.remedy)
 
 
 def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from io import BytesIO
 from typing import Any
 
 from bokeh.embed import file_html
-from bokeh.resources import INLINE, Resources
+from bokeh.resources import INLINE
 from jinja2 import Template
 from markdown_it import MarkdownIt
 
+from app.charts import library
 from app.lessons.catalogue import filled, kinds_of, place_of, without_controls
 from app.lessons.curve import DrawnCurve
 from app.server import address_for_others
@@ -22,11 +22,10 @@ from solver.lessons.lesson import Lesson
 
 WIDTH, HEIGHT = 660, 230
 """Pixels of the picture; two plots stand side by side in its width."""
-LIBRARY = Resources(mode="inline", components=["bokeh"])
 PAGE = """{% macro plot(name) -%}
 <div id="{{ roots[name].elementid }}" data-root-id="{{ roots[name].id }}"></div>
 {%- endmacro %}<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
-{% for code in library %}<script>{{ code|safe }}</script>{% endfor %}<style>
+{{ library|safe }}<style>
 @page { size: A4; margin: 16mm; }
 :root { color-scheme: light; }
 body { max-width: 178mm; margin: 0 auto; font: 11pt/1.45 system-ui, sans-serif; color: #000;
@@ -52,8 +51,8 @@ h1 { font-size: 18pt; margin: 0; } h2 { font-size: 14pt; }
 </section>{{ plot_script|safe }}</body></html>"""
 
 
-def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> BytesIO:
-    """A page to print (HTML, UTF-8), of the frame that is shown; it needs no network.
+def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
+    """A page to print (HTML), of the frame that is shown; it needs no network.
 
     The curve is the one drawn by hand, of a lesson that asks for one.
     """
@@ -72,15 +71,14 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> Bytes
         plots.insert(0, "curve")
     for name, figure in figures.items():
         figure.name = re.sub(r"\W", "-", name)
-    text = file_html(
+    return file_html(
         list(figures.values()),
         INLINE,
         title=lesson.title,
         template=Template(PAGE, autoescape=True),
         template_variables={
             "place": place_of(lesson),
-            # Without what Panel adds to it, some of it by a link to the server.
-            "library": LIBRARY.js_raw,
+            "library": library(),
             "text": _html(lesson.text, state),
             "question": lesson.question,
             "choices": lesson.choices,
@@ -93,7 +91,6 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> Bytes
         },
         suppress_callback_warning=True,
     )
-    return BytesIO(text.encode())
 
 
 def _drawn(view: View, state: PageState, lesson: Lesson, width: int, height: int) -> Any:

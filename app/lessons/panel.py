@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -26,11 +27,13 @@ from app.lessons.handout import handout
 from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
+from app.widgets import button, dialog, download
 from solver.lessons.lesson import SUBJECTS, Control, Lesson
 
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""
+_button = partial(button, margin=(3, 0))
 LEFT = {"&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
 
 
@@ -57,9 +60,7 @@ class LessonPanel:
         self._choices = pn.Column(margin=0)
         self._shown: tuple[str, bool] | None = None
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
-        self.dialog = pmui.Dialog(
-            title="Lessons", width_option="md", show_close_button=True, close_on_click=True
-        )
+        self.dialog = dialog("Lessons", width_option="md")
         state.param.watch(lambda *events: self.show(), ["lesson", "prediction", "poll"])
         state.param.watch(lambda event: self._follow_settings(), "settings")
 
@@ -180,12 +181,8 @@ class LessonPanel:
 
     def _onward(self, lesson: Lesson) -> list[Any]:
         """The way to the next lesson, which a follower waits for, and the handout."""
-        on_paper = pmui.FileDownload(
-            callback=lambda: handout(self._state, lesson, self._curve),
-            filename=f"{lesson.name}.html",
-            label="Handout",
-            size="small",
-        )
+        make = partial(handout, self._state, lesson, self._curve)
+        on_paper = download("Handout", f"{lesson.name}.html", make, size="small")
         following, poll = dict(pairwise(LESSONS)).get(lesson.name), self._state.poll
         if following is None or not (poll is None or poll.leads):
             return [on_paper]
@@ -209,8 +206,7 @@ class LessonPanel:
             sizing_mode="stretch_width",
             stylesheets=PARAGRAPH,
         )
-        if "{value:" in text:
-            self._texts.append((pane, text))
+        self._texts.append((pane, text))
         return pane
 
     def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
@@ -249,8 +245,3 @@ class LessonPanel:
     def _end(self) -> None:
         """Leave the lesson; the run stays."""
         self._state.lesson = ""
-
-
-def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
-    style = {"variant": "contained", "size": "small", "margin": (3, 0), **more}
-    return pmui.Button(label=label, on_click=lambda event: act(), **style)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bokeh.events import Tap
 from bokeh.models import BasicTicker, LinearColorMapper, Range1d
-from bokeh.palettes import Viridis256
 
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.view import ExtraView, View, color_bar, extent, hover, whole
+from app.views.view import ExtraView, color_bar, extent, hover, whole
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
@@ -21,8 +19,6 @@ from solver.study.quantities.clip_measures import can_be_clipped
 LEAST, FEWEST = 1e-4, 8
 """Of singular values, the least size and the fewest that the axes show."""
 MODES = [str(number) for number in range(MOST_MODES)]
-WHOLE = {"desired_num_ticks": 4, "min_interval": 1, "num_minor_ticks": 0}
-"""Ticks of a bar of colours that mean whole numbers."""
 LARGEST = 1_000_000
 """Values of a field up to which all curves take no longer than a second, in which the worker obeys
 no order (measured: 0.9 s for 1001 x 999)."""
@@ -45,7 +41,8 @@ class Spectra(ExtraView):
         color = {"field": "part", "transform": self._colors}
         lines = self.add("values", "multi_line", "xs ys", also="part", color=color, width=1.8)
         hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
-        self._bar = color_bar(made, self._colors, ticker=BasicTicker(**WHOLE))
+        ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
+        self._bar = color_bar(made, self._colors, ticker=ticker)
 
     def _show(self, spectra: Any, frame: Frame, selection: Selection) -> None:
         count = frame.run.settings.n_substructures
@@ -110,43 +107,6 @@ class TimeFunctions(ModePlot):
         values = modes["time"] / np.where(sizes > 0.0, sizes, 1.0)[:, None]
         titles = [unit_for(float(size), "m")(float(size), 2) for size in sizes]
         self._draw(run.instants, values, titles)
-
-
-class BasisSizes(View):
-    """How many modes every substructure has, over the iterations; a tap selects one."""
-
-    name = "Basis size"
-    needs = frozenset({"modes"})
-
-    applies = staticmethod(lambda settings: settings.applies("pgd_modes"))
-
-    def _make(self) -> None:
-        made = self.begin(("iteration",), ("substructure",))
-        made.grid.visible = False
-        for axis in made.axis:
-            whole(axis)
-        self._colors = LinearColorMapper(palette=Viridis256, low=0, high=2)
-        self.add("sizes", "image", "image x y dw dh", color_mapper=self._colors)
-        self.add("chosen", "hspan", "y", color=ERROR, line_width=2)
-        color_bar(made, self._colors, title="modes", ticker=BasicTicker(**WHOLE))
-        made.on_event(Tap, self._select)
-
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the numbers of modes of all iterations so far."""
-        sizes, total = frame.history.get("modes"), frame.run.settings.n_substructures
-        if sizes is None:
-            return
-        last = float(frame.history["iteration"][-1])
-        self.fill("sizes", image=[sizes.T], x=[0.5], y=[0.5], dw=[last], dh=[total])
-        self._colors.high = max(2.0, float(sizes.max()))
-        self.x.hold(frame.run.number, 0.5, max(last, 20.0) + 0.5)
-        self.y.span(0.5, total + 0.5)
-        chosen = selection.substructure
-        self.fill("chosen", y=[total if chosen is None else min(chosen + 1, total)])
-
-    def _select(self, event: Any) -> None:
-        total = self.state.settings.n_substructures
-        self.state.select(substructure=min(max(round(event.y) - 1, 0), total - 1))
 
 
 class Clips(ExtraView):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.views.bases import BasisSizes, Clips, SpaceModes, Spectra, TimeFunctions
+from app.views.bases import Clips, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
 from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
@@ -16,6 +16,6 @@ CARDS: tuple[tuple[type[View], ...], ...] = (
     (ContactForce, AxialForce, HysteresisLoop, Stress),
     (StatusMap, Unrolled, CrossSection, SlipPlane, Cycles, CycleEnergy, Fretting),
     (Convergence, ErrorTime),
-    (Spectra, SpaceModes, TimeFunctions, BasisSizes, StressRanges, Clips),
+    (Spectra, SpaceModes, TimeFunctions, StressRanges, Clips),
 )
 """The views of each card; the first that applies is shown first."""

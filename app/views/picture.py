@@ -98,7 +98,10 @@ class Picture:
             )
         if "break" in self.behind and len(self._at_break):
             place = self.nodes[self._at_break].mean(axis=(0, 1))
-            handles.append(Handle(self.behind["break"], place, FORCE, self._to_place))
+            scale, middle = self.layout.scale[0], 0.5 * self.layout.length
+            handles.append(
+                Handle(self.behind["break"], place, FORCE, lambda _, at: at[0] / scale + middle)
+            )
         return handles
 
     def columns(self, *, with_status: bool) -> dict[str, Columns]:
@@ -150,9 +153,6 @@ class Picture:
         is_there = np.abs(x - place) < 1e-4 * self._described.length
         row = np.floor(y * self._described.bodies / self.layout.top)
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
-
-    def _to_place(self, present: float, pointer: Array) -> float:
-        return float(pointer[0]) / self.layout.scale[0] + 0.5 * self.layout.length
 
     def _columns(self, strokes: Strokes) -> Columns:
         """On the page; binary arrays, which go fast to the browser."""

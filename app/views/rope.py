@@ -11,13 +11,12 @@ from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.colors import ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
+from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.view import ExtraView, color_bar, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
-EDGE = "#546E7A"
 COLORS = [color for color in RANKS if color != ERROR]
 """Of wires; the broken one has a colour of its own."""
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]

@@ -31,7 +31,7 @@ KEPT = 0.3, 1.5
 class Scene(View):
     """The deformed bodies at the selected instant, what holds them, rubs, and acts on them.
 
-    Arrows are dragged by their ends, and a tap selects an interface.
+    Arrows are dragged by their ends; a tap selects a substructure, and an interface.
     """
 
     name = "Scene"
@@ -140,21 +140,25 @@ class Scene(View):
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
-        assert self._held is not None
         handle, picture, present = self._held
         dragged = handle.value(present, picture.to_local(event.x, event.y))
         low, high = self.state.settings.definitions()[handle.setting].softbounds
         return float(f"{np.clip(dragged, min(low, present), max(high, present)):.3g}")
 
     def _select(self, event: Any) -> None:
-        """Select the interface that was tapped."""
+        """Select the substructure that was tapped, or is nearest, and the interface if any was."""
         picture = self.picture
         if picture is None:
             return
-        away = np.hypot(*(picture.points - picture.to_local(event.x, event.y)).T)
+        run, at = picture.frame.run, picture.to_local(event.x, event.y)
+        middles = picture.nodes[run.geometry.quads].mean(axis=1)
+        nearest = np.hypot(*(middles - at).T).argmin()
+        chosen: dict[str, Any] = {"substructure": int(run.geometry.parts[nearest])}
+        away = np.hypot(*(picture.points - at).T)
         if np.any(away <= CLOSE):
-            chain = int(picture.frame.run.geometry.chains[int(np.nanargmin(away))])
-            self.state.select(interface=list(picture.frame.run.interfaces)[chain])
+            chain = int(run.geometry.chains[int(np.nanargmin(away))])
+            chosen["interface"] = list(run.interfaces)[chain]
+        self.state.select(**chosen)
 
 
 class Stress(Scene):

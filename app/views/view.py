@@ -111,30 +111,16 @@ class Axis:
 class View:
     """A figure, made when it is first seen, below a legend that names what is there.
 
-    A click on an entry of the legend hides its curve.
-
-    Parameters
-    ----------
-    state
-        Of the page; what is done in the figure, as a tap, selects there.
-
-    Attributes
-    ----------
-    name
-        What its tab is called.
-    needs
-        Names of the extras of a frame that it shows.
-    applies
-        Whether it says anything about a run with such settings.
-    x, y
-        The axes.
-    sources
-        What is drawn, by name.
+    A click on an entry of the legend hides its curve. What is done in the figure, as a tap, selects
+    in the state of the page. `x` and `y` are the axes, `sources` what is drawn, by name.
     """
 
     name: ClassVar[str]
+    """What its tab is called."""
     needs: ClassVar[frozenset[str]] = frozenset()
+    """Names of the extras of a frame that it shows."""
     applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
+    """Whether it says anything about a run with such settings."""
 
     def __init__(self, state: PageState) -> None:
         self.state, self._type = state, TEXT
@@ -175,7 +161,24 @@ class View:
 
     def begin(self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any) -> figure:
         """A new figure whose axes have a title and an SI unit; `add` fills it."""
-        made = self._made = plot(**more)
+        made = self._made = figure(
+            sizing_mode="stretch_both",
+            min_height=120,
+            styles={"font-size": TEXT},
+            tools=TOOLS,
+            active_drag=None,
+            active_scroll="wheel_zoom",
+            **({"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more),
+        )
+        made.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
+        made.toolbar.autohide, made.toolbar.logo = True, None
+        made.min_border, made.min_border_right = 2, 10
+        made.outline_line_color = None
+        made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
+        made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
+        # A title stands nearer than the label of an axis, which the theme moves away.
+        made.add_layout(Title(align="center", standoff=2), "below")
+        made.grid.grid_line_alpha = 0.3
         self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
         return made
 
@@ -253,30 +256,6 @@ class ExtraView(View):
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError
-
-
-def plot(**more: Any) -> figure:
-    """A figure with the look that all plots share; its ranges and titles are those of `Axis`."""
-    more = {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more
-    made = figure(
-        sizing_mode="stretch_both",
-        min_height=120,
-        styles={"font-size": TEXT},
-        tools=TOOLS,
-        active_drag=None,
-        active_scroll="wheel_zoom",
-        **more,
-    )
-    made.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
-    made.toolbar.autohide, made.toolbar.logo = True, None
-    made.min_border, made.min_border_right = 2, 10
-    made.outline_line_color = None
-    made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
-    made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
-    # A title stands nearer than the label of an axis, which the theme moves away.
-    made.add_layout(Title(align="center", standoff=2), "below")
-    made.grid.grid_line_alpha = 0.3
-    return made
 
 
 def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> figure:

@@ -11,7 +11,7 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import DrawnRods, StressField, floats, thinned
+from app.worker.geometry import DrawnRods, floats, thinned
 from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from solver.discrete import Problem
 from solver.latin import Iterate
@@ -251,15 +251,7 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     }
 
 
-def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
-    """Stress of all quadrilaterals that are drawn, at all instants."""
-    return sampler.drawn.stress(iterate, needs.stress, sampler.settings)
-
-
-Extra = Callable[["Sampler", Iterate, Needs], Any]
-
-
-EXTRAS: dict[str, Extra] = {
+EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
     "spectra": spectra,
     "axial force": axial_force,
     "slips": slips,
@@ -267,7 +259,7 @@ EXTRAS: dict[str, Extra] = {
     "modes": modes,
     "clips": clips,
     "beside": beside,
-    "stress": stress,
+    "stress": lambda sampler, iterate, needs: sampler.drawn.stress(iterate, sampler.settings),
 }
 """By the name that a view needs them by."""
 OF_ROPE = {"section": section, "all_wires": all_wires, "wire_ranges": wire_ranges}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
-from app.worker.outlines import outlines_of
+from app.worker.outlines import Indices, outlines_of
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
@@ -33,7 +33,7 @@ def floats(values: NDArray[np.generic]) -> Floats:
     return values.astype(np.float32, order="C")
 
 
-def thinned(size: int, most: int) -> NDArray[np.intp]:
+def thinned(size: int, most: int) -> Indices:
     """Indices that stand for a long axis, first and last included."""
     return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(np.intp))
 
@@ -49,8 +49,8 @@ class Drawn:
         self,
         problem: Problem,
         description: Description,
-        columns: NDArray[np.intp],
-        mesh: tuple[Floats, NDArray[np.int32], NDArray[np.intp]],
+        columns: Indices,
+        mesh: tuple[Floats, NDArray[np.int32], Indices],
         heights: Array | None,
     ) -> None:
         chosen, dofs, chains = [], [], []
@@ -89,9 +89,7 @@ class Drawn:
 class DrawnRods(Drawn):
     """Rods as rectangles above each other; they rub between them, or on what is below."""
 
-    def __init__(
-        self, problem: Problem, description: Description, columns: NDArray[np.intp]
-    ) -> None:
+    def __init__(self, problem: Problem, description: Description, columns: Indices) -> None:
         per_rod = len(problem.substructures) // description.bodies
         length, between = description.length, 0.5 * (PITCH - THICKNESS)
         kept, corners, parts, lows, elements = [], [], [], [], []
@@ -116,7 +114,7 @@ class DrawnRods(Drawn):
         mesh = floats(nodes), quads, np.concatenate(parts)
         super().__init__(problem, description, columns, mesh, heights)
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
+    def stress(self, iterate: Iterate, settings: Settings) -> StressField:
         """Axial force, as rods have no height."""
         return "axial force", "N", floats(self.axial_force(iterate)[self._elements])
 
@@ -131,17 +129,10 @@ class DrawnRods(Drawn):
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
 
 
-STRESSES = {"σ xx": 0, "σ yy": 1, "τ xy": 2}
-"""Components beside von Mises' equivalent."""
-
-
 class DrawnMesh(Drawn):
     """Plane bodies, each with its mesh thinned where that is a grid."""
 
-    def __init__(
-        self, problem: Problem, description: Description, columns: NDArray[np.intp]
-    ) -> None:
-        assert problem.inside is not None
+    def __init__(self, problem: Problem, description: Description, columns: Indices) -> None:
         self._inside = problem.inside
         self._nodes, quads, self._quad = thinned_mesh(problem.inside)
         self._counts = np.bincount(self._quad)
@@ -150,18 +141,14 @@ class DrawnMesh(Drawn):
         mesh = floats(problem.inside.nodes[self._nodes]), quads, parts
         super().__init__(problem, description, columns, mesh, None)
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
-        """A component of stress, or von Mises' equivalent, its mean in every quadrilateral."""
+    def stress(self, iterate: Iterate, settings: Settings) -> StressField:
+        """Von Mises' equivalent stress, its mean in every quadrilateral."""
         values, means = settings.values(), []
         for moved in np.moveaxis(self._moved(iterate), -1, 0):
             stress = self._inside.stress(moved)
-            if component in STRESSES:
-                shown = stress[:, STRESSES[component]]
-            else:
-                shown = von_mises(stress, values["poisson"], values["plane"])
+            shown = von_mises(stress, values["poisson"], values["plane"])
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
-        title = component if component in STRESSES else "von Mises stress"
-        return title, "Pa", floats(np.stack(means, axis=1))
+        return "von Mises stress", "Pa", floats(np.stack(means, axis=1))
 
     def _moved(self, iterate: Iterate) -> Array:
         return self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]
@@ -170,9 +157,7 @@ class DrawnMesh(Drawn):
         return floats(self._moved(iterate)[self._nodes])
 
 
-def thinned_mesh(
-    inside: Inside,
-) -> tuple[NDArray[np.intp], NDArray[np.int32], NDArray[np.intp]]:
+def thinned_mesh(inside: Inside) -> tuple[Indices, NDArray[np.int32], Indices]:
     """Nodes and quadrilaterals that are drawn of bodies, and in which each element lies.
 
     The mesh of each body is a grid, of which some lines are left out.

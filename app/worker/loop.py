@@ -28,8 +28,7 @@ HEARTBEAT = 2.0
 
 def main(connection: Connection) -> None:
     """Take orders until the server, or the page, is gone."""
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)
+    os.nice(NICENESS)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # A run that diverges is told by its status.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
@@ -92,13 +91,8 @@ class Loop:
             case messages.Pace(pace) if runner is not None:
                 runner.pacing.change(pace)
                 runner.has_news = runner.iterate is not None
-            case messages.Step(count) if runner is not None:
-                runner.pacing.step(count)
-            case messages.Compute(function, argument) if runner is not None:
-                try:
-                    self._send(messages.Computed(function(runner, argument)))
-                except Exception as problem:  # whoever asked is told
-                    self._send(messages.Computed(problem))
+            case messages.Step() if runner is not None:
+                runner.pacing.step()
             case _:
                 pass
 

@@ -26,11 +26,8 @@ SILENT = 8.0
 class Worker:
     """A process that runs what it is told.
 
-    Parameters
-    ----------
-    hear
-        Called with this and each report, and with None once the process has ended, on a thread of
-        its own.
+    `hear` is called with this and each report, and with None once the process has ended, on a
+    thread of its own.
     """
 
     def __init__(self, hear: Callable[[Worker, Report | None], None]) -> None:
@@ -46,11 +43,6 @@ class Worker:
     def hangs(self) -> bool:
         """Whether it has given no sign of life for long."""
         return time.monotonic() - self._heard > SILENT
-
-    @property
-    def pid(self) -> int:
-        """Number of the process."""
-        return int(self._process.pid)
 
     def send(self, order: Order) -> None:
         """Give an order; a process that has ended takes none."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
-from typing import Any
 
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
@@ -44,19 +44,13 @@ class ReferenceCache:
         if not has_reference(settings):
             return None
         key = fingerprint(problem)
-        reference = self._kept.pop(key, None) or _solve(problem, stop)
+        reference = self._kept.pop(key, None)
         if reference is None:
+            with suppress(NoReferenceError):
+                reference = reference_of(problem, stop)
+        if reference is None or not reference.converged.all():
             return None
-        no_problem: Any = None
-        self._kept[key] = replace(reference, problem=no_problem)
+        self._kept[key] = replace(reference, problem=None)
         if len(self._kept) > ENTRIES:
             self._kept.popitem(last=False)
         return replace(reference, problem=problem)
-
-
-def _solve(problem: Problem, stop: Callable[[], bool]) -> Reference | None:
-    try:
-        reference = reference_of(problem, stop)
-    except NoReferenceError:
-        return None
-    return reference if reference.converged.all() else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import time
 from collections.abc import Callable
@@ -16,10 +15,8 @@ from solver.latin import Ending, Iterate, Record, Status, judged, record
 from solver.latin.run_cost import RunCost, run_cost
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted
-from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.study.other_programs.fclib import contacts_of, instant_at, local_problem, write_fclib
 
 HURRY = 0.1
 """Seconds that a run which follows a dragged slider has to end before it is shown."""
@@ -42,10 +39,10 @@ class Pacing:
         self._pace, self._steps = pace, 0
         self._due = min(self._due, time.monotonic() + self._interval())
 
-    def step(self, count: int) -> None:
-        """Do so many iterations, and wait."""
+    def step(self) -> None:
+        """Do one more iteration, and wait."""
         self._pace = 0.0
-        self._steps += count
+        self._steps += 1
 
     def count(self, number: int) -> None:
         """Count the iteration that was done."""
@@ -68,16 +65,9 @@ class Pacing:
 class Runner:
     """One run: its first iteration, then the reference, then the others as they are due.
 
-    It is `interrupted` where an order waits that ends it.
-
-    Attributes
-    ----------
-    sampler, iterate, history, status
-        The problem as it is shown, its newest iterate, a record of each, and how it ended.
-    pacing
-        When the next iteration is due.
-    has_news
-        Whether something has changed since the last frame.
+    It is `interrupted` where an order waits that ends it. The problem is shown by `sampler`; it has
+    the newest `iterate`, a `history` with a record of each, and at its end a `status`. `pacing`
+    says when the next iteration is due, `has_news` whether anything changed since the last frame.
     """
 
     def __init__(
@@ -85,15 +75,12 @@ class Runner:
     ) -> None:
         self.settings, self.is_dragged = start.settings, start.is_dragged
         began = time.perf_counter()
-        problem, latin = discretise(start.settings), method_of(start.settings)
-        self.cost: RunCost = run_cost(
-            problem,
-            latin,
-            start.settings.max_iterations,
-            with_reference=has_reference(start.settings),
-        )
+        settings = start.settings
+        problem, latin = discretise(settings), method_of(settings)
+        is_compared, most = has_reference(settings), settings.max_iterations
+        self.cost: RunCost = run_cost(problem, latin, most, with_reference=is_compared)
         spent = time.perf_counter() - began
-        self.sampler = Sampler(problem, start.settings, start.number)
+        self.sampler = Sampler(problem, settings, start.number)
         self.iterate: Iterate | None = None
         self.history: list[Record] = []
         self.status: Status | None = None
@@ -132,7 +119,6 @@ class Runner:
 
     def frame(self, needs: Needs) -> Frame:
         """The newest iterate as it is shown."""
-        assert self.iterate is not None
         self.has_news = False
         return self.sampler.frame(self.iterate, self.history, self.status, needs)
 
@@ -147,7 +133,6 @@ class Runner:
 
     def _compare(self) -> None:
         """Find the reference, and the errors of what was recorded before it."""
-        assert self.iterate is not None
         problem = self.sampler.problem
         try:
             reference = self._references.of(self.settings, problem, self._interrupted)
@@ -162,29 +147,3 @@ class Runner:
                 error_displacement=distance.of_displacement(self.iterate),
                 error_force=distance.of_friction_force(self.iterate),
             )
-
-
-def fclib_file(runner: Runner, phase: float) -> bytes:
-    """The contact problem of an instant, a share of the interval, in FCLIB's format (HDF5).
-
-    Raises
-    ------
-    RefusedError
-        Where the instant is no problem that FCLIB has, or too large for a page.
-    """
-    settings, problem, iterate = runner.settings, runner.sampler.problem, runner.iterate
-    if iterate is None or not has_reference(settings):
-        can = "python -m solver fclib writes it"
-        raise RefusedError("FCLIB", "so many points of contact", "fewer on a page", can)
-    shown = runner.sampler.run
-    instant = instant_at(float(shown.instants[shown.column(phase)]), problem.instants)
-    local = local_problem(
-        contacts_of(problem),
-        iterate,
-        instant,
-        settings.scene,
-        certified=iterate.residual is not None,
-    )
-    file = io.BytesIO()
-    write_fclib(file, local)
-    return file.getvalue()

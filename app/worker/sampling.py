@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -31,22 +31,17 @@ MOST_INSTANTS, MOST_POINTS = 401, 401
 """Instants, and points of an interface, that a frame has at most."""
 MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of one."""
-MOST_ITERATIONS, MOST_SUBSTRUCTURES = 1000, 60
-"""Entries of the history that a frame has at most, and sizes of bases in each."""
+MOST_ITERATIONS = 1000
+"""Entries of the history that a frame has at most."""
 SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("reduction", "is_answer"))
 
 
 class Sampler:
     """Thin the fields of one problem, and turn nodal forces into forces per length or area.
 
-    Attributes
-    ----------
-    run
-        What all frames share; `complete` adds the reference.
-    problem, settings, loop, columns, rows
-        What is solved, its loop, and the instants, and points by interface, that are shown.
-    drawn, rope
-        The bodies as they are drawn, and the strand if it is one that is bent.
+    `run` is what all frames share, to which `complete` adds the reference. Of what is solved,
+    `columns` are the instants, and `rows` the points by interface, that are shown; `drawn` is the
+    bodies as they are drawn, and `rope` the strand if it is one that is bent.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
@@ -87,11 +82,10 @@ class Sampler:
         )
         self.run = replace(self.run, exact=exact)
         if reference is not None:
+            contact, loop = self._contact(reference, self.problem.rubbing), self._loop(reference)
+            seconds = reference.seconds
             self.run = replace(
-                self.run,
-                reference=self._contact(reference, tuple(self.problem.rubbing)),
-                reference_loop=self._loop(reference),
-                reference_seconds=reference.seconds,
+                self.run, reference=contact, reference_loop=loop, reference_seconds=seconds
             )
 
     def frame(
@@ -100,6 +94,8 @@ class Sampler:
         """What is shown of an iterate, with the extras that views need."""
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, bool(self.run.reference), self.loop)
+        kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
+        scalars = {n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS}
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
@@ -107,7 +103,7 @@ class Sampler:
             contact=self._contact(iterate, self._names(needs)),
             deformed=self.drawn.deformed(iterate),
             loop=self._loop(iterate),
-            history=_columns(history),
+            history=scalars,
             status=status,
             energy=float(run.dissipated.sum()),
             residual=iterate.residual,
@@ -149,7 +145,7 @@ class Sampler:
         return np.asarray(law.by_point(law.weights)[self.rows[name]])
 
     def _contact(
-        self, shown: Iterate | Reference, names: Sequence[str]
+        self, shown: Iterate | Reference, names: Iterable[str]
     ) -> Mapping[str, ContactFields]:
         contact = {}
         for name in names:
@@ -163,17 +159,7 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = (
-            self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
-        )
+        force = self.loop.force
+        force = force if isinstance(force, np.ndarray) else force(shown)
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
-
-
-def _columns(history: Sequence[Record]) -> dict[str, Floats]:
-    kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
-    columns = {name: floats(np.array([getattr(entry, name) for entry in kept])) for name in SCALARS}
-    if kept and kept[0].reduction:
-        shown = thinned(len(kept[0].reduction), MOST_SUBSTRUCTURES)
-        columns["modes"] = floats(np.array([[e.reduction[n].modes for n in shown] for e in kept]))
-    return columns

@@ -16,7 +16,7 @@ from scipy.integrate import cumulative_trapezoid
 from app.frame import Bytes, DeformedGeometry, Geometry
 from app.messages import Needs
 from app.worker.geometry import StressField, floats, thinned
-from app.worker.outlines import outlines_of
+from app.worker.outlines import Indices, outlines_of
 from solver.arrays import Array
 from solver.discrete.rope.forces import WireForces, cut_at, stress_ranges
 from solver.discrete.rope.rope import Rope
@@ -42,10 +42,9 @@ class DrawnRope:
     fibre to the innermost; the other half is its mirror image.
     """
 
-    def __init__(self, rope: Rope, columns: NDArray[np.intp]) -> None:
+    def __init__(self, rope: Rope, columns: Indices) -> None:
         self._rope, self._columns = rope, columns
         description = rope.described()
-        assert description.height is not None
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
         self._first = len(rope.wires) - len(wires)
@@ -73,7 +72,7 @@ class DrawnRope:
         moved = floats(self._nodes_moved), floats(self._points_moved)
         return DeformedGeometry(*moved, status.astype(np.int8))
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
+    def stress(self, iterate: Iterate, settings: Settings) -> StressField:
         """Mean stress over the section of every wire."""
         stress = self._forces(iterate.displacement, self._columns)
         stress = stress / self._forces.areas[:, None, None]
@@ -88,7 +87,7 @@ class DrawnRope:
     def _height(self, angle: Array) -> Array:
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
-    def _strips(self) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
+    def _strips(self) -> tuple[Indices, Indices, Array]:
         """Wire, step, and angles of the corners of what is in front, (n,), (n,) and (n, 4)."""
         half = np.pi / self._count
         middle = self._angle(np.arange(self._count)[:, None], self._z[None, :])
@@ -100,7 +99,7 @@ class DrawnRope:
         wires, steps = np.nonzero(np.ptp(corners, axis=-1) > 1e-9)
         return wires, steps, corners[wires, steps]
 
-    def _mesh(self, steps: NDArray[np.intp], corners: Array) -> tuple[Array, NDArray[np.int32]]:
+    def _mesh(self, steps: Indices, corners: Array) -> tuple[Array, NDArray[np.int32]]:
         """Nodes and quadrilaterals of the strips, which share their corners."""
         rows = (steps[:, None] + np.array([0, 1, 1, 0])).ravel()
         keys = np.stack([rows, np.round(1e6 * corners.ravel()).astype(np.intp)], axis=1)
@@ -108,9 +107,7 @@ class DrawnRope:
         nodes = np.stack([self._z[rows[first]], self._height(corners.ravel()[first])], axis=1)
         return nodes, place.reshape(-1, 4).astype(np.int32)
 
-    def _nearest(
-        self, numbers: Array, place: Array
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp], Bytes]:
+    def _nearest(self, numbers: Array, place: Array) -> tuple[Indices, Indices, Indices, Bytes]:
         """Wire, contact point, element and sign of slip at places on outer wires."""
         elements = self._rope.elements
         wires, sides = self._first + numbers, np.ones(len(place), dtype=np.int8)
@@ -123,7 +120,7 @@ class DrawnRope:
         node = np.clip(np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1))
         return wires, wires * (elements - 1) + node - 1, node, sides
 
-    def _lines(self) -> tuple[Array, NDArray[np.intp], NDArray[np.intp], Bytes]:
+    def _lines(self) -> tuple[Array, Indices, Indices, Bytes]:
         """Contact points along the wires in front, broken by NaN, and what each belongs to."""
         numbers = np.repeat(np.arange(self._count), len(self._z))
         z = np.tile(self._z, self._count)
