@@ -128,7 +128,7 @@ class Display:
 
     def _on_painted(self) -> None:
         """Go on, once each other page could paint as long: they share the server's one thread."""
-        pause = (PAGES.count - 1) * self._took
+        pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:
             self._go_on()
         else:

@@ -76,7 +76,7 @@ def test_of_many_pages_each_leaves_the_others_time(
     later: list[tuple[Callable[[], None], int]] = []
     document = SimpleNamespace(add_timeout_callback=lambda *call: later.append(call))
     state = PageState(answer.run.settings)
-    display = Display(state, document, lambda: time.sleep(0.002))
+    display = Display(state, document, lambda: time.sleep(0.02))
     monkeypatch.setattr(app.browser.PAGES, "count", 31)
     state.frame = answer
     state.frame = replace(answer)
@@ -84,7 +84,7 @@ def test_of_many_pages_each_leaves_the_others_time(
     display.pulse.painted = sent
     assert display.pulse.sent == sent
     ((go_on, milliseconds),) = later
-    assert milliseconds >= 60
+    assert milliseconds > 20
     go_on()
     assert display.pulse.sent == sent + 1
 
