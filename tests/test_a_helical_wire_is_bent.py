@@ -8,7 +8,7 @@ import pytest
 from solver import Latin, Rods, solve
 from solver.arrays import Array
 from solver.discrete.rope.helical_wire import HelicalWire
-from solver.latin import Accuracy, Auto, Iterations
+from solver.latin import Auto, Stop
 from solver.reference.choice import incremental_solver
 from solver.reference.closed_forms.bent_wire import BentWire
 from solver.reference.incremental import incremental
@@ -110,7 +110,7 @@ def test_latin_finds_the_same_and_certifies_it() -> None:
     curvature = to_and_fro(1.3 * BENT.first_slip, 20)
     scene = rods(curvature)
     problem = scene.discretise()
-    method = Latin(direction=Auto(), stop=Accuracy(0.001) | Iterations(400))
+    method = Latin(direction=Auto(), stop=Stop(accuracy=0.001, iterations=400))
     solution = solve(problem, method)
     found = solution.iterate
     assert solution.is_certified

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.latin import Accuracy, Ending, Indicator, Iterations, Latin, Seconds, iterations, solve
-from solver.latin.criteria.estimate import ErrorEstimate
+from solver.latin import Ending, Latin, Stop, iterations, solve
+from solver.latin.estimate import ErrorEstimate
 from solver.latin.finish import status_step
 from solver.latin.start.nested import Nested
 from solver.scenes import CATALOGUE, coarser_problems, discretise
@@ -23,14 +23,8 @@ def bar() -> Any:
     return discretise(CATALOGUE["bar"].settings.checked(SMALL))
 
 
-def test_of_criteria_either_of_which_ends_a_run_the_shortest_limit_counts() -> None:
-    assert (Accuracy(0.01) & Indicator(1e-3) | Iterations(5)).seconds == np.inf
-    assert (Accuracy(0.01) | Seconds(3.0) | Seconds(2.0)).seconds == 2.0
-    assert (Accuracy(0.01) & Seconds(3.0)).seconds == np.inf
-
-
 def test_a_run_ends_with_its_iterate_and_says_what_helps() -> None:
-    solution = solve(bar(), Latin(finish=None, stop=Accuracy(1e-9) | Seconds(1e-9)))
+    solution = solve(bar(), Latin(finish=None, stop=Stop(accuracy=1e-9, seconds=1e-9)))
     assert solution.status.ending is Ending.EXHAUSTED
     assert "longer" in solution.status.advice
     assert solution.iterate.number == 1

@@ -15,7 +15,7 @@ from solver.definitions import SettingError
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
 from solver.discrete.rope.rope import Rope
 from solver.files import result_arrays
-from solver.latin import Accuracy, Auto, Iterations, Latin
+from solver.latin import Auto, Latin, Stop
 from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod, incremental
@@ -213,7 +213,7 @@ def test_latin_certifies_it(changes: dict[str, Any]) -> None:
 def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None:
     settings = settings_of(**changes)
     problem = discretise(settings)
-    method = Latin(direction=Auto(), finish=None, stop=Accuracy(1e-4) | Iterations(3000))
+    method = Latin(direction=Auto(), finish=None, stop=Stop(accuracy=1e-4, iterations=3000))
     found, exact = solve(problem, method).iterate, incremental(problem)
     scale = np.abs(exact.contact_force).max()
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from solver.files import result_arrays, summary
-from solver.latin import Iterations, Record, Solution, StatusStep, iterations, solve
+from solver.latin import Record, Solution, StatusStep, iterations, solve
 from solver.reduction.basis import Reduction, ReductionRecord
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -90,7 +90,7 @@ def test_a_run_goes_on_from_the_solution_and_not_from_the_bases(bar: Solution) -
 def test_a_run_that_only_iterates_stays_approximate_and_names_the_step() -> None:
     settings = options(pgd_modes=2, finish="none")
     problem = discretise(settings)
-    method = replace(method_of(settings), stop=method_of(settings).stop | Iterations(60))
+    method = replace(method_of(settings), stop=replace(method_of(settings).stop, iterations=60))
     solution = solve(problem, method)
     assert not solution.is_certified
     assert solution.iterate.number == 60

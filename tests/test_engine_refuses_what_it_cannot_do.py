@@ -12,13 +12,11 @@ import pytest
 
 from solver.latin import (
     PGD,
-    Accuracy,
     Anderson,
     Auto,
-    Indicator,
-    Iterations,
     Latin,
     Paper,
+    Stop,
     iterations,
 )
 from solver.latin.linear import coarse, response
@@ -54,9 +52,9 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
         (lambda: PGD(modes=0), "PGD.modes"),
         (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
         (lambda: Anderson(memory=0), "Anderson.memory"),
-        (lambda: Accuracy(0.0), "Accuracy.share"),
-        (lambda: Indicator(-1.0), "Indicator.eta"),
-        (lambda: Iterations(0), "Iterations.most"),
+        (lambda: Stop(accuracy=0.0), "Stop.accuracy"),
+        (lambda: Stop(tolerance=-1.0), "Stop.tolerance"),
+        (lambda: Stop(iterations=0), "Stop.iterations"),
         (lambda: Latin(relaxation=1.5), "Latin.relaxation"),
         (lambda: Latin(threads=0), "Latin.threads"),
     ],

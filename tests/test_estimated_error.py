@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.latin import Ending, StopRules, iterations, judged, solve, stop
-from solver.latin.criteria.changes import ForceChanges
-from solver.latin.criteria.estimate import ROOM, SETTLED, ErrorEstimate
+from solver.latin import Ending, StopState, iterations, judged, solve, status, stop
+from solver.latin.estimate import ROOM, SETTLED, ErrorEstimate
 from solver.latin.finish.cost import Costs, costs_of, moving_share
 from solver.latin.finish.status_step import states_of
+from solver.latin.force_changes import ForceChanges
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -145,7 +145,7 @@ def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     assert f"iterate {before.iteration}, whose" in advice
     said = float(advice.removesuffix(" % away from it.").split()[-1])
     assert said == pytest.approx(100.0 * before.error_force, rel=0.1)
-    assert (before.error_force > stop.FAR) == is_by_increments
+    assert (before.error_force > status.FAR) == is_by_increments
     assert ("incremental solver's answer" in advice) == is_by_increments
 
 
@@ -155,7 +155,7 @@ def test_a_certified_answer_is_not_called_wrong_by_how_far_its_start_was(
 ) -> None:
     settings = CATALOGUE["bar"].settings()
     answer = solve(discretise(settings), method_of(settings), watch=False).iterate
-    advice = stop.proven(answer, None, 0.0, distance).status.advice
+    advice = status.certified(answer, None, distance).advice
     assert advice.endswith(f" {said} % away from it.")
     assert "wrong" not in advice
 
@@ -190,7 +190,7 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     wrong: float, has_certificate: bool
 ) -> None:
     settings = small("bar", finish="none")
-    rules = StopRules(method_of(settings))
+    rules = StopState(method_of(settings))
     number = 20 if has_certificate else 1
     for iterate in islice(iterations(discretise(settings), method_of(settings)), number):
         known = rules.judge(iterate).certificate is not None

@@ -62,9 +62,9 @@ def modules(package):
 
 SOLVER = modules("solver")
 EVERY = SOLVER | modules("app")
-PARTS = ["local", "linear", "acceleration", "direction", "start", "finish", "criteria"]
+PARTS = ["local", "linear", "acceleration", "direction", "start", "finish"]
 """Folders of the method's parts; files beside them put parts to work."""
-GROUND = ["blocks", "iterate", "indicators", "cycle"]
+GROUND = ["blocks", "iterate", "indicators", "cycle", "stop", "status", "estimate", "force_changes"]
 """Files beside them on which parts stand."""
 
 

@@ -15,13 +15,10 @@ from solver.discrete.problem import Problem
 from solver.discrete.slab import slab_of
 from solver.latin import (
     PGD,
-    Accuracy,
     Ending,
     FromStatus,
-    Indicator,
-    Iterations,
     Latin,
-    Seconds,
+    Stop,
     iterations,
     solve,
 )
@@ -34,8 +31,8 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 
 CYCLE = 12
-TIGHT = Latin(finish=None, stop=Indicator(1e-20) | Iterations(800))
-ROUGH = replace(TIGHT, stop=Accuracy(0.01) & Indicator(1e-3) | Iterations(400))
+TIGHT = Latin(finish=None, stop=Stop(tolerance=1e-20, iterations=800))
+ROUGH = replace(TIGHT, stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=400))
 
 
 def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
@@ -121,7 +118,7 @@ def test_sliders_of_one_point_begin_together() -> None:
 
 def test_bases_are_those_of_the_slab_before() -> None:
     problem = cyclic("bar", 3)
-    method = replace(TIGHT, linear=PGD(modes=6), stop=Iterations(5))
+    method = replace(TIGHT, linear=PGD(modes=6), stop=Stop(iterations=5))
     slab = first_slab(problem, method, CYCLE)
     *_, found = islice(iterations(slab.problem, slab.latin), 5)
     later = next_slab(problem, slab, found, CYCLE)
@@ -158,7 +155,7 @@ def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     seconds = [one.seconds for one in found.records]
     assert seconds == sorted(seconds)
     assert seconds[0] > 100.0
-    limited = replace(ROUGH, stop=ROUGH.stop | Seconds(50.0))
+    limited = replace(ROUGH, stop=replace(ROUGH.stop, seconds=50.0))
     ended = solve_in_slabs(problem, limited, CYCLE, spent=100.0)
     assert ended.status.ending is Ending.EXHAUSTED
     assert len(ended.records) == 3

@@ -10,9 +10,6 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.acceleration.anderson import Anderson
 from solver.latin.blocks import Blocks
-from solver.latin.criteria.converged import Accuracy, Indicator
-from solver.latin.criteria.criterion import Criterion
-from solver.latin.criteria.limits import Iterations
 from solver.latin.cycle import Parts
 from solver.latin.direction.rules import Auto, Paper, SearchDirection
 from solver.latin.direction.update import FromStatus
@@ -20,6 +17,7 @@ from solver.latin.finish.status_step import StatusStep
 from solver.latin.linear.parts import PGD, Full
 from solver.latin.local.stage import LocalStage
 from solver.latin.start.nested import Nested
+from solver.latin.stop import Stop
 from solver.refusal import RefusedError, check_range
 
 
@@ -48,7 +46,7 @@ class Latin:
     finish
         `StatusStep`, which ends a run with a certified solution, or None.
     stop
-        When a run ends: criteria that combine by `&` and `|`.
+        When a run ends.
     threads
         That share an iteration on a large structure; the results are the same to the bit.
 
@@ -59,7 +57,7 @@ class Latin:
 
     Examples
     --------
-    >>> Latin(linear=PGD(modes=5), stop=Accuracy(0.05) | Iterations(100)).relaxation
+    >>> Latin(linear=PGD(modes=5), stop=Stop(accuracy=0.05, iterations=100)).relaxation
     0.8
     """
 
@@ -70,7 +68,7 @@ class Latin:
     acceleration: Anderson | None = Anderson()
     start: Nested | None = None
     finish: StatusStep | None = StatusStep()
-    stop: Criterion = Accuracy(0.01) & Indicator(1e-3) | Iterations(1000)
+    stop: Stop = Stop(accuracy=0.01, tolerance=1e-3, iterations=1000)
     threads: int = 1
 
     def __post_init__(self) -> None:
@@ -84,7 +82,7 @@ class Latin:
             direction=Paper(),
             acceleration=None,
             finish=None,
-            stop=Accuracy(0.01) & Indicator(1e-10) | Iterations(1000),
+            stop=Stop(accuracy=0.01, tolerance=1e-10, iterations=1000),
         )
 
     def plugged(self, problem: Problem, k: Array) -> Parts:

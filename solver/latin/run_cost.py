@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from solver.discrete.problem import Problem
 from solver.latin.acceleration.anderson import MEMORY
 from solver.latin.acceleration.mixing import MOST_VALUES
-from solver.latin.criteria.estimate import WAIT
+from solver.latin.estimate import WAIT
 from solver.latin.finish.cost import SYSTEMS, costs_of
 from solver.latin.method import Latin
 from solver.reference.contact import MOST_JUMPS, jumps_in

@@ -19,8 +19,6 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.slab import slab_of
-from solver.latin.criteria.converged import Indicator
-from solver.latin.criteria.status import Ending
 from solver.latin.cycle import read_only
 from solver.latin.direction.rules import SearchDirection
 from solver.latin.direction.update import FromStatus
@@ -32,6 +30,7 @@ from solver.latin.local.slide import slide_of
 from solver.latin.method import Latin
 from solver.latin.solve import Record, Solution, solve
 from solver.latin.start.nested import Nested
+from solver.latin.status import Ending
 from solver.reduction.basis import Reduction
 from solver.reference.distance import Distance
 from solver.refusal import RefusedError
@@ -95,9 +94,9 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     direction = _OfWhole(k=latin.direction.of(problem))
     linear = replace(latin.linear, responses=Responses())
     start = latin.start and Nested(partial(_at, latin.start, some))
-    accuracy = latin.stop.accuracy
-    known = Indicator(min(SHARE * accuracy, 1.0) ** 2)
-    stop = latin.stop | known if np.isfinite(accuracy) else latin.stop
+    stop, accuracy = latin.stop, latin.stop.accuracy
+    if np.isfinite(accuracy):
+        stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)
     own = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
     return Slab(some, slab_of(problem, some), own)
 

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
-from solver.latin.criteria.status import CANCELLED, Ending, Status
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
 from solver.latin.method import Latin
-from solver.latin.stop import Decision, StopRules
+from solver.latin.status import CANCELLED, Ending, Status
+from solver.latin.stop import Decision, StopState
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 
@@ -119,7 +119,7 @@ def judged(
     spent
         Seconds that the run took before, to make the problem.
     """
-    rules = StopRules(latin, spent)
+    rules = StopState(latin, spent)
     for iterate in iterations(problem, latin, start, resumable=resumable):
         verdict = rules.judge(iterate)
         yield iterate, verdict

@@ -8,7 +8,6 @@ from typing import ClassVar
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks
-from solver.latin.criteria.estimate import ErrorEstimate, EstimateByProof
 from solver.latin.linear.full import FullLinearStage
 from solver.latin.linear.response import Responses
 from solver.latin.linear.separated import ReducedLinearStage
@@ -52,10 +51,6 @@ class Full:
         return FullLinearStage(
             problem, k, multiscale=multiscale, blocks=blocks, responses=self.responses
         )
-
-    def estimate(self, accuracy: float) -> ErrorEstimate:
-        """Begin to estimate the error of a run, of which this accuracy is asked."""
-        return ErrorEstimate(accuracy)
 
 
 @dataclass(frozen=True)
@@ -101,7 +96,3 @@ class PGD:
         """Factor the linear stage, as `Full.at_work` says; it works on all instants at once."""
         rule = Enrichment(self.tolerance, self.pairs, self.modes, self.sharing)
         return ReducedLinearStage(problem, k, rule, multiscale=multiscale, responses=self.responses)
-
-    def estimate(self, accuracy: float) -> ErrorEstimate:
-        """Begin to estimate the error, as `Full.estimate`."""
-        return EstimateByProof(accuracy)

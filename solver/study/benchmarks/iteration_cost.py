@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
 
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
-from solver.latin import Full, Iterate, StopRules, iterations, solve
+from solver.latin import Iterate, StopState, iterations, solve
 from solver.latin.at_work import AtWork
 from solver.latin.clock import Clock
-from solver.latin.criteria.estimate import ErrorEstimate
+from solver.latin.estimate import ErrorEstimate
 from solver.latin.linear.full import FullLinearStage
 from solver.latin.linear.response import DenseResponse
 from solver.latin.local.stage import LocalStage
@@ -161,15 +161,10 @@ class Overhead:
 
 
 class _Unproven(ErrorEstimate):
+    """Errors that are estimated without a status step."""
+
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         return False
-
-
-class _WithoutStep(Full):
-    """Full fields whose errors are estimated without a status step."""
-
-    def estimate(self, accuracy: float) -> ErrorEstimate:
-        return _Unproven(accuracy)
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
@@ -189,7 +184,8 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
             pass
 
     def judged_without_step() -> None:
-        rules = StopRules(replace(method, linear=_WithoutStep()))
+        rules = StopState(method)
+        rules.estimate = _Unproven(method.stop.accuracy)
         for iterate in islice(iterations(problem, method), number):
             rules.judge(iterate)
 

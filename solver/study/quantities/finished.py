@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,11 +13,11 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
-from solver.latin import Iterate, Solution, record, solve
+from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.finish.certified import finished
 from solver.latin.finish.cost import costs_of, moving_share
 from solver.latin.finish.status_step import StatusSolver, states_of
-from solver.latin.stop import proven
+from solver.latin.status import certified
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
@@ -178,6 +179,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     k = method_of(settings).direction.of(problem)
     k.flags.writeable = False
     finish = finished(problem, k, certificate)
-    verdict = proven(finish, certificate, time.perf_counter() - began)
-    assert verdict.status is not None
-    return Solution(finish, [record(finish, verdict, None, watch=False)], verdict.status)
+    status, residual = certified(finish, certificate), certificate.residual
+    seconds = time.perf_counter() - began
+    decision = Decision(seconds, math.nan, math.nan, residual, status, certificate)
+    return Solution(finish, [record(finish, decision, None, watch=False)], status)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import time
 
-from solver.latin.criteria.changes import ForceChanges
 from solver.latin.finish.cost import Costs, costs_of, moving_share
 from solver.latin.finish.status_step import Certificate, StatusSolver, states_of
+from solver.latin.force_changes import ForceChanges
 from solver.latin.iterate import Iterate
 from solver.reference.condensation import NoReferenceError
 from solver.reference.solution import Interrupted
@@ -43,6 +43,9 @@ class ErrorEstimate:
     ----------
     accuracy
         Share of the contact force that is asked for.
+    needs_proof
+        Whether a certified solution alone counts, whatever it costs: bases that are too small
+        converge to something else, which no change shows.
 
     Attributes
     ----------
@@ -53,8 +56,8 @@ class ErrorEstimate:
         `time.perf_counter`.
     """
 
-    def __init__(self, accuracy: float) -> None:
-        self._accuracy = accuracy
+    def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
+        self._accuracy, self._needs_proof = accuracy, needs_proof
         self._changes = ForceChanges()
         self._last_trial, self._next_trial = 0, 1
         self._step: StatusSolver | None = None
@@ -65,7 +68,7 @@ class ErrorEstimate:
         self.deadline = math.inf
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
-        """Give the estimate; NaN while there is none.
+        """The estimate; NaN while there is none.
 
         Parameters
         ----------
@@ -103,7 +106,7 @@ class ErrorEstimate:
         return self.certificate is not None
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
-        """Tell whether displacement and contact force are that near to a certified solution."""
+        """Whether displacement and contact force are that near to a certified solution."""
         if self.certificate is None:
             return False
         distance = self.certificate.distance
@@ -111,14 +114,14 @@ class ErrorEstimate:
         return max(errors) <= share
 
     def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
-        """Tell whether the estimate counts for nothing without a status step, as below.
+        """Whether the estimate counts for nothing without a status step, as one is worth its cost.
 
-        So it is where a step is worth its cost.
+        `least` is what it may cost in any case, s.
         """
-        return self.can_be_proven(iterate, least=least)
+        return self._needs_proof or self.can_be_proven(iterate, least=least)
 
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
-        """Tell whether a status step is worth its cost by now.
+        """Whether a status step is worth its cost by now.
 
         Parameters
         ----------
@@ -131,16 +134,18 @@ class ErrorEstimate:
         """
         if not self._has_solver or not self._is_in_time(iterate):
             return False
+        if self._needs_proof:
+            return True
         return self._costs_of(iterate).afford(patience * iterate.number, least)
 
     def is_last_chance(self, iterate: Iterate) -> bool:
-        """Tell whether a run without an answer would have no time for a status step later."""
+        """Whether a run without an answer would have no time for a status step later."""
         if self.certificate is not None or math.isinf(self.deadline):
             return False
         return self._left() <= ROOM * self._costs_of(iterate).step
 
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
-        """Try the status step, unless it costs too much, as above; tell whether it holds."""
+        """Try the status step, unless it costs too much, as above; whether it holds."""
         if not self.can_be_proven(iterate, patience, least):
             return False
         self._last_trial = iterate.number
@@ -162,7 +167,7 @@ class ErrorEstimate:
         return True
 
     def _is_worth_it(self, iterate: Iterate) -> bool:
-        """Tell whether to try the step though the force is not near: it may never seem so.
+        """Whether to try the step though the force is not near: it may never seem so.
 
         So it is where k is foolish, where solutions are all but several, or where the force dies.
         """
@@ -173,7 +178,7 @@ class ErrorEstimate:
         return self._costs_of(iterate).step <= self._left()
 
     def _left(self) -> float:
-        """Give the seconds that are left of the run's limit."""
+        """Seconds that are left of the run's limit."""
         return self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
@@ -182,18 +187,3 @@ class ErrorEstimate:
             self._costs_at = iterate.number
             self._costs = costs_of(iterate.problem, moving_share(states_of(iterate)))
         return self._costs
-
-
-class EstimateByProof(ErrorEstimate):
-    """The error on separated bases, where a proof alone counts.
-
-    Bases that are too small converge to something else, which no change shows.
-    """
-
-    def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
-        """Tell that it always has to be."""
-        return True
-
-    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
-        """Try a status step whatever it costs, where there is one."""
-        return self._has_solver and self._is_in_time(iterate)
