@@ -11,9 +11,9 @@ import pytest
 
 from solver.cli import main
 from solver.latin import Ending, Latin, Stop, iterations, solve
+from solver.latin import estimate as estimates
 from solver.latin.estimate import ErrorEstimate
-from solver.latin.finish import status_step
-from solver.latin.start.nested import Nested
+from solver.latin.start import Nested
 from solver.scenes import CATALOGUE, coarser_problems, discretise
 
 SMALL = {"elements": 40, "instants": 21, "substructures": 4}
@@ -34,8 +34,8 @@ def test_a_start_that_takes_too_long_is_given_up() -> None:
     problem = bar()
     start = Nested(coarser_problems(CATALOGUE["bar"].settings.checked(SMALL)))
     k = Latin().direction.of(problem)
-    assert start.at_work(problem, k) is not None
-    assert start.at_work(problem, k, seconds=0.0) is None
+    assert start.of(problem, k) is not None
+    assert start.of(problem, k, seconds=0.0) is None
 
 
 def test_a_status_step_that_would_take_too_long_is_not_begun(
@@ -45,7 +45,7 @@ def test_a_status_step_that_would_take_too_long_is_not_begun(
     estimate = ErrorEstimate(0.01)
     assert estimate.can_be_proven(iterate, patience=1000.0)
     estimate.deadline = time.perf_counter()
-    monkeypatch.setattr(status_step, "incremental_solver", lambda *_: pytest.fail("begun"))
+    monkeypatch.setattr(estimates, "incremental_solver", lambda *_: pytest.fail("begun"))
     assert not estimate.try_step(iterate, patience=1000.0)
 
 

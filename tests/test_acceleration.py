@@ -9,9 +9,9 @@ import pytest
 from bars import measured
 
 from solver.latin import Ending, iterations
-from solver.latin.acceleration.mixing import Mixing
-from solver.latin.direction.rules import sliding_share
-from solver.latin.start.prolong import prolong
+from solver.latin.anderson import AndersonState
+from solver.latin.directions import sliding_share
+from solver.latin.start import prolong
 from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
 from solver.scenes import discretise
@@ -92,7 +92,7 @@ def test_on_every_kind_of_input_it_ends_well(change):
 
 
 def test_a_run_goes_on_from_a_checkpoint_to_the_bit(monkeypatch):
-    monkeypatch.setattr("solver.latin.acceleration.anderson.MEMORY", 4)
+    monkeypatch.setattr("solver.latin.anderson.MEMORY", 4)
     chosen = options()
     problem = discretise(chosen)
     straight = list(islice(iterations(problem, method_of(chosen)), 30))
@@ -150,7 +150,7 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
     generator = np.random.default_rng(5)
     matrix, shift = 0.9 * np.linalg.qr(generator.normal(size=(6, 6)))[0], generator.normal(size=6)
     state = [np.zeros((6, 1, 1), order="F")]
-    mix = Mixing([np.ones((6, 1, 1))], memory=10)
+    mix = AndersonState([np.ones((6, 1, 1))], memory=10)
     for _ in range(9):
         mix.start(state)
         state[0][:, 0, 0] = matrix @ state[0][:, 0, 0] + shift
@@ -160,7 +160,7 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
 
 
 def test_the_memory_is_given_up_when_the_residual_grows():
-    mix = Mixing([np.ones((2, 1, 1))], memory=5)
+    mix = AndersonState([np.ones((2, 1, 1))], memory=5)
     for size in (1.0, 0.5, 0.4, 0.41):
         mix.start([np.zeros((2, 1, 1))])
         mix([np.full((2, 1, 1), size)])

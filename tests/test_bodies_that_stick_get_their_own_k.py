@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.latin import iterations, solve
-from solver.latin.direction.sticking import LOOK
+from solver.latin.directions import LOOK
 from solver.latin.iterate import Checkpoint
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to

@@ -11,17 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
+from solver.latin.coarse import CoarseProblem
 from solver.latin.indicators import latin_indicator
-from solver.latin.linear.coarse import CoarseProblem
-from solver.latin.linear.full import FullLinearStage
-from solver.latin.linear.response import DenseResponse, SparseResponse
+from solver.latin.linear_stage import LinearStage
+from solver.latin.response import DenseResponse, SparseResponse
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.method import method_of
 
 ANY = settings(max_examples=60)
-response = importlib.import_module("solver.latin.linear.response")
-coarse = importlib.import_module("solver.latin.linear.coarse")
+response = importlib.import_module("solver.latin.response")
+coarse = importlib.import_module("solver.latin.coarse")
 
 
 def options(**values):
@@ -142,7 +142,7 @@ def test_the_size_of_a_substructure_chooses_its_response(monkeypatch):
     k = method_of(chosen).direction.of(problem)
     for limit, kind in [(problem.n_rows, DenseResponse), (problem.n_rows - 1, SparseResponse)]:
         monkeypatch.setattr(response, "DENSE_UP_TO", limit)
-        (group,) = FullLinearStage(problem, k, multiscale=True).groups
+        (group,) = LinearStage(problem, k, multiscale=True).groups
         assert type(group.response) is kind
 
 

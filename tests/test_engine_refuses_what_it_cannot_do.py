@@ -17,11 +17,12 @@ from solver.latin import (
     Latin,
     Paper,
     Stop,
+    coarse,
     iterations,
+    response,
 )
-from solver.latin.linear import coarse, response
-from solver.latin.linear.full import FullGroup
-from solver.latin.linear.response import Responses
+from solver.latin.linear_stage import FullGroup
+from solver.latin.response import Responses
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings

@@ -15,9 +15,9 @@ import pytest
 from solver.cli import main
 from solver.latin import Ending, StopState, iterations, judged, solve, status, stop
 from solver.latin.estimate import ROOM, SETTLED, ErrorEstimate
-from solver.latin.finish.cost import Costs, costs_of, moving_share
-from solver.latin.finish.status_step import states_of
 from solver.latin.force_changes import ForceChanges
+from solver.latin.status_step import states_of
+from solver.latin.step_cost import Costs, costs_of, moving_share
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise

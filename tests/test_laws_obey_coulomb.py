@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from solver.latin.local.stage import LocalStage
+from solver.latin.local_stage import LocalStage
 from solver.laws import Neumann
 from solver.laws.perfect import perfect
 from solver.laws.play import WALK_FROM_POINTS, _Scan, _Walk, play

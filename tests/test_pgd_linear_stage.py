@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from solver.files import result_arrays, summary
 from solver.latin import Ending, iterations, solve
 from solver.reduction.basis import SeparatedBasis
-from solver.reduction.enrichment import Enrichment
+from solver.reduction.enrichment import nearest_mode
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -257,7 +257,7 @@ def test_the_fixed_point_finds_the_singular_pair(monkeypatch):
     random = np.random.default_rng(4)
     residual = random.normal(size=(12, 3)) @ np.diag([9.0, 3.0, 1.0]) @ random.normal(size=(3, 20))
     k, weights = random.uniform(0.1, 10.0, 12), random.uniform(0.5, 2.0, 20)
-    found = Enrichment(0.0, 1, largest=1).mode(residual, k, weights) * np.sqrt(k)
+    found = nearest_mode(residual, k, weights) * np.sqrt(k)
     root = np.sqrt(k)[:, None] * residual * np.sqrt(weights)
     leading = np.linalg.svd(root)[0][:, 0]
     assert abs(found @ leading) == pytest.approx(np.linalg.norm(found), rel=1e-9)

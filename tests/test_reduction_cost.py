@@ -9,12 +9,10 @@ import pytest
 from benchmarks.reduction_cost import half_plane, reduction_cost, whole_iterations
 
 from solver.arrays import space_time
-from solver.latin import Auto
+from solver.latin import PGD, Auto
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear.full import FullLinearStage
-from solver.latin.linear.response import DenseResponse
-from solver.latin.linear.separated import ReducedLinearStage
-from solver.reduction.enrichment import Enrichment
+from solver.latin.linear_stage import LinearStage
+from solver.latin.response import DenseResponse
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
@@ -26,9 +24,9 @@ def test_both_stages_give_the_same_on_the_half_plane():
     start = Checkpoint(0, 0.0, np.asfortranarray(generator.normal(size=(40, 12))))
     target = np.asfortranarray(generator.normal(size=(40, 12)))
     found = []
-    full = FullLinearStage(problem, k, multiscale=True)
-    every = Enrichment(tolerance=1e-14, pairs=40, largest=40)
-    reduced = ReducedLinearStage(problem, k, every, multiscale=True)
+    full = LinearStage(problem, k, multiscale=True)
+    every = PGD(modes=40, tolerance=1e-14, pairs=40, sharing=0.0)
+    reduced = every.stage(problem, k, multiscale=True)
     for stage in (full, reduced):
         state = stage.start(start)
         stage.read(target)

@@ -105,7 +105,7 @@ def test_the_clock_stands_still_while_the_consumer_looks(monkeypatch):
         now += 1.0
         return now
 
-    module = importlib.import_module("solver.latin.clock")
+    module = importlib.import_module("solver.latin.iteration")
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=clock))
     chosen = options(**SMALL)
     seconds = []

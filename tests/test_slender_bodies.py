@@ -12,7 +12,7 @@ from solver.discrete.elements import elastic_matrix
 from solver.discrete.macro import HIGHEST_DEGREE, side_basis
 from solver.discrete.plane import Rectangle
 from solver.latin import iterations, solve
-from solver.latin.direction.rules import automatic
+from solver.latin.directions import automatic
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of

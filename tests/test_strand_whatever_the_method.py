@@ -11,7 +11,7 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import behaviour_indicator
-from solver.latin.local.stage import LocalStage
+from solver.latin.local_stage import LocalStage
 from solver.laws import Contact
 from solver.loads import PRESETS, PULLS
 from solver.reduction.svd import InterfaceField, decompositions, friction_spectra

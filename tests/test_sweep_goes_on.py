@@ -17,8 +17,8 @@ from processes import PATIENCE, is_alive, wait_for
 from sweeps import Here, rows_of, tiny
 
 from solver.definitions import SettingError
-from solver.latin.finish.cost import Costs
-from solver.latin.finish.status_step import states_of
+from solver.latin.status_step import states_of
+from solver.latin.step_cost import Costs
 from solver.laws import OPEN
 from solver.reference.choice import incremental_solver, reference_of
 from solver.running import calls

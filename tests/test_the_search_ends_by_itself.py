@@ -10,7 +10,7 @@ import pytest
 
 from solver.files import settings_from_command, summary
 from solver.latin import Ending, Solution, solve
-from solver.latin.finish.status_step import StatusSolver
+from solver.latin.status_step import StepResult
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -80,7 +80,7 @@ def test_a_search_that_gives_up_says_how_far_it_was_and_what_to_try() -> None:
 def test_without_an_answer_it_ends_as_a_run_that_only_iterates(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(StatusSolver, "__call__", lambda *given: None)
+    monkeypatch.setattr("solver.latin.estimate.status_step", lambda *_: StepResult(None, False))
     ends = []
     for finish in ("accuracy", "none"):
         settings = options("block", finish=finish)

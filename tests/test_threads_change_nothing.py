@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.latin import iterations
-from solver.latin.acceleration.mixing import SAMPLE, Mixing
+from solver.latin.anderson import SAMPLE, AndersonState
 from solver.latin.blocks import MOST, VALUES, Blocks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -61,7 +61,7 @@ def test_a_sample_of_the_residual_mixes_a_large_linear_iteration_as_well():
     size, generator = 4 * SAMPLE, np.random.default_rng(3)
     rates = generator.choice([0.9, -0.8, 0.5, 0.1], size)[:, None, None]
     state = [np.zeros((size, 1, 1), order="F")]
-    mix = Mixing([np.ones((size, 1, 1))], memory=6)
+    mix = AndersonState([np.ones((size, 1, 1))], memory=6)
     for _ in range(7):
         mix.start(state)
         state[0] = np.asfortranarray(rates * state[0] + 1.0)

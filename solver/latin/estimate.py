@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import time
 
-from solver.latin.finish.cost import Costs, costs_of, moving_share
-from solver.latin.finish.status_step import Certificate, StatusSolver, states_of
 from solver.latin.force_changes import ForceChanges
 from solver.latin.iterate import Iterate
+from solver.latin.status_step import Certificate, states_of, status_step
+from solver.latin.step_cost import Costs, costs_of, moving_share
+from solver.reference.choice import Incremental, incremental_solver
 from solver.reference.condensation import NoReferenceError
 from solver.reference.solution import Interrupted
 
@@ -54,18 +55,21 @@ class ErrorEstimate:
     deadline
         When a status step is given up, and before which none begins that would take longer, by
         `time.perf_counter`.
+    jumps
+        Whether the last status step found nothing any more after the structure had jumped.
     """
 
     def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
         self._accuracy, self._needs_proof = accuracy, needs_proof
         self._changes = ForceChanges()
         self._last_trial, self._next_trial = 0, 1
-        self._step: StatusSolver | None = None
+        self._solver: Incremental | None = None
         self._costs: Costs | None = None
         self._costs_at = 0
         self._has_solver = True
         self.certificate: Certificate | None = None
         self.deadline = math.inf
+        self.jumps = False
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
         """The estimate; NaN while there is none.
@@ -80,12 +84,12 @@ class ErrorEstimate:
         accuracy = self._accuracy
         is_due = iterate.number >= self._next_trial
         if self.certificate is not None:
-            found = self.certificate.distance.of_friction_force(iterate)
-            if is_due and accuracy < found and self._changes.left(iterate).worst <= accuracy:
+            error = self.certificate.distance.of_friction_force(iterate)
+            if is_due and accuracy < error and self._changes.left(iterate).worst <= accuracy:
                 # It has come to rest elsewhere: there may be several solutions.
                 self.try_step(iterate)
-                found = self.certificate.distance.of_friction_force(iterate)
-            return found
+                error = self.certificate.distance.of_friction_force(iterate)
+            return error
         expected = self._changes.left(iterate)
         ends_soon = any(left <= accuracy for left in expected)
         is_near = self._changes.last.whole <= SETTLED or ends_soon or indicator <= SOLVED
@@ -94,11 +98,6 @@ class ErrorEstimate:
         if self.certificate is None:
             return expected.worst
         return self.certificate.distance.of_friction_force(iterate)
-
-    @property
-    def jumps(self) -> bool:
-        """Whether a status step found nothing any more after the structure had jumped."""
-        return self._step is not None and self._step.jumps
 
     @property
     def is_proven(self) -> bool:
@@ -150,20 +149,21 @@ class ErrorEstimate:
             return False
         self._last_trial = iterate.number
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
-        self._step = self._step or StatusSolver(iterate.problem)
+        problem, states = iterate.problem, states_of(iterate)
+        systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
-            systems = self._costs_of(iterate).systems(patience * iterate.number)
-            found = self._step(
-                states_of(iterate), systems, lambda: time.perf_counter() > self.deadline
+            self._solver = self._solver or incremental_solver(problem)
+            certificate, self.jumps = status_step(
+                self._solver, problem, states, systems, lambda: time.perf_counter() > self.deadline
             )
         except NoReferenceError:
             self._has_solver = False
             return False
         except Interrupted:
             return False
-        if found is None or found.residual > self._accuracy:
+        if certificate is None or certificate.residual > self._accuracy:
             return False
-        self.certificate = found
+        self.certificate = certificate
         return True
 
     def _is_worth_it(self, iterate: Iterate) -> bool:

@@ -117,12 +117,12 @@ def _still_needed(past: list[_Past], number: int) -> list[_Past]:
 
 def _at(past: Iterable[_Past], number: float) -> _Past | None:
     """The last entry up to a number of iterations."""
-    found = None
+    last = None
     for entry in past:
         if entry.number > number:
             break
-        found = entry
-    return found
+        last = entry
+    return last
 
 
 def _ratio(part: float, whole: float) -> float:

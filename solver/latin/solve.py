@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
-from solver.latin.iterations import iterations
+from solver.latin.iteration import iterations
 from solver.latin.method import Latin
 from solver.latin.status import CANCELLED, Ending, Status
 from solver.latin.stop import Decision, StopState

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from solver.discrete.problem import Problem
-from solver.latin.finish.status_step import Certificate
 from solver.latin.iterate import Iterate
+from solver.latin.status_step import Certificate
 
 FAR = 0.1
 """Error of the contact force from which on what a status step finds is not LATIN's own."""

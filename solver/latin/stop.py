@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solver.arrays import Array
+from solver.latin.certified import finished
 from solver.latin.estimate import LAST, WAIT, ErrorEstimate
-from solver.latin.finish.certified import finished
-from solver.latin.finish.status_step import Certificate
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
 from solver.latin.status import (
@@ -28,6 +27,7 @@ from solver.latin.status import (
     diverged,
     with_jump,
 )
+from solver.latin.status_step import Certificate
 from solver.refusal import check_range
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from solver.latin import (
     StatusStep,
     Stop,
 )
-from solver.latin.direction.rules import SearchDirection
+from solver.latin.directions import SearchDirection
 from solver.scenes import coarser_problems
 from solver.settings import Settings
 

@@ -14,11 +14,11 @@ from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.latin import Decision, Iterate, Solution, record, solve
-from solver.latin.finish.certified import finished
-from solver.latin.finish.cost import costs_of, moving_share
-from solver.latin.finish.status_step import StatusSolver, states_of
+from solver.latin.certified import finished
 from solver.latin.status import certified
-from solver.reference.choice import reference_of
+from solver.latin.status_step import states_of, status_step
+from solver.latin.step_cost import costs_of, moving_share
+from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.solution import States
@@ -157,7 +157,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     problem, settings
         What to solve, and the options of the method.
     states
-        As `solver.latin.finish.status_step.states_of` gives them.
+        As `solver.latin.status_step.states_of` gives them.
 
     Returns
     -------
@@ -171,7 +171,8 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     if not costs.afford(ALONE):
         return None
     try:
-        certificate = StatusSolver(problem)(states, costs.systems(ALONE))
+        solver, most = incremental_solver(problem), costs.systems(ALONE)
+        certificate = status_step(solver, problem, states, most).certificate
     except NoReferenceError:
         return None
     if certificate is None or certificate.residual > settings.accuracy:

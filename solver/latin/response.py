@@ -41,14 +41,14 @@ class DenseResponse:
         np.matmul(self._reflection, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
-        """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
         k = self._k
         full: Array = -k[rows, None] * self._compliance[rows] * k
         full[np.arange(len(rows)), rows] += k[rows]
         return full
 
     def of_body_force(self, force: Array) -> Array:
-        """Give the boundary displacement under body forces, with k as a spring to rest."""
+        """Boundary displacement under body forces, with k as a spring to rest."""
         return np.asarray(self._factor.solve(force)[self._trace])
 
 
@@ -74,14 +74,14 @@ class SparseResponse:
         np.subtract(out, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
-        """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
         load = self._load[:, rows].toarray()
         full = -(self._load.T @ self._factor.solve(load)).T
         full[np.arange(len(rows)), rows] += self._k[rows]
         return np.asarray(full)
 
     def of_body_force(self, force: Array) -> Array:
-        """Give the boundary displacement under body forces, with k as a spring to rest."""
+        """Boundary displacement under body forces, with k as a spring to rest."""
         return np.asarray(self._factor.solve(force)[self._trace])
 
 
@@ -103,7 +103,7 @@ class Responses:
         self._owners: list[Elasticity] = []  # so that no other takes over its identity
 
     def of(self, elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
-        """Give that of an elasticity with a k, as `response`."""
+        """That of an elasticity with a k, as `response`."""
         key = id(elasticity), k.tobytes()
         if key not in self._found:
             self._found[key] = response(elasticity, k)

@@ -7,7 +7,7 @@ import numpy as np
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
-from solver.latin.local.slide import Slide, slide_of
+from solver.latin.sliding_body import Slide, slide_of
 
 
 class LocalStage:
@@ -58,16 +58,16 @@ class LocalStage:
         if self._slide is not None:
             incoming = self._slide.balanced(incoming)
         self.incoming = incoming
-        found = self.displacement = np.empty_like(self._outgoing)
+        displacement = self.displacement = np.empty_like(self._outgoing)
         for rule in self._remembering:
-            rule(incoming, found, ALL)
+            rule(incoming, displacement, ALL)
         self._blocks.each(lambda some: self._at(incoming[:, some], some))
         return self._outgoing
 
     def _at(self, incoming: Array, some: slice) -> None:
         """Obey the laws that are local in time, at some instants, and reflect."""
-        found, outgoing = self.displacement[:, some], self._outgoing[:, some]
+        displacement, outgoing = self.displacement[:, some], self._outgoing[:, some]
         for rule in self._instant:
-            rule(incoming, found, some)
-        np.multiply(found, 2.0, out=outgoing)
+            rule(incoming, displacement, some)
+        np.multiply(displacement, 2.0, out=outgoing)
         np.subtract(outgoing, incoming, out=outgoing)
