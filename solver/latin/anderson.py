@@ -11,7 +11,6 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once, in_a_row
 from solver.latin.linear_stage import LinearStage
-from solver.latin.sliding_body import slide_of
 from solver.refusal import check_range
 
 MEMORY = 15
@@ -60,25 +59,34 @@ class Anderson:
         check_range(self, "memory", 1, 1000)
 
     def begin(
-        self, problem: Problem, stage: LinearStage, blocks: Blocks | None = None
+        self, problem: Problem, stage: LinearStage, motion: Array | None, blocks: Blocks
     ) -> AndersonState | None:
-        """Prepare what a run remembers; None where the states of its linear stage are not mixed."""
-        weights = stage.weights(problem.time_weights)
-        if weights is None:
+        """Prepare what a run remembers; None where the states of its linear stage are not mixed.
+
+        Parameters
+        ----------
+        problem, stage
+            What is solved, and the linear stage whose states are mixed.
+        motion
+            Of the rows, shape (n_rows,), which the local stage chooses anew whatever the state is.
+        blocks
+            Of instants, in which states are mixed.
+        """
+        weights = [group.weights(problem.time_weights) for group in stage.groups]
+        mixable = [own for own in weights if own is not None]
+        if len(mixable) < len(weights):
             return None
         growth = 1.0
         if problem.opens:
             is_held = any(law.is_on_support for law in problem.rubbing.values())
             growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-        way = slide_of(problem)
         free = None
-        if way is not None:
-            rows = way[problem.row_dofs]
+        if motion is not None:
             free = [
-                np.broadcast_to(rows[group.rows][:, :, None], group.target.shape)
+                np.broadcast_to(motion[group.rows][:, :, None], group.target.shape)
                 for group in stage.groups
             ]
-        return AndersonState(weights, self.memory, growth, blocks, free)
+        return AndersonState(mixable, self.memory, growth, blocks, free)
 
 
 class AndersonState:

@@ -113,7 +113,7 @@ class Iteration:
             ) from None
         self.local = LocalStage(problem, self.k, blocks)
         mix = latin.acceleration
-        self._mixture = mix.begin(problem, self.linear, blocks) if mix else None
+        self._mixture = mix.begin(problem, self.linear, self.local.motion, blocks) if mix else None
 
     def _go_to(self, start: Checkpoint | None) -> None:
         """Go to the state of a checkpoint, or to that in which all is zero."""

@@ -72,15 +72,6 @@ class LinearStage:
         )
         self._shape = (problem.n_rows, problem.n_instants)
 
-    def weights(self, time_weights: Array) -> list[Array] | None:
-        """Squared weights of an inner product of states, one array for each group.
-
-        None where states are not fields that can be mixed.
-        """
-        weights = [group.weights(time_weights) for group in self.groups]
-        mixable = [own for own in weights if own is not None]
-        return mixable if len(mixable) == len(weights) else None
-
     def start(self, checkpoint: Checkpoint | None) -> list[Any]:
         """State of a checkpoint, or that in which all is zero; one entry per group."""
         return [group.start(checkpoint) for group in self.groups]

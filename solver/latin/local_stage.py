@@ -30,6 +30,8 @@ class LocalStage:
     incoming
         z with which the last call obeyed: as read, but for the shift of a body that slides as a
         whole.
+    motion
+        Of the rows of such a body, shape (n_rows,), which every call chooses anew; or None.
     """
 
     def __init__(self, problem: Problem, k: Array, blocks: Blocks | None = None) -> None:
@@ -38,6 +40,7 @@ class LocalStage:
         self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
         way = slide_of(problem)
+        self.motion = None if way is None else way[problem.row_dofs]
         self._slide = None if way is None else Slide(problem, way, k)
         laws, n_instants = problem.laws, problem.n_instants
         self._remembering = [law.rule(k, n_instants) for law in laws if law.remembers]

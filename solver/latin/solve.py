@@ -16,8 +16,6 @@ from solver.latin.stop import Decision, StopState
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 
-FAST = Latin()
-
 
 @dataclass(frozen=True)
 class Record:
@@ -130,7 +128,7 @@ def judged(
 
 def solve(
     problem: Problem,
-    latin: Latin = FAST,
+    latin: Latin = Latin(),
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,
