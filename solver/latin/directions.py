@@ -10,7 +10,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_of
-from solver.latin.iterate import Checkpoint, UpdateProgress
+from solver.latin.iterate import Checkpoint, UpdateProgress, read_only
 from solver.refusal import check_range
 
 Fields = tuple[Array, Array]
@@ -100,7 +100,7 @@ class SearchDirection(ABC):
             if law.normal is not None:
                 for rows in law.normal.component.sides:
                     k[rows] *= self.across
-        return _read_only(np.ascontiguousarray(k))
+        return read_only(np.ascontiguousarray(k))
 
 
 @dataclass(frozen=True)
@@ -245,12 +245,7 @@ def _profile(problem: Problem, progress: UpdateProgress) -> Array:
         for rows in law.tangent.sides:
             k[rows] *= SLIDING ** share[first + law.points]
         first += len(law.positions)
-    return _read_only(k)
-
-
-def _read_only(k: Array) -> Array:
-    k.flags.writeable = False
-    return k
+    return read_only(k)
 
 
 def automatic(problem: Problem, *, sticks: bool = False) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array
+from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
 from solver.reference.distance import LEAST_SHARE, VANISHING
 
@@ -97,7 +98,7 @@ class ForceChanges:
 
 def _left(last: float, before: float, earlier: float) -> float:
     """What is left of a force, of which these are the last three changes."""
-    fall = max(_ratio(last, before), _ratio(before, earlier))
+    fall = max(ratio(last, before), ratio(before, earlier))
     fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
     return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
@@ -123,13 +124,6 @@ def _at(past: Iterable[_Past], number: float) -> _Past | None:
             break
         last = entry
     return last
-
-
-def _ratio(part: float, whole: float) -> float:
-    """Divide, where nothing of nothing has fallen as far as can be."""
-    if part == 0.0:
-        return 0.0
-    return part / whole if whole != 0.0 else math.inf
 
 
 def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Change:

@@ -48,7 +48,7 @@ STALL_FACTOR = 0.99
 """A lower indicator is one below this part of the lowest so far."""
 SELDOM = 16
 """Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
-USUAL_ACCURACY = 0.01
+DEFAULT_ACCURACY = 0.01
 """Of a status step that ends a run which nobody asks to be accurate."""
 SHARE = 8
 """A value that is awaited is computed again at the latest after this part of the iterations."""
@@ -153,9 +153,10 @@ class StopState:
         self._may_finish = finish is not None
         self._searches = finish is not None and not finish.at_once
         self._advice = Advice(latin.linear.remedy, self._may_finish, latin.relaxation)
-        is_asked = math.isfinite(self._stop.accuracy)
+        self._asks_accuracy = math.isfinite(self._stop.accuracy)
+        self._asks_tolerance = math.isfinite(self._stop.tolerance)
         self.estimate = ErrorEstimate(
-            self._stop.accuracy if is_asked else USUAL_ACCURACY,
+            self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY,
             needs_proof=latin.linear.has_to_prove,
         )
         self._on_accuracy, self._on_tolerance, self._on_sufficient = (_Awaited() for _ in range(3))
@@ -239,8 +240,8 @@ class StopState:
         if self.estimate.jumps:
             return JUMPS
         if is_exhausted:
-            lack = self._lack(numbers) or "The run has come to its limit"
-            return self._advice.exhausted(lack, is_late=number < self._stop.iterations)
+            is_late = number < self._stop.iterations
+            return self._advice.exhausted(self._lack(numbers), is_late=is_late)
         return status
 
     def _converged(self, numbers: _Numbers, *, looks_at_all: bool, is_last: bool) -> Status | None:
@@ -248,7 +249,7 @@ class StopState:
         stop, number = self._stop, numbers.iterate.number
         # How many iterations a search takes is asked; a distance costs a hundredth to a sixth of
         # one (measured on the five scenes).
-        looks_always = self._searches and math.isfinite(stop.accuracy)
+        looks_always = self._searches and self._asks_accuracy
         if looks_always and numbers.estimated_error <= stop.accuracy and self.estimate.is_proven:
             return PROVEN
         is_due = self._on_accuracy.is_due(number) and self._on_tolerance.is_due(number)
@@ -263,37 +264,35 @@ class StopState:
     def _goal(self, numbers: _Numbers) -> Status | None:
         """Status of a run that is accurate enough, at a low indicator, as far as both are asked."""
         stop, estimate, number = self._stop, self.estimate, numbers.iterate.number
-        asks_accuracy, asks_tolerance = map(math.isfinite, (stop.accuracy, stop.tolerance))
-        if asks_accuracy:
+        if self._asks_accuracy:
             error = numbers.estimated_error
             self._on_accuracy.saw(number, error if estimate.is_proven else math.nan, stop.accuracy)
             if not error <= stop.accuracy:
                 return None
             # The indicator says when to look again.
             self._on_accuracy.next = number + 1
-        if asks_tolerance and not _is_low(numbers, stop.tolerance, self._on_tolerance):
+        if self._asks_tolerance and not _is_low(numbers, stop.tolerance, self._on_tolerance):
             return None
-        if not asks_accuracy:
-            return BELOW if asks_tolerance else None
+        if not self._asks_accuracy:
+            return BELOW if self._asks_tolerance else None
         if estimate.is_proven:
             return PROVEN
         return None if estimate.has_to_be_proven(numbers.iterate, WAIT) else EXPECTED
 
     def _lack(self, numbers: _Numbers) -> str:
-        """What is not met, in a sentence without its full stop; empty where nothing is asked."""
-        stop = self._stop
-        asks_accuracy, asks_tolerance = map(math.isfinite, (stop.accuracy, stop.tolerance))
-        unknown = "he contact force is not known to be accurate enough"
-        if asks_accuracy and self._searches:
-            if self.estimate.is_proven:
-                return "The contact force of the iterates is not accurate enough"
-            return f"T{unknown}"
-        if not asks_tolerance:
-            return f"T{unknown}" if asks_accuracy else ""
-        if not numbers.indicator <= stop.tolerance:
+        """What is not met, in a sentence without its full stop."""
+        if self._asks_accuracy and self._searches and self.estimate.is_proven:
+            return "The contact force of the iterates is not accurate enough"
+        if self._asks_accuracy and (self._searches or not self._asks_tolerance):
+            return "The contact force is not known to be accurate enough"
+        if self._asks_tolerance and not numbers.indicator <= self._stop.tolerance:
             return "The LATIN indicator is still above its tolerance"
-        low = "The LATIN indicator is below its tolerance"
-        return f"{low}, yet t{unknown}" if asks_accuracy else ""
+        if self._asks_accuracy:
+            return (
+                "The LATIN indicator is below its tolerance, yet the contact force is not known to "
+                "be accurate enough"
+            )
+        return "The run has come to its limit"
 
     def _has_stalled(self, numbers: _Numbers) -> bool:
         """Whether the LATIN indicator has stopped falling."""
