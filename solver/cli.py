@@ -29,7 +29,7 @@ from solver.files import (
     settings_from_command,
     summary,
 )
-from solver.latin import Ending, Seconds, Solution, solve, solve_in_slabs
+from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.mesh_command import add_mesh
@@ -148,7 +148,7 @@ def _run(chosen: argparse.Namespace) -> int:
     if nothing_acts(problem):
         print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
     method = method_of(settings)
-    method = replace(method, stop=method.stop | limit) if limit else method
+    method = replace(method, stop=replace(method.stop, seconds=limit))
     most, beside = settings.max_iterations, chosen.reference
     _announce(run_cost(problem, method, most, with_reference=beside), limit)
     distance = _distance(problem, limit) if chosen.reference else None
@@ -173,15 +173,16 @@ def _run(chosen: argparse.Namespace) -> int:
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
-def _limit(chosen: argparse.Namespace) -> Seconds | None:
+def _limit(chosen: argparse.Namespace) -> float:
+    """Seconds that the run may take."""
     if chosen.limit is None:
-        return None
+        return math.inf
     if not 0.0 < chosen.limit < math.inf:
         raise SettingError("--limit", chosen.limit, "seconds above 0", "give more, or leave it out")
-    return Seconds(chosen.limit)
+    return float(chosen.limit)
 
 
-def _announce(cost: RunCost, limit: Seconds | None) -> None:
+def _announce(cost: RunCost, limit: float) -> None:
     """Say what a long or large run will take, before it begins."""
     if not cost.is_large:
         return
@@ -189,8 +190,8 @@ def _announce(cost: RunCost, limit: Seconds | None) -> None:
     if cost.reference > 0.2 * cost.seconds:
         share = round(100.0 * cost.reference / cost.seconds)
         line += f", {share} % of the time for the reference, which --no-reference leaves out"
-    if limit and limit.most < cost.seconds:
-        line += f"; --limit ends it after {limit.most:g} s"
+    if limit < cost.seconds:
+        line += f"; --limit ends it after {limit:g} s"
     print(line, file=sys.stderr, flush=True)
 
 
@@ -229,9 +230,9 @@ def _number(name: str, value: float) -> str:
     return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
-def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:
+def _distance(problem: Problem, limit: float) -> Distance | None:
     """Give the distance to the reference, or None where there is none in time."""
-    end = time.perf_counter() + limit.most if limit else math.inf
+    end = time.perf_counter() + limit
     try:
         reference = reference_of(problem, lambda: time.perf_counter() > end)
     except Interrupted:

@@ -16,7 +16,7 @@ from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Given, Side, Support
 from solver.discrete.stack.stack import Stack
-from solver.latin import Accuracy, Auto, Ending, Iterations, Latin, solve
+from solver.latin import Auto, Ending, Latin, Stop, solve
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.diffusion import spread
 from solver.reference.closed_forms.slip_front import (
@@ -203,7 +203,7 @@ def loosened(substructures):
 def test_a_known_bound_in_the_plane_is_obeyed_and_presses_nothing(substructures):
     problem = loosened(substructures).discretise()
     reference = reference_of(problem)
-    method = Latin(direction=Auto(), stop=Accuracy(1e-4) | Iterations(300))
+    method = Latin(direction=Auto(), stop=Stop(accuracy=1e-4, iterations=300))
     solution = solve(problem, method)
     assert reference.converged.all()
     assert solution.status.ending is Ending.CONVERGED

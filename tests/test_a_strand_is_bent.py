@@ -17,7 +17,7 @@ from solver.discrete.rope.forces import CutWires, WireForces, cut_at, stress_ran
 from solver.discrete.rope.helical_wire import HelicalWire
 from solver.discrete.rope.rope import Rope
 from solver.files import result_arrays
-from solver.latin import Accuracy, Auto, Iterations, Latin
+from solver.latin import Auto, Latin, Stop
 from solver.reference.choice import incremental_solver
 from solver.reference.closed_forms.bent_wire import BentWire
 from solver.reference.contact import IncrementalContact
@@ -139,7 +139,7 @@ def test_latin_certifies_it(changes: dict[str, Any]) -> None:
 def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None:
     settings = settings_of(**changes)
     problem = discretise(settings)
-    method = Latin(direction=Auto(), finish=None, stop=Accuracy(1e-4) | Iterations(3000))
+    method = Latin(direction=Auto(), finish=None, stop=Stop(accuracy=1e-4, iterations=3000))
     found, exact = solve(problem, method).iterate, incremental(problem)
     scale = np.abs(exact.contact_force).max()
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale

@@ -19,10 +19,11 @@ from solver.files import settings_from_command
 from solver.latin import (
     Ending,
     Solution,
-    StopRules,
+    StopState,
     iterations,
     judged,
     solve,
+    status,
     stop,
 )
 from solver.reference.choice import reference_of
@@ -112,7 +113,7 @@ def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     assert f"iterate {before.iteration}, whose" in advice
     said = float(advice.removesuffix(" % away from it.").split()[-1])
     assert said == pytest.approx(100.0 * before.error_force, rel=0.1)
-    assert (before.error_force > stop.FAR) == is_by_increments
+    assert (before.error_force > status.FAR) == is_by_increments
     assert ("incremental solver's answer" in advice) == is_by_increments
 
 
@@ -122,7 +123,7 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     wrong: float, has_certificate: bool
 ) -> None:
     settings = small("bar", finish="none")
-    rules = StopRules(method_of(settings))
+    rules = StopState(method_of(settings))
     number = 20 if has_certificate else 1
     for iterate in islice(iterations(discretise(settings), method_of(settings)), number):
         known = rules.judge(iterate).certificate is not None

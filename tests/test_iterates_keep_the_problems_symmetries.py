@@ -149,7 +149,7 @@ def test_the_iteration_does_not_see_the_size_of_a_metre(length):
 def test_dense_and_sparse_boundary_responses_agree(monkeypatch, change, substructures):
     chosen = short(substructures=substructures, **change)
     dense = sample(chosen, 25)
-    monkeypatch.setattr("solver.latin.linear.response.DENSE_UP_TO", 0)
+    monkeypatch.setattr("solver.latin.response.DENSE_UP_TO", 0)
     sparse = sample(chosen, 25)
     assert relative(sparse.outgoing, dense.outgoing) < 1e-10
     assert relative(sparse.incoming, dense.incoming) < 1e-10

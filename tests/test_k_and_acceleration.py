@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from bars import measured
 
-from solver.latin import Ending, iterations
-from solver.latin.direction import update
-from solver.latin.direction.rules import sliding_share
-from solver.latin.direction.update import CALM, TRIAL
+from solver.latin import Ending, directions, iterations
+from solver.latin.directions import CALM, TRIAL, sliding_share
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -113,7 +111,7 @@ def test_the_limit_is_the_same_once_k_is_updated(change):
 
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
-    monkeypatch.setattr(update, "SLIDING", 1e-9)
+    monkeypatch.setattr(directions, "SLIDING", 1e-9)
     chosen = updating(**{**FAST, "acceleration": acceleration})
     problem = discretise(chosen)
     constant = sample(chosen.replace(k_update="none"), CALM + 20)
@@ -132,8 +130,8 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
 @pytest.mark.parametrize("harm", [1.0, 1e-9])
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_run_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, acceleration, harm):
-    monkeypatch.setattr(update, "SLIDING", harm * update.SLIDING)
-    monkeypatch.setattr("solver.latin.acceleration.anderson.MEMORY", 4)
+    monkeypatch.setattr(directions, "SLIDING", harm * directions.SLIDING)
+    monkeypatch.setattr("solver.latin.anderson.MEMORY", 4)
     chosen = updating(**{**FAST, "acceleration": acceleration})
     problem = discretise(chosen)
     straight = sample(chosen, CALM + TRIAL + 20)

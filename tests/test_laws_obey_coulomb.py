@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from solver.latin.local.stage import LocalStage
+from solver.latin.local_stage import LocalStage
 from solver.laws import Contact
 from solver.laws.play import WALK_FROM_POINTS, play
 from solver.scenes import discretise

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from solver import Latin, solve
 from solver.discrete.rods.rods import Rods
-from solver.latin import Accuracy, Iterations, Paper
+from solver.latin import Paper, Stop
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.contact import IncrementalContact
@@ -103,7 +103,7 @@ def test_latin_and_both_incremental_solvers_find_the_same(path, law, method):
         other = IncrementalContact(problem).march()
         size = np.abs(found.contact_force).max()
         np.testing.assert_allclose(other.contact_force, found.contact_force, atol=1e-9 * size)
-    tight = replace(method, finish=None, stop=Accuracy(1e-3) | Iterations(2000))
+    tight = replace(method, finish=None, stop=Stop(accuracy=1e-3, iterations=2000))
     iterate = solve(problem, tight).iterate
     assert distance_to(found, problem).of_friction_force(iterate) < 1e-3
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from solver.latin import Solution, iterations
-from solver.latin.criteria.status import CANCELLED
+from solver.latin.status import CANCELLED
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of

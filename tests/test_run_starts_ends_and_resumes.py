@@ -17,20 +17,19 @@ from bars import SMALL, boundary_of, options, sample
 
 from solver.latin import (
     PGD,
-    Accuracy,
     Anderson,
     Auto,
     Checkpoint,
     Ending,
-    Indicator,
-    Iterations,
     Latin,
     Paper,
+    Stop,
+    coarse,
     iterations,
+    response,
     solve,
 )
 from solver.latin.blocks import Blocks
-from solver.latin.linear import coarse, response
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.refusal import RefusedError
@@ -102,7 +101,7 @@ def test_the_clock_stands_still_while_the_consumer_looks(monkeypatch):
         now += 1.0
         return now
 
-    module = importlib.import_module("solver.latin.clock")
+    module = importlib.import_module("solver.latin.iteration")
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=clock))
     chosen = options(**SMALL)
     seconds = []
@@ -195,9 +194,9 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
         (lambda: PGD(modes=0), "PGD.modes"),
         (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
         (lambda: Anderson(memory=0), "Anderson.memory"),
-        (lambda: Accuracy(0.0), "Accuracy.share"),
-        (lambda: Indicator(-1.0), "Indicator.eta"),
-        (lambda: Iterations(0), "Iterations.most"),
+        (lambda: Stop(accuracy=0.0), "Stop.accuracy"),
+        (lambda: Stop(tolerance=-1.0), "Stop.tolerance"),
+        (lambda: Stop(iterations=0), "Stop.iterations"),
         (lambda: Latin(relaxation=1.5), "Latin.relaxation"),
         (lambda: Latin(threads=0), "Latin.threads"),
     ],

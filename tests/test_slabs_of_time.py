@@ -12,13 +12,10 @@ import pytest
 from solver.cli import main
 from solver.discrete.problem import Problem
 from solver.latin import (
-    Accuracy,
     Ending,
     FromStatus,
-    Indicator,
-    Iterations,
     Latin,
-    Seconds,
+    Stop,
     solve,
 )
 from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
@@ -28,8 +25,8 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 
 CYCLE = 12
-TIGHT = Latin(finish=None, stop=Indicator(1e-20) | Iterations(800))
-ROUGH = replace(TIGHT, stop=Accuracy(0.01) & Indicator(1e-3) | Iterations(400))
+TIGHT = Latin(finish=None, stop=Stop(tolerance=1e-20, iterations=800))
+ROUGH = replace(TIGHT, stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=400))
 
 
 def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
@@ -107,7 +104,7 @@ def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     seconds = [one.seconds for one in found.records]
     assert seconds == sorted(seconds)
     assert seconds[0] > 100.0
-    limited = replace(ROUGH, stop=ROUGH.stop | Seconds(50.0))
+    limited = replace(ROUGH, stop=replace(ROUGH.stop, seconds=50.0))
     ended = solve_in_slabs(problem, limited, CYCLE, spent=100.0)
     assert ended.status.ending is Ending.EXHAUSTED
     assert len(ended.records) == 3

@@ -10,7 +10,7 @@ import pytest
 from plane import lengths, reaction, solved, whole_force_error
 
 from solver.latin import iterations, solve
-from solver.latin.direction.sticking import LOOK
+from solver.latin.directions import LOOK
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.cantilever import cantilever
 from solver.reference.distance import distance_to

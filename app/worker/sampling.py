@@ -19,7 +19,7 @@ from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import LoopFields
 from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate, Record, Solution, Status
-from solver.latin.criteria.status import CANCELLED
+from solver.latin.status import CANCELLED
 from solver.reference.solution import Reference
 from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of

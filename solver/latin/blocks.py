@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 VALUES = 100_000
 """Least numbers of a boundary field in a block: of less, handing it to a thread costs a share of
@@ -46,5 +46,11 @@ class Blocks:
 
 
 def at_once(n_instants: int) -> Blocks:
-    """Give all instants as one block."""
+    """All instants as one block."""
     return Blocks(1, n_instants)
+
+
+def in_a_row(sizes: Sequence[int]) -> list[slice]:
+    """Places of parts of these sizes that are put one after the other."""
+    ends = accumulate(sizes, initial=0)
+    return [slice(first, last) for first, last in pairwise(ends)]

@@ -59,20 +59,22 @@ def behaviour_indicator(iterate: Iterate) -> float:
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
     """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     noise = _rounding(displacement, force)
-    found = [law.behaviour(displacement, force, noise) for law in problem.rubbing.values()]
+    behaviours = [law.behaviour(displacement, force, noise) for law in problem.rubbing.values()]
     energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
-        float(one.dissipated.sum()) for one in found
+        float(one.dissipated.sum()) for one in behaviours
     )
-    allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
+    allowance = sum(float(one.bound.sum()) for one in behaviours) or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
-    worst = max(float(one.violation(mean_slip).sum()) for one in found)
+    worst = max(float(one.violation(mean_slip).sum()) for one in behaviours)
     # Against the mean energy per interface, so that many that hold do not hide one that does not.
-    total = ratio(len(found) * worst, energy) + _gap_of_bonds(problem, displacement, force, noise)
+    total = ratio(len(behaviours) * worst, energy) + _gap_of_bonds(
+        problem, displacement, force, noise
+    )
     return total / _share_of_friction(problem, force)
 
 
 def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:
-    """Give the largest elastic energy over time; body forces work on it like the interfaces."""
+    """The largest elastic energy over time; body forces work on it like the interfaces."""
     if problem.body_force_on_rows is not None:
         force = force + problem.body_force_on_rows
     work = np.einsum("ij,ij->j", displacement, force)
@@ -80,7 +82,7 @@ def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> floa
 
 
 def _rounding(displacement: Array, force: Array) -> float:
-    """Give what rounding makes of W and F alike: a scaled structure has a compliance near 1.
+    """What rounding makes of W and F alike: a scaled structure has a compliance near 1.
 
     It knows no k, so that the indicator sees none. Where friction holds every point that is loaded
     nothing moves at all, and what little the iterate still moves is none either.
@@ -92,7 +94,7 @@ def _rounding(displacement: Array, force: Array) -> float:
 
 
 def _share_of_friction(problem: Problem, force: Array) -> float:
-    """Give the share of the largest force that friction can carry beside the supports, at most 1.
+    """The share of the largest force that friction can carry beside the supports, at most 1.
 
     It is 1 where there is no friction. Where friction grows with the load it is the share of what
     contact carries, unless that is a thousandth or more.
@@ -105,9 +107,9 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
 
 
 def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: float) -> float:
-    found = [law.gaps(displacement, force, noise) for law in problem.laws]
-    apart = sum(gaps.displacement for gaps in found)
-    unbalanced = sum(gaps.force for gaps in found)
+    gaps_of_laws = [law.gaps(displacement, force, noise) for law in problem.laws]
+    apart = sum(gaps.displacement for gaps in gaps_of_laws)
+    unbalanced = sum(gaps.force for gaps in gaps_of_laws)
     return float(
         np.sqrt(ratio(apart, squared(displacement))) + np.sqrt(ratio(unbalanced, squared(force)))
     )

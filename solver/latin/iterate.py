@@ -27,16 +27,16 @@ class UpdateProgress:
     Attributes
     ----------
     phase
-        Whether k is still that of the start ("first"), another ("updated"), or that of the start
-        for good ("returned").
+        Whether k is that of the start and may change ("first"), another ("updated"), or that of the
+        start for good ("returned").
     k
         Search direction of the rows, shape (n_rows,).
     count
         First: iterations on end with hardly a change of status. Updated: iterations since the last
         trial.
     status
-        Contact status of the iteration before, shape (n_points, n_instants); None after the first
-        phase, and before the first iteration.
+        Contact status of the iteration before, shape (n_points, n_instants), where k follows it;
+        None after the first phase, and before the first iteration.
     kept
         Updated: W and F of the linear stage at the last trial, shape (n_rows, n_instants) each.
     violation
@@ -68,7 +68,7 @@ class Checkpoint:
     memory
         What it counts: states seen, differences, and the smallest residual.
     course
-        Of the update of k, if there is one.
+        How far the update of k has come; None where the fields are those of another run.
     """
 
     number: int
@@ -78,12 +78,6 @@ class Checkpoint:
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
     course: UpdateProgress | None = None
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes that it keeps, though others may share them."""
-        kept = self.course.kept if self.course else None
-        return self.outgoing.nbytes * (1 + len(self.history) + len(kept or ()))
 
 
 class Stages(NamedTuple):
@@ -121,7 +115,7 @@ class Iterate:
     history, memory, course
         Of an acceleration and of the update of k, as in `Checkpoint`.
     residual
-        Of an iterate that is a certified solution (`solver.latin.finish`), its KKT residual
+        Of an iterate that is a certified solution (`solver.latin.certified`), its KKT residual
         relative to the contact force; None of all others.
     force
         F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid motion the digits
@@ -200,8 +194,8 @@ class Iterate:
     @cached_property
     def displacement(self) -> Array:
         """Displacement of the linear stage, shape (n_dofs, n_instants), m; mean at cuts."""
-        found = self.problem.mean_of_rows @ self.boundary_displacement
-        return np.asarray(found) * self.problem.scales.displacement
+        mean = self.problem.mean_of_rows @ self.boundary_displacement
+        return np.asarray(mean) * self.problem.scales.displacement
 
     @cached_property
     def contact_force(self) -> Array:
@@ -209,8 +203,8 @@ class Iterate:
 
         Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says.
         """
-        found = self.problem.sum_of_contact @ self.boundary_force
-        return np.asarray(found) * self.problem.scales.force
+        force = self.problem.sum_of_contact @ self.boundary_force
+        return np.asarray(force) * self.problem.scales.force
 
     @property
     def friction_force(self) -> Array:
@@ -224,7 +218,7 @@ class Iterate:
         return np.concatenate([self.contact_force[own[-1]] for own in places])
 
     def contact(self, name: str) -> ContactFields:
-        """Show one interface with friction: forces of the linear stage, status of the local one."""
+        """One interface with friction: forces of the linear stage, status of the local one."""
         law = self.problem.rubbing[name]
         return contact_fields(
             self.problem,
@@ -245,7 +239,7 @@ class Iterate:
         return np.concatenate([self.status_at(law, stages=stages) for law in laws])
 
     def stages(self) -> Stages:
-        """Give what a status is read from, for whoever reads it of one interface after another."""
+        """What a status is read from, for whoever reads it of one interface after another."""
         return Stages(
             self.local_displacement,
             self.boundary_local_force,
@@ -256,7 +250,7 @@ class Iterate:
     def status_at(
         self, law: Contact, creep: float = CREEP, stages: Stages | None = None
     ) -> NDArray[np.int8]:
-        """Read the contact status at one interface, (n_points, n_instants).
+        """Contact status at one interface, (n_points, n_instants).
 
         A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
         no more than both stages still differ by (measured). So what counts as slip is more than
@@ -274,3 +268,9 @@ class Iterate:
             far, apart = far[touches], apart[touches]
         still = min(apart.max(initial=0.0), creep * far.max(initial=0.0))
         return law.status_of(slip, moved, force, float(still))
+
+
+def read_only(field: Array) -> Array:
+    """The same field, which nobody can change any more."""
+    field.flags.writeable = False
+    return field

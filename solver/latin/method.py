@@ -4,23 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from numpy.linalg import LinAlgError
-
-from solver.arrays import Array
-from solver.discrete.problem import Problem
-from solver.latin.acceleration.anderson import Anderson
-from solver.latin.blocks import Blocks
-from solver.latin.criteria.converged import Accuracy, Indicator
-from solver.latin.criteria.criterion import Criterion
-from solver.latin.criteria.limits import Iterations
-from solver.latin.cycle import Parts
-from solver.latin.direction.rules import Auto, Paper, SearchDirection
-from solver.latin.direction.update import FromStatus
-from solver.latin.finish.status_step import StatusStep
-from solver.latin.linear.parts import PGD, Full
-from solver.latin.local.stage import LocalStage
-from solver.latin.start.nested import Nested
-from solver.refusal import RefusedError, check_range
+from solver.latin.anderson import Anderson
+from solver.latin.directions import Auto, FromStatus, SearchDirection
+from solver.latin.linear_stage import Full
+from solver.latin.pgd import PGD
+from solver.latin.start import Nested
+from solver.latin.status_step import StatusStep
+from solver.latin.stop import Stop
+from solver.refusal import check_range
 
 
 @dataclass(frozen=True)
@@ -48,7 +39,7 @@ class Latin:
     finish
         `StatusStep`, which ends a run with a certified solution, or None.
     stop
-        When a run ends: criteria that combine by `&` and `|`.
+        When a run ends: `Stop`.
     threads
         That share an iteration on a large structure; the results are the same to the bit.
 
@@ -59,7 +50,7 @@ class Latin:
 
     Examples
     --------
-    >>> Latin(linear=PGD(modes=5), stop=Accuracy(0.05) | Iterations(100)).relaxation
+    >>> Latin(linear=PGD(modes=5), stop=Stop(accuracy=0.05, iterations=100)).relaxation
     0.8
     """
 
@@ -70,49 +61,9 @@ class Latin:
     acceleration: Anderson | None = Anderson()
     start: Nested | None = None
     finish: StatusStep | None = StatusStep()
-    stop: Criterion = Accuracy(0.01) & Indicator(1e-3) | Iterations(1000)
+    stop: Stop = Stop(accuracy=0.01, tolerance=1e-3, iterations=1000)
     threads: int = 1
 
     def __post_init__(self) -> None:
         check_range(self, "relaxation", 0.0, 1.0, above=True)
         check_range(self, "threads", 1, 64)
-
-    @classmethod
-    def paper(cls) -> Latin:
-        """Give the method of the paper, as its section 3 has it."""
-        return cls(
-            direction=Paper(),
-            acceleration=None,
-            finish=None,
-            stop=Accuracy(0.01) & Indicator(1e-10) | Iterations(1000),
-        )
-
-    def plugged(self, problem: Problem, k: Array) -> Parts:
-        """Plug the parts together for one search direction; the linear stage is factored.
-
-        Parameters
-        ----------
-        problem
-            What to solve.
-        k
-            Search direction of the rows, shape (n_rows,), scaled, read-only.
-
-        Raises
-        ------
-        RefusedError
-            If k is so far from the stiffness that a factor breaks down.
-        """
-        blocks = Blocks(problem.n_rows, problem.n_instants, self.threads)
-        try:
-            linear = self.linear.at_work(problem, k, blocks, multiscale=self.multiscale)
-        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
-            raise RefusedError(
-                "k_scale",
-                self.direction.scale,
-                "a k that holds every substructure in the digits of a number",
-                "bring the factors on k nearer to 1, or the sides of the elements to each other",
-            ) from None
-        local = LocalStage(problem, k, blocks)
-        own = self.acceleration
-        mix = own.at_work(problem, linear, blocks) if own else None
-        return Parts(k, local, linear, mix, float(self.relaxation))

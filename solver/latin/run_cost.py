@@ -1,6 +1,6 @@
 """What a whole run takes, told before it begins.
 
-Estimated from counts, as the status step's cost is (`solver.latin.finish.cost`), with its rates.
+Estimated from counts, as the status step's cost is (`solver.latin.step_cost`), with its rates.
 `python -m solver benchmark --whole` sets estimates beside what is measured.
 """
 
@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
-from solver.latin.acceleration.anderson import MEMORY
-from solver.latin.acceleration.mixing import MOST_VALUES
-from solver.latin.criteria.estimate import WAIT
-from solver.latin.finish.cost import SYSTEMS, costs_of
+from solver.latin.anderson import MEMORY, MOST_VALUES
+from solver.latin.estimate import WAIT
 from solver.latin.method import Latin
+from solver.latin.step_cost import SYSTEMS, costs_of
 from solver.reference.contact import MOST_JUMPS, jumps_in
 from solver.reference.supports import rubs_on_supports
 
@@ -104,14 +103,14 @@ def _iterations(problem: Problem, latin: Latin) -> float:
 
 
 def _fields(problem: Problem) -> float:
-    """Give the numbers in all fields of the iteration."""
+    """The numbers in all fields of the iteration."""
     field = problem.n_rows * problem.n_instants
     remembered = min(MEMORY, max(1, MOST_VALUES // field - 1)) + 1
     return float((FIELDS + remembered) * field)
 
 
 def _dense(problem: Problem, n_jumps: int) -> float:
-    """Give the numbers in the matrices of a condensation; supports have a band."""
+    """The numbers in the matrices of a condensation; supports have a band."""
     if rubs_on_supports(problem):
         return 0.0
     return n_jumps * (SQUARES * float(n_jumps) + ANSWERS * problem.n_dofs)

@@ -19,19 +19,16 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.slab import slab_of
-from solver.latin.criteria.converged import Indicator
-from solver.latin.criteria.status import Ending
-from solver.latin.cycle import read_only
-from solver.latin.direction.rules import SearchDirection
-from solver.latin.direction.update import FromStatus
-from solver.latin.finish.status_step import StatusStep
+from solver.latin.directions import FromStatus, SearchDirection
 from solver.latin.indicators import behaviour_indicator, latin_indicator
-from solver.latin.iterate import Checkpoint, Iterate
-from solver.latin.linear.response import Responses
-from solver.latin.local.slide import slide_of
+from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.method import Latin
+from solver.latin.response import Responses
+from solver.latin.sliding_body import slide_of
 from solver.latin.solve import Record, Solution, solve
-from solver.latin.start.nested import Nested
+from solver.latin.start import Nested
+from solver.latin.status import Ending
+from solver.latin.status_step import StatusStep
 from solver.reduction.basis import Reduction
 from solver.reference.distance import Distance
 from solver.refusal import RefusedError
@@ -75,7 +72,7 @@ class _OfWhole(SearchDirection):
 
 
 def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
-    """Give the first slab of a problem.
+    """The first slab of a problem.
 
     Parameters
     ----------
@@ -95,9 +92,9 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     direction = _OfWhole(k=latin.direction.of(problem))
     linear = replace(latin.linear, responses=Responses())
     start = latin.start and Nested(partial(_at, latin.start, some))
-    accuracy = latin.stop.accuracy
-    known = Indicator(min(SHARE * accuracy, 1.0) ** 2)
-    stop = latin.stop | known if np.isfinite(accuracy) else latin.stop
+    stop, accuracy = latin.stop, latin.stop.accuracy
+    if np.isfinite(accuracy):
+        stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)
     own = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
     return Slab(some, slab_of(problem, some), own)
 
@@ -106,42 +103,42 @@ def _at(start: Nested, some: slice) -> Iterator[Problem]:
     return (slab_of(one, some) for one in start.problems())
 
 
-def next_slab(problem: Problem, slab: Slab, found: Iterate, length: int) -> Slab | None:
-    """Give the slab that follows; None after the last.
+def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Slab | None:
+    """The slab that follows; None after the last.
 
     Parameters
     ----------
     problem, length
         As for `first_slab`.
-    slab, found
+    slab, solved
         The one before, and its solution.
     """
     first = slab.some.stop
     if first == problem.n_instants:
         return None
     some = slice(first, min(first + length, problem.n_instants))
-    moved, force = found.local_displacement, found.boundary_local_force
+    moved, force = solved.local_displacement, solved.boundary_local_force
     ends = {
         # Pairs of one point that stand apart could never stick together again.
         name: law.mean_by_point(law.tangential.slider(moved, force)[:, -1])[law.points]
-        for name, law in found.problem.rubbing.items()
+        for name, law in solved.problem.rubbing.items()
     }
-    before = slice(found.problem.n_instants - length, None)
-    outgoing = found.outgoing[:, before][:, : some.stop - some.start]
-    start = Checkpoint(0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(found, before, some))
+    before = slice(solved.problem.n_instants - length, None)
+    outgoing = solved.outgoing[:, before][:, : some.stop - some.start]
+    start = Checkpoint(0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(solved, before, some))
     return Slab(some, slab_of(problem, some, ends), slab.latin, start)
 
 
-def _cut(found: Iterate, before: slice, some: slice) -> Reduction | None:
-    """Give the bases of a slab with the time functions of another."""
-    if found.reduction is None or found.residual is not None:
+def _cut(solved: Iterate, before: slice, some: slice) -> Reduction | None:
+    """The bases of a slab with the time functions of another."""
+    if solved.reduction is None or solved.residual is not None:
         return None
     size = some.stop - some.start
     modes = (
         replace(own, time_functions=own.time_functions[:, before][:, :size])
-        for own in found.reduction.modes
+        for own in solved.reduction.modes
     )
-    return replace(found.reduction, modes=tuple(modes)).at_rest
+    return replace(solved.reduction, modes=tuple(modes)).at_rest
 
 
 def solve_in_slabs(
@@ -175,16 +172,16 @@ def solve_in_slabs(
     if slab is not None and slab.some.stop == problem.n_instants:
         whole = replace(latin, finish=StatusStep())
         return solve(problem, whole, distance=distance, watch=False, spent=spent)
-    found: list[Solution] = []
+    solutions: list[Solution] = []
     while slab is not None:
-        method = replace(slab.latin, finish=None if found else StatusStep())
+        method = replace(slab.latin, finish=None if solutions else StatusStep())
         billed = spent + time.perf_counter() - began
-        found.append(solve(slab.problem, method, start=slab.start, watch=False, spent=billed))
-        slab = next_slab(problem, slab, found[-1].iterate, length)
-    missed = (one for one in found if one.status.ending is not Ending.CONVERGED)
-    status = next(missed, found[-1]).status
-    joined = together(problem, [one.iterate for one in found])
-    return Solution(joined, _records(found, joined, distance), status)
+        solutions.append(solve(slab.problem, method, start=slab.start, watch=False, spent=billed))
+        slab = next_slab(problem, slab, solutions[-1].iterate, length)
+    missed = (one for one in solutions if one.status.ending is not Ending.CONVERGED)
+    status = next(missed, solutions[-1]).status
+    joined = together(problem, [one.iterate for one in solutions])
+    return Solution(joined, _records(solutions, joined, distance), status)
 
 
 def together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
@@ -205,10 +202,12 @@ def _joined(fields: Sequence[Array]) -> Array:
     return read_only(np.asfortranarray(np.concatenate(fields, axis=1)))
 
 
-def _records(found: Sequence[Solution], whole: Iterate, distance: Distance | None) -> list[Record]:
-    """Give the records of all slabs, numbered through; the last is of the whole interval."""
+def _records(
+    solutions: Sequence[Solution], whole: Iterate, distance: Distance | None
+) -> list[Record]:
+    """The records of all slabs, numbered through; the last is of the whole interval."""
     records: list[Record] = []
-    for one in found:
+    for one in solutions:
         number = records[-1].iteration if records else 0
         records += [replace(own, iteration=number + own.iteration) for own in one.records]
     records[-1] = replace(

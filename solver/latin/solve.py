@@ -7,16 +7,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
-from solver.latin.criteria.status import CANCELLED, Ending, Status
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
-from solver.latin.iterations import iterations
+from solver.latin.iteration import iterations
 from solver.latin.method import Latin
-from solver.latin.stop import Decision, StopRules
+from solver.latin.status import CANCELLED, Ending, Status
+from solver.latin.stop import Decision, StopState
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
-
-FAST = Latin()
 
 
 @dataclass(frozen=True)
@@ -119,7 +117,7 @@ def judged(
     spent
         Seconds that the run took before, to make the problem.
     """
-    rules = StopRules(latin, spent)
+    rules = StopState(latin, spent)
     for iterate in iterations(problem, latin, start, resumable=resumable):
         verdict = rules.judge(iterate)
         yield iterate, verdict
@@ -130,7 +128,7 @@ def judged(
 
 def solve(
     problem: Problem,
-    latin: Latin = FAST,
+    latin: Latin = Latin(),
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,

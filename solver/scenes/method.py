@@ -7,26 +7,23 @@ from functools import partial
 
 from solver.latin import (
     PGD,
-    Accuracy,
     Anderson,
     Auto,
     FromStatus,
     Full,
-    Indicator,
-    Iterations,
     Latin,
     Nested,
     Paper,
     StatusStep,
+    Stop,
 )
-from solver.latin.direction.rules import SearchDirection
+from solver.latin.directions import SearchDirection
 from solver.scenes import coarser_problems
 from solver.settings import Settings
 
 
 def method_of(settings: Settings) -> Latin:
     """Give the method that checked settings describe."""
-    goal = Accuracy(settings.accuracy) & Indicator(settings.tolerance)
     return Latin(
         direction=_direction(settings),
         linear=_LINEAR[settings.linear_stage](settings),
@@ -35,7 +32,7 @@ def method_of(settings: Settings) -> Latin:
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
         start=Nested(partial(coarser_problems, settings)) if settings.start == "nested" else None,
         finish=_FINISH[settings.finish],
-        stop=goal | Iterations(settings.max_iterations),
+        stop=Stop(settings.accuracy, settings.tolerance, settings.max_iterations),
         threads=settings.threads,
     )
 

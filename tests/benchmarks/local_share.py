@@ -16,8 +16,8 @@ from typing import Any
 from solver.arrays import space_time
 from solver.files import scene_settings
 from solver.latin import Iterate, iterations
-from solver.latin.linear.full import FullLinearStage
-from solver.latin.local.stage import LocalStage
+from solver.latin.linear_stage import LinearStage
+from solver.latin.local_stage import LocalStage
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -43,7 +43,7 @@ def measure(settings: Settings, repeats: int) -> list[float]:
     """
     problem = discretise(settings)
     k = method_of(settings).direction.of(problem)
-    local, linear = LocalStage(problem, k), FullLinearStage(problem, k, multiscale=True)
+    local, linear = LocalStage(problem, k), LinearStage(problem, k, multiscale=True)
     state, incoming = linear.start(None), space_time(problem.n_rows, problem.n_instants)
     iterate: Iterate = next(iterations(problem, method_of(settings)))
     incoming[:] = iterate.incoming

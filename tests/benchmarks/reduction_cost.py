@@ -17,13 +17,10 @@ from solver.arrays import Array, space_time
 from solver.discrete import Problem
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.latin import Paper, iterations
+from solver.latin import PGD, Paper, iterations
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear.full import FullLinearStage
-from solver.latin.linear.separated import ReducedLinearStage
-from solver.latin.linear.stage import LinearStage
+from solver.latin.linear_stage import LinearStage
 from solver.laws import Component, Contact, Sliders
-from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -120,10 +117,10 @@ def reduction_cost(
     target = np.asfortranarray(generator.normal(size=shape))
     smallest = min(len(part.rows) for part in problem.substructures)
     sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
-    stages: list[LinearStage[Any]] = [FullLinearStage(problem, k, multiscale=True)]
+    stages: list[LinearStage] = [LinearStage(problem, k, multiscale=True)]
     for tolerance in (1.0, TIGHT):
-        rules = [Enrichment(tolerance, pairs=1, largest=size) for size in sizes]
-        stages += [ReducedLinearStage(problem, k, rule, multiscale=True) for rule in rules]
+        forms = [PGD(size, tolerance, pairs=1, sharing=0.0) for size in sizes]
+        stages += [form.stage(problem, k, multiscale=True) for form in forms]
     # All begin from bases that are full, also where no residual is enough for another mode.
     states = [stage.start(start) for stage in (stages[0], *2 * stages[1 + len(sizes) :])]
     steps = [_step(*each, target) for each in zip(stages, states, strict=True)]
@@ -192,7 +189,7 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
     }
 
 
-def _step(stage: LinearStage[Any], state: list[Any], target: Array) -> Callable[[], None]:
+def _step(stage: LinearStage, state: list[Any], target: Array) -> Callable[[], None]:
     incoming = space_time(*target.shape)
 
     def step() -> None:

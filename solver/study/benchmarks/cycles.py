@@ -17,8 +17,7 @@ from typing import Any
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, Latin, iterations
-from solver.latin.at_work import AtWork
-from solver.latin.clock import Clock
+from solver.latin.iteration import Iteration
 from solver.latin.slabs import Slab, first_slab, next_slab
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -229,14 +228,14 @@ def _taken(problem: Problem, settings: Settings, way: Way, counts: Sequence[int]
         slab: Slab | None = first_slab(problem, method, length)
         for count in counts:
             assert slab is not None
-            latin = AtWork(slab.problem, slab.latin, slab.start, Clock())
+            iteration = Iteration(slab.problem, slab.latin, slab.start)
             for _ in range(count):
-                latin.choose_direction()
+                iteration.choose_direction()
                 began = time.process_time()
-                latin.local_stage()
+                iteration.local_stage()
                 local += time.process_time() - began
-                latin.linear_stage()
-            last = latin.snapshot(count, resumable=False)
+                iteration.linear_stage()
+            last = iteration.snapshot(count, 0.0, resumable=False)
             slab = next_slab(problem, slab, last, length)
 
     seconds = seconds_of(work)

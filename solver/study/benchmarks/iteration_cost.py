@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
 
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
-from solver.latin import Full, Iterate, StopRules, iterations, solve
-from solver.latin.at_work import AtWork
-from solver.latin.clock import Clock
-from solver.latin.criteria.estimate import ErrorEstimate
-from solver.latin.linear.full import FullLinearStage
-from solver.latin.linear.response import DenseResponse
-from solver.latin.local.stage import LocalStage
+from solver.latin import Iterate, StopState, iterations, solve
+from solver.latin.estimate import ErrorEstimate
+from solver.latin.iteration import Iteration
+from solver.latin.linear_stage import LinearStage
+from solver.latin.local_stage import LocalStage
+from solver.latin.response import DenseResponse
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -67,13 +66,13 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     problem = discretise(settings)
     k = method_of(settings).direction.of(problem)
     local = LocalStage(problem, k)
-    multi = FullLinearStage(problem, k, multiscale=True)
-    mono = FullLinearStage(problem, k, multiscale=False)
+    multi = LinearStage(problem, k, multiscale=True)
+    mono = LinearStage(problem, k, multiscale=False)
     state = multi.start(None)
     incoming = space_time(problem.n_rows, problem.n_instants)
     target = local(incoming)
 
-    def linear_stage(stage: FullLinearStage) -> Callable[[], None]:
+    def linear_stage(stage: LinearStage) -> Callable[[], None]:
         def step() -> None:
             stage.read(target)
             stage.advance(state, settings.relaxation)
@@ -92,7 +91,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     return Cost(nodes, instants, local_s, max(multi_s - mono_s, 0.0), mono_s, floor_s)
 
 
-def _floor(problem: Problem, stage: FullLinearStage) -> Callable[[], None]:
+def _floor(problem: Problem, stage: LinearStage) -> Callable[[], None]:
     law = problem.friction
     friction = np.zeros((4, problem.n_instants, len(law.points)))
     low, high, before, after = friction
@@ -161,15 +160,10 @@ class Overhead:
 
 
 class _Unproven(ErrorEstimate):
+    """Errors that are estimated without a status step."""
+
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         return False
-
-
-class _WithoutStep(Full):
-    """Full fields whose errors are estimated without a status step."""
-
-    def estimate(self, accuracy: float) -> ErrorEstimate:
-        return _Unproven(accuracy)
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
@@ -179,17 +173,18 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
     number = len(solve(problem, method, watch=False).records)
 
     def bare() -> None:
-        cycle = AtWork(problem, method, None, Clock()).cycle
+        iteration = Iteration(problem, method)
         for _ in range(number):
-            cycle.local_stage()
-            cycle.linear_stage()
+            iteration.local_stage()
+            iteration.linear_stage()
 
     def kept() -> None:
         for _ in islice(iterations(problem, method), number):
             pass
 
     def judged_without_step() -> None:
-        rules = StopRules(replace(method, linear=_WithoutStep()))
+        rules = StopState(method)
+        rules.estimate = _Unproven(method.stop.accuracy)
         for iterate in islice(iterations(problem, method), number):
             rules.judge(iterate)
 

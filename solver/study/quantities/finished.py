@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,12 +13,12 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
-from solver.latin import Iterate, Solution, record, solve
-from solver.latin.finish.certified import finished
-from solver.latin.finish.cost import costs_of, moving_share
-from solver.latin.finish.status_step import StatusSolver, states_of
-from solver.latin.stop import proven
-from solver.reference.choice import reference_of
+from solver.latin import Decision, Iterate, Solution, record, solve
+from solver.latin.certified import finished
+from solver.latin.status import certified
+from solver.latin.status_step import states_of, status_step
+from solver.latin.step_cost import costs_of, moving_share
+from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.solution import States
@@ -156,7 +157,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     problem, settings
         What to solve, and the options of the method.
     states
-        As `solver.latin.finish.status_step.states_of` gives them.
+        As `solver.latin.status_step.states_of` gives them.
 
     Returns
     -------
@@ -170,7 +171,8 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     if not costs.afford(ALONE):
         return None
     try:
-        certificate = StatusSolver(problem)(states, costs.systems(ALONE))
+        solver, most = incremental_solver(problem), costs.systems(ALONE)
+        certificate = status_step(solver, problem, states, most).certificate
     except NoReferenceError:
         return None
     if certificate is None or certificate.residual > settings.accuracy:
@@ -178,6 +180,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     k = method_of(settings).direction.of(problem)
     k.flags.writeable = False
     finish = finished(problem, k, certificate)
-    verdict = proven(finish, certificate, time.perf_counter() - began)
-    assert verdict.status is not None
-    return Solution(finish, [record(finish, verdict, None, watch=False)], verdict.status)
+    status, residual = certified(finish, certificate), certificate.residual
+    seconds = time.perf_counter() - began
+    decision = Decision(seconds, math.nan, math.nan, residual, status, certificate)
+    return Solution(finish, [record(finish, decision, None, watch=False)], status)

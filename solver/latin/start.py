@@ -1,18 +1,75 @@
-"""The fields of a coarser mesh, carried to a finer one."""
+"""A start from a coarser mesh: what is global is found where a solution is cheap."""
 
 from __future__ import annotations
 
+import math
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
+from solver.latin.certified import known_forces
+from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
+from solver.reference.choice import incremental_solver
+from solver.reference.condensation import NoReferenceError
+from solver.reference.solution import Interrupted, Reference
 
-BoolArray = NDArray[np.bool_]
+
+@dataclass(frozen=True)
+class Nested:
+    """A start from the solution of the same structure on a coarser mesh.
+
+    The incremental solver finds it. LATIN's own iterate on that mesh serves less: on 400 elements
+    and instants of the bar 1 % of the friction force takes 16 iterations instead of 70, on 1600
+    elements 11 instead of never, and on strands of 10 and 20 wires 51 and 148 instead of 71 and
+    more than 400, at a third to two thirds of the time (measured). From a mesh four times as coarse
+    strands take twice as many.
+
+    Attributes
+    ----------
+    coarser
+        Such problems, uncut, the finest first; or what makes them, when a run begins.
+    """
+
+    coarser: Iterable[Problem] | Callable[[], Iterable[Problem]]
+
+    def problems(self) -> Iterable[Problem]:
+        """The coarser problems."""
+        return self.coarser() if callable(self.coarser) else self.coarser
+
+    def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
+        """Where a problem starts with a search direction.
+
+        From the finest of the meshes that has a solution. None if there is no such mesh, or it
+        takes more than so many seconds.
+        """
+        deadline = time.perf_counter() + seconds
+        for coarse in self.problems():
+            try:
+                solver = incremental_solver(coarse)
+                solution = solver.march(stop=lambda: time.perf_counter() > deadline)
+            except NoReferenceError:
+                continue
+            except Interrupted:
+                return None
+            if solution.converged.all():
+                return Checkpoint(0, 0.0, _carried(solution, problem, k))
+        return None
+
+
+def _carried(solution: Reference, problem: Problem, k: Array) -> Array:
+    """Carry the solution of a coarser mesh to a problem: W + F/k, (n_rows, n_instants)."""
+    coarse = solution.problem
+    displacement = solution.displacement / coarse.scales.displacement
+    force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
+    return prolong(coarse, displacement[coarse.row_dofs], force, problem, k)
 
 
 def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k: Array) -> Array:
@@ -40,8 +97,8 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
     inside = _interpolated(
         _apart(fine, fine_bodies), _apart(coarse, bodies), displacement[row_of_dof]
     )
-    found = inside[fine.row_dofs]
-    carried = np.zeros_like(found)
+    moved = inside[fine.row_dofs]
+    carried = np.zeros_like(moved)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
         density = law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
@@ -57,12 +114,12 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
     for part in fine.substructures:
         alike.setdefault(id(part.elasticity), []).append(part)
     for parts in alike.values():
-        _balance(parts, inside, rubs, carried)
-    return np.asfortranarray(found + carried / k[:, None])
+        _write_needed(parts, inside, rubs, carried)
+    return np.asfortranarray(moved + carried / k[:, None])
 
 
 def _bodies(problem: Problem) -> Indices:
-    """Give the number of the body that every degree of freedom belongs to, from 0 on."""
+    """Number of the body that every degree of freedom belongs to, from 0 on."""
     if len(problem.rubbing) == 1 and problem.friction.is_on_support:
         return np.zeros(problem.n_dofs, dtype=np.intp)
     parts, n_dofs = problem.substructures, problem.n_dofs
@@ -73,18 +130,18 @@ def _bodies(problem: Problem) -> Indices:
 
 
 def _apart(problem: Problem, bodies: Indices) -> Array:
-    """Give the positions, with bodies laid end to end so that none touches the next."""
+    """Positions, with bodies laid end to end so that none touches the next."""
     return np.asarray(problem.positions + 2.0 * problem.scales.displacement * bodies)
 
 
 def _points_apart(problem: Problem, law: Contact, bodies: Indices) -> Array:
-    """Give the positions of an interface's points, those of other bodies apart."""
+    """Positions of an interface's points, those of other bodies apart."""
     numbers = np.zeros(len(law.positions), dtype=np.intp)
     numbers[law.points] = sum(bodies[problem.row_dofs[rows]] for rows in law.tangent.sides)
     return law.positions + 2.0 * problem.scales.displacement * numbers
 
 
-def _balance(parts: list[Substructure], inside: Array, rubs: BoolArray, carried: Array) -> None:
+def _write_needed(parts: list[Substructure], inside: Array, rubs: Flags, carried: Array) -> None:
     """Write into `carried` the forces of cuts and ends that identical substructures need."""
     elasticity = parts[0].elasticity
     rows = np.stack([part.rows for part in parts], axis=1)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array
+from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
 from solver.reference.distance import LEAST_SHARE, VANISHING
 
@@ -78,7 +79,7 @@ class ForceChanges:
         self.last = UNKNOWN
 
     def left(self, iterate: Iterate) -> Change:
-        """Give the relative error that is left, if changes go on to fall as they did, or NaN."""
+        """The relative error that is left, if changes go on to fall as they did, or NaN."""
         force, number = _force_on_rows(iterate), iterate.number
         before = _at(self._past, LOOK_BACK * number)
         self.last = UNKNOWN
@@ -96,14 +97,14 @@ class ForceChanges:
 
 
 def _left(last: float, before: float, earlier: float) -> float:
-    """Give what is left of a force, of which these are the last three changes."""
-    fall = max(_ratio(last, before), _ratio(before, earlier))
+    """What is left of a force, of which these are the last three changes."""
+    fall = max(ratio(last, before), ratio(before, earlier))
     fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
     return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
 
 def _still_needed(past: list[_Past], number: int) -> list[_Past]:
-    """Give the entries that later iterations look back at; of the oldest the change is enough."""
+    """The entries that later iterations look back at; of the oldest the change is enough."""
     first = _at(past, LOOK_BACK * number)
     if first is None:
         return past
@@ -116,24 +117,17 @@ def _still_needed(past: list[_Past], number: int) -> list[_Past]:
 
 
 def _at(past: Iterable[_Past], number: float) -> _Past | None:
-    """Give the last entry up to a number of iterations."""
-    found = None
+    """The last entry up to a number of iterations."""
+    last = None
     for entry in past:
         if entry.number > number:
             break
-        found = entry
-    return found
-
-
-def _ratio(part: float, whole: float) -> float:
-    """Divide, where nothing of nothing has fallen as far as can be."""
-    if part == 0.0:
-        return 0.0
-    return part / whole if whole != 0.0 else math.inf
+        last = entry
+    return last
 
 
 def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Change:
-    """Give a change relative to what `solver.reference.distance` divides an error by."""
+    """A change relative to what `solver.reference.distance` divides an error by."""
     n_instants, normal = iterate.problem.n_instants, iterate.problem.rubbing_is_normal
     changes, squares = (
         np.einsum("ij,ij->j", one, one)
@@ -149,14 +143,14 @@ def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Chan
 
 
 def _least(iterate: Iterate) -> float:
-    """Give the norm of contact forces that count as none, scaled."""
+    """The norm of contact forces that count as none, scaled."""
     around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
     blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
     return max(around, blurred)
 
 
 def _force_on_rows(iterate: Iterate) -> Array:
-    """Give the forces on the rows of the bodies above that rub, in a row, scaled."""
+    """The forces on the rows of the bodies above that rub, in a row, scaled."""
     rows = iterate.problem.rubbing_rows
     difference = iterate.outgoing[rows] - iterate.incoming[rows]
     difference *= 0.5 * iterate.k[rows, None]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
-from solver.reference.choice import Incremental, incremental_solver
+from solver.reference.choice import Incremental
 from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import States
@@ -80,77 +80,82 @@ class StatusStep:
     at_once: bool = True
 
 
-class StatusSolver:
-    """The status step of one problem; what it condenses is kept for the next.
+class StepResult(NamedTuple):
+    """What a status step came to.
 
     Attributes
     ----------
+    certificate
+        The solution, or None where the statuses were too far from right.
     jumps
-        Whether the last one found nothing any more after friction had made the structure jump.
+        Whether it found nothing any more after friction had made the structure jump.
     """
 
-    def __init__(self, problem: Problem) -> None:
-        self._problem = problem
-        self.jumps = False
+    certificate: Certificate | None
+    jumps: bool
 
-    def __call__(
-        self, states: States, most: int, stop: Callable[[], bool] | None = None
-    ) -> Certificate | None:
-        """Try to certify states, mended; None where they are too far from right.
 
-        Parameters
-        ----------
-        states
-            To begin with, as `states_of` gives those of an iterate.
-        most
-            Linear systems that it may solve.
-        stop
-            Called once per instant.
+def status_step(
+    solver: Incremental,
+    problem: Problem,
+    states: States,
+    most: int,
+    stop: Callable[[], bool] | None = None,
+) -> StepResult:
+    """Try to certify states, mended.
 
-        Raises
-        ------
-        Interrupted
-            As soon as `stop` gives True.
-        NoReferenceError
-            If the problem has no incremental solver, or none that is worth its size.
-        """
-        found = self._solver.march(guess=states, most=most, stop=stop)
-        self.jumps = found.jumps_at is not None and found.is_lost
-        if not found.converged.all():
-            return None
-        distance = distance_to(found, self._problem)
-        residual = found.unbalanced * np.sqrt(len(found.contact_force)) / distance.force_size
-        if residual > (BLURRED if found.unbalanced <= found.rounding else CERTIFIED):
-            return None
-        deformation = found.displacement if found.deformation is None else found.deformation
-        return Certificate(
-            found.displacement,
-            deformation,
-            found.contact_force,
-            distance,
-            float(residual),
-            found.jumps_at,
-        )
+    Parameters
+    ----------
+    solver, problem
+        What is solved, and its incremental solver, which keeps what it condenses.
+    states
+        To begin with, as `states_of` returns those of an iterate.
+    most
+        Linear systems that it may solve.
+    stop
+        Called once per instant.
 
-    @cached_property
-    def _solver(self) -> Incremental:
-        return incremental_solver(self._problem)
+    Raises
+    ------
+    Interrupted
+        As soon as `stop` returns True.
+    NoReferenceError
+        If the solver is not worth the size of the problem.
+    """
+    solution = solver.march(guess=states, most=most, stop=stop)
+    nothing = StepResult(None, solution.jumps_at is not None and solution.is_lost)
+    if not solution.converged.all():
+        return nothing
+    distance = distance_to(solution, problem)
+    residual = solution.unbalanced * np.sqrt(len(solution.contact_force)) / distance.force_size
+    if residual > (BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED):
+        return nothing
+    deformation = solution.deformation
+    certificate = Certificate(
+        solution.displacement,
+        solution.displacement if deformation is None else deformation,
+        solution.contact_force,
+        distance,
+        float(residual),
+        solution.jumps_at,
+    )
+    return StepResult(certificate, nothing.jumps)
 
 
 def states_of(iterate: Iterate) -> States:
-    """Read the states of an iterate, as the incremental solvers take them for a guess.
+    """States of an iterate, as the incremental solvers take them for a guess.
 
     Returns
     -------
     Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants): -1, 0, +1 of tangential
     components; of normal ones 0 where they are closed; `OPEN` of both where they are not.
     """
-    found: list[States] = []
+    states: list[States] = []
     stages = iterate.stages()
     for law in iterate.problem.rubbing.values():
         creep = min(STILL, FRONT / len(law.positions) ** 2)
         status = iterate.status_at(law, creep, stages)
         if law.normal is not None:
-            found.append(np.where(status == OPEN, OPEN, 0).astype(np.int8))
-        found.append(status)
-    return np.concatenate(found)
+            states.append(np.where(status == OPEN, OPEN, 0).astype(np.int8))
+        states.append(status)
+    return np.concatenate(states)

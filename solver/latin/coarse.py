@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
@@ -11,30 +11,13 @@ from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks, at_once
+from solver.latin.blocks import Blocks, at_once, in_a_row
+
+if TYPE_CHECKING:
+    from solver.latin.linear_stage import Group
 
 DENSE_UP_TO = 50
 """Macro unknowns up to which one dense product is no slower than the sparse factor (measured)."""
-
-
-class BoundaryResponse(Protocol):
-    """What the coarse problem asks of a substructure's boundary response."""
-
-    def force_rows(self, rows: Indices) -> Array:
-        """Give rows of k - k H k."""
-
-
-class Member(Protocol):
-    """What the coarse problem asks of a group of identical substructures."""
-
-    rows: Indices
-    k: Array
-    target: Array
-    body: Array | None
-
-    @property
-    def response(self) -> BoundaryResponse:
-        """The boundary response that the group shares."""
 
 
 class CoarseProblem:
@@ -47,7 +30,7 @@ class CoarseProblem:
     """
 
     def __init__(
-        self, problem: Problem, groups: Sequence[Member], blocks: Blocks | None = None
+        self, problem: Problem, groups: Sequence[Group[Any]], blocks: Blocks | None = None
     ) -> None:
         basis, load = problem.macro
         self._blocks = blocks or at_once(problem.n_instants)
@@ -69,7 +52,7 @@ class CoarseProblem:
         system = self._spread @ _diagonal(systems) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
 
-        self._places = _in_a_row([member.size for member in self._members])
+        self._places = in_a_row([member.size for member in self._members])
 
     def add_multiplier(self) -> None:
         """Add W~ to the targets of all groups."""
@@ -95,7 +78,7 @@ class _Member:
         Macro forces of a target, shape (n_local, n_boundary).
     """
 
-    def __init__(self, group: Member, own: Indices, local: Array, forces: Array) -> None:
+    def __init__(self, group: Group[Any], own: Indices, local: Array, forces: Array) -> None:
         self._group, self._local, self._forces = group, local, forces
         self.size = local.shape[1] * group.rows.shape[1]
         # Where they follow each other, adding to them copies nothing.
@@ -107,7 +90,7 @@ class _Member:
         ]
 
     def macro_forces(self, some: slice) -> Array:
-        """Give the macro forces of the target at some instants, shape (size, n_some)."""
+        """Macro forces of the target at some instants, shape (size, n_some)."""
         target = self._columns(some)
         forces: Array = np.matmul(self._forces, target)
         return forces.reshape(self.size, -1, order="F")
@@ -124,11 +107,6 @@ class _Member:
     def _columns(self, some: slice) -> Array:
         target = self._group.target
         return target[:, :, some].reshape(len(target), -1, order="F")
-
-
-def _in_a_row(sizes: list[int]) -> list[slice]:
-    ends = np.cumsum(sizes)
-    return [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
 
 
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:
@@ -149,11 +127,11 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
         return own, np.eye(len(own)), whole
     chosen, local = [], np.zeros((0, 0))
     for first in range(0, stacked.shape[0], len(own)):
-        seen, found = _seen(stacked, slice(first, first + len(own)))
+        seen, shown = _seen(stacked, slice(first, first + len(own)))
         chosen.append(seen)
         if first == 0:
-            local = found
-        elif not np.array_equal(found, local):
+            local = shown
+        elif not np.array_equal(shown, local):
             return own, np.eye(len(own)), whole
     columns = np.concatenate(chosen)
     shape = (basis.shape[1], len(columns))
@@ -171,9 +149,9 @@ def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
     row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     columns, first, place = np.unique(basis.indices[some], return_index=True, return_inverse=True)
     order = np.argsort(row[first], kind="stable")
-    found = np.zeros((len(starts) - 1, len(columns)))
-    found[row, place] = basis.data[some]
-    return columns[order], found[:, order]
+    dense = np.zeros((len(starts) - 1, len(columns)))
+    dense[row, place] = basis.data[some]
+    return columns[order], dense[:, order]
 
 
 def _diagonal(blocks: list[Array]) -> sparse.csr_array:
@@ -194,7 +172,7 @@ def _diagonal(blocks: list[Array]) -> sparse.csr_array:
 def _solver(
     system: sparse.csc_array, spread: sparse.csr_array, constant: Array
 ) -> Callable[[Array, slice], Array]:
-    """Give the map from macro-row forces of the targets at some instants to W~ at these rows."""
+    """The map from macro-row forces of the targets at some instants to W~ at these rows."""
     factor = splu(system)
     if system.shape[0] > DENSE_UP_TO:
         return lambda forces, some: spread.T @ factor.solve(constant[:, some] - spread @ forces)

@@ -41,14 +41,14 @@ class DenseResponse:
         np.matmul(self._reflection, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
-        """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
         k = self._k
         full: Array = -k[rows, None] * self._compliance[rows] * k
         full[np.arange(len(rows)), rows] += k[rows]
         return full
 
     def of_body_force(self, force: Array) -> Array:
-        """Give the boundary displacement under body forces, with k as a spring to rest."""
+        """Boundary displacement under body forces, with k as a spring to rest."""
         return np.asarray(self._factor.solve(force)[self._trace])
 
 
@@ -74,41 +74,38 @@ class SparseResponse:
         np.subtract(out, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
-        """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
         load = self._load[:, rows].toarray()
         full = -(self._load.T @ self._factor.solve(load)).T
         full[np.arange(len(rows)), rows] += self._k[rows]
         return np.asarray(full)
 
     def of_body_force(self, force: Array) -> Array:
-        """Give the boundary displacement under body forces, with k as a spring to rest."""
+        """Boundary displacement under body forces, with k as a spring to rest."""
         return np.asarray(self._factor.solve(force)[self._trace])
-
-
-def response(elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
-    """Condense or factor the elasticity of a substructure with its search direction."""
-    stiffness = elasticity.stiffness
-    if isinstance(stiffness, np.ndarray):
-        return DenseResponse(elasticity, k)
-    is_dense = stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
-    dense = len(k) <= DENSE_UP_TO or is_dense
-    return DenseResponse(elasticity, k) if dense else SparseResponse(elasticity, k)
 
 
 class Responses:
     """Boundary responses that are factored once, however many runs with one k need them."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[int, bytes], DenseResponse | SparseResponse] = {}
+        self._known: dict[tuple[int, bytes], DenseResponse | SparseResponse] = {}
         self._owners: list[Elasticity] = []  # so that no other takes over its identity
 
     def of(self, elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
-        """Give that of an elasticity with a k, as `response`."""
+        """Condense or factor an elasticity with a k, unless that is done."""
         key = id(elasticity), k.tobytes()
-        if key not in self._found:
-            self._found[key] = response(elasticity, k)
+        if key not in self._known:
+            is_small = len(k) <= DENSE_UP_TO or _is_dense(elasticity.stiffness)
+            self._known[key] = (DenseResponse if is_small else SparseResponse)(elasticity, k)
             self._owners.append(elasticity)
-        return self._found[key]
+        return self._known[key]
+
+
+def _is_dense(stiffness: Array | sparse.csr_array) -> bool:
+    if isinstance(stiffness, np.ndarray):
+        return True
+    return bool(stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2)
 
 
 class _Cholesky:

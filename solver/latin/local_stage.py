@@ -7,7 +7,7 @@ import numpy as np
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
-from solver.latin.local.slide import Slide, slide_of
+from solver.latin.sliding_body import Slide, slide_of
 
 
 class LocalStage:
@@ -30,6 +30,8 @@ class LocalStage:
     incoming
         z with which the last call obeyed: as read, but for the shift of a body that slides as a
         whole.
+    motion
+        Of the rows of such a body, shape (n_rows,), which every call chooses anew; or None.
     """
 
     def __init__(self, problem: Problem, k: Array, blocks: Blocks | None = None) -> None:
@@ -38,6 +40,7 @@ class LocalStage:
         self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
         way = slide_of(problem)
+        self.motion = None if way is None else way[problem.row_dofs]
         self._slide = None if way is None else Slide(problem, way, k)
         laws, n_instants = problem.laws, problem.n_instants
         self._remembering = [law.rule(k, n_instants) for law in laws if law.remembers]
@@ -58,16 +61,16 @@ class LocalStage:
         if self._slide is not None:
             incoming = self._slide.balanced(incoming)
         self.incoming = incoming
-        found = self.displacement = np.empty_like(self._outgoing)
+        displacement = self.displacement = np.empty_like(self._outgoing)
         for rule in self._remembering:
-            rule(incoming, found, ALL)
+            rule(incoming, displacement, ALL)
         self._blocks.each(lambda some: self._at(incoming[:, some], some))
         return self._outgoing
 
     def _at(self, incoming: Array, some: slice) -> None:
         """Obey the laws that are local in time, at some instants, and reflect."""
-        found, outgoing = self.displacement[:, some], self._outgoing[:, some]
+        displacement, outgoing = self.displacement[:, some], self._outgoing[:, some]
         for rule in self._instant:
-            rule(incoming, found, some)
-        np.multiply(found, 2.0, out=outgoing)
+            rule(incoming, displacement, some)
+        np.multiply(displacement, 2.0, out=outgoing)
         np.subtract(outgoing, incoming, out=outgoing)

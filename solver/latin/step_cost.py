@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.discrete.problem import Problem
-from solver.latin.direction.rules import sliding_share
-from solver.latin.local.slide import slide_of
+from solver.latin.directions import sliding_share
+from solver.latin.sliding_body import slide_of
 from solver.reference.contact import jumps_in
 from solver.reference.states import HELD, States
 from solver.reference.supports import rubs_on_supports
@@ -103,27 +103,27 @@ class Costs:
         return self.condensing + self.n_instants * self.system
 
     def afford(self, iterations: float, least: float = 0.0) -> bool:
-        """Tell whether a step costs no more than half of the iterations so far, or that it saves.
+        """Whether a step costs no more than half of the iterations so far, or that it saves.
 
         `least` is what it may cost in any case, s.
         """
         return self.step <= max(max(WORTH * iterations, AFFORDABLE) * self.iteration, least)
 
     def are_small(self, iterations: float) -> bool:
-        """Tell whether a step, also one with some wrong statuses, is soon worth a trial."""
+        """Whether a step, also one with some wrong statuses, is soon worth a trial."""
         if self.is_at_rest and self.step <= (SAVED + iterations) * self.iteration:
             return True
         step = self.condensing + SYSTEMS * self.n_instants * self.system
         return step <= TRIED * iterations * self.iteration
 
     def systems(self, iterations: float) -> int:
-        """Give the number of linear systems that a step may solve after so many iterations."""
+        """The number of linear systems that a step may solve after so many iterations."""
         worth = SHARE * iterations * self.iteration
         return max(self.in_any_case * self.n_instants, int(worth / self.system))
 
 
 def moving_share(states: States) -> float:
-    """Give the share of jumps that move, of states of shape (n_forces, n_instants)."""
+    """The share of jumps that move, of states of shape (n_forces, n_instants)."""
     return float(np.mean(states != HELD))
 
 

@@ -8,8 +8,8 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.finish.status_step import Certificate
-from solver.latin.iterate import Iterate
+from solver.latin.iterate import Iterate, read_only
+from solver.latin.status_step import Certificate
 from solver.reduction.basis import Reduction
 
 ENOUGH = 1e-14
@@ -26,7 +26,7 @@ def finished(
     seconds: float = 0.0,
     searched: Reduction | None = None,
 ) -> Iterate:
-    """Give the iterate that a certified solution is.
+    """The iterate that a certified solution is.
 
     Its linear and its local stage are the same fields, a fixed point of the method for every k.
 
@@ -47,7 +47,7 @@ def finished(
     moved = (certificate.displacement / scales.displacement)[problem.row_dofs]
     stretched = force / k[:, None]
     fields = moved + stretched, moved - stretched, moved, force
-    outgoing, incoming, local, force = map(_frozen, fields)
+    outgoing, incoming, local, force = (read_only(np.asfortranarray(own)) for own in fields)
     return Iterate(
         number=number,
         seconds=seconds,
@@ -61,12 +61,6 @@ def finished(
         residual=certificate.residual,
         force=force,
     )
-
-
-def _frozen(field: Array) -> Array:
-    field = np.asfortranarray(field)
-    field.flags.writeable = False
-    return field
 
 
 def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> Array:
@@ -108,21 +102,21 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
 
 
 def known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Give the forces of rows that rub or are loaded, and which rows these are."""
-    found = np.zeros((problem.n_rows, problem.n_instants))
+    """The forces of rows that rub or are loaded, and which rows these are."""
+    force = np.zeros((problem.n_rows, problem.n_instants))
     is_known = np.zeros(problem.n_rows, dtype=bool)
     for loaded in problem.given_forces:
-        found[loaded.rows], is_known[loaded.rows] = loaded.values, True
+        force[loaded.rows], is_known[loaded.rows] = loaded.values, True
     for name, law in problem.rubbing.items():
         for place, component in zip(problem.contact_places[name], law.components, strict=True):
             carried = law.shares[:, None] * contact_force[place][law.points]
             for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):
-                found[rows], is_known[rows] = sign * carried, True
-    return found, is_known
+                force[rows], is_known[rows] = sign * carried, True
+    return force, is_known
 
 
 def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, Array]:
-    """Give what sums the rows of every boundary point of a substructure, and what it needs there.
+    """What sums the rows of every boundary point of a substructure, and what it needs there.
 
     Shapes (n, n_rows) and (n, n_instants).
     """
@@ -141,12 +135,12 @@ def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, A
 
 
 def _smallest(system: sparse.csr_array, right: Array) -> Array:
-    """Give the smallest x with A x = b, by conjugate gradients on A A^T, all columns together.
+    """The smallest x with A x = b, by conjugate gradients on A A^T, all columns together.
 
     Rows of A meet only around a point, so that A A^T has few different eigenvalues.
     """
-    found = np.zeros((system.shape[1], right.shape[1]))
-    rest, way, before = right.copy(), found, 1.0
+    solution = np.zeros((system.shape[1], right.shape[1]))
+    rest, way, before = right.copy(), solution, 1.0
     enough = ENOUGH * float(np.abs(right).max(initial=0.0))
     for _ in range(MOST_STEPS):
         gradient = system.T @ rest
@@ -157,7 +151,7 @@ def _smallest(system: sparse.csr_array, right: Array) -> Array:
         way = gradient + (steep / before) * way
         image = system @ way
         length = steep / float(np.vdot(image, image))
-        found += length * way
+        solution += length * way
         rest -= length * image
         before = steep
-    return found
+    return solution

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import time
 
-from solver.latin.criteria.changes import ForceChanges
-from solver.latin.finish.cost import Costs, costs_of, moving_share
-from solver.latin.finish.status_step import Certificate, StatusSolver, states_of
+from solver.latin.force_changes import ForceChanges
 from solver.latin.iterate import Iterate
+from solver.latin.status_step import Certificate, states_of, status_step
+from solver.latin.step_cost import Costs, costs_of, moving_share
+from solver.reference.choice import Incremental, incremental_solver
 from solver.reference.condensation import NoReferenceError
 from solver.reference.solution import Interrupted
 
@@ -43,6 +44,9 @@ class ErrorEstimate:
     ----------
     accuracy
         Share of the contact force that is asked for.
+    needs_proof
+        Whether a certified solution alone counts, whatever it costs: bases that are too small
+        converge to something else, which no change shows.
 
     Attributes
     ----------
@@ -51,21 +55,24 @@ class ErrorEstimate:
     deadline
         When a status step is given up, and before which none begins that would take longer, by
         `time.perf_counter`.
+    jumps
+        Whether the last status step found nothing any more after the structure had jumped.
     """
 
-    def __init__(self, accuracy: float) -> None:
-        self._accuracy = accuracy
+    def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
+        self._accuracy, self._needs_proof = accuracy, needs_proof
         self._changes = ForceChanges()
         self._last_trial, self._next_trial = 0, 1
-        self._step: StatusSolver | None = None
+        self._solver: Incremental | None = None
         self._costs: Costs | None = None
         self._costs_at = 0
         self._has_solver = True
         self.certificate: Certificate | None = None
         self.deadline = math.inf
+        self.jumps = False
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
-        """Give the estimate; NaN while there is none.
+        """The estimate; NaN while there is none.
 
         Parameters
         ----------
@@ -77,12 +84,12 @@ class ErrorEstimate:
         accuracy = self._accuracy
         is_due = iterate.number >= self._next_trial
         if self.certificate is not None:
-            found = self.certificate.distance.of_friction_force(iterate)
-            if is_due and accuracy < found and self._changes.left(iterate).worst <= accuracy:
+            error = self.certificate.distance.of_friction_force(iterate)
+            if is_due and accuracy < error and self._changes.left(iterate).worst <= accuracy:
                 # It has come to rest elsewhere: there may be several solutions.
                 self.try_step(iterate)
-                found = self.certificate.distance.of_friction_force(iterate)
-            return found
+                error = self.certificate.distance.of_friction_force(iterate)
+            return error
         expected = self._changes.left(iterate)
         ends_soon = any(left <= accuracy for left in expected)
         is_near = self._changes.last.whole <= SETTLED or ends_soon or indicator <= SOLVED
@@ -93,17 +100,12 @@ class ErrorEstimate:
         return self.certificate.distance.of_friction_force(iterate)
 
     @property
-    def jumps(self) -> bool:
-        """Whether a status step found nothing any more after the structure had jumped."""
-        return self._step is not None and self._step.jumps
-
-    @property
     def is_proven(self) -> bool:
         """Whether the last estimate was the distance to a certified solution."""
         return self.certificate is not None
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
-        """Tell whether displacement and contact force are that near to a certified solution."""
+        """Whether displacement and contact force are that near to a certified solution."""
         if self.certificate is None:
             return False
         distance = self.certificate.distance
@@ -111,14 +113,14 @@ class ErrorEstimate:
         return max(errors) <= share
 
     def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
-        """Tell whether the estimate counts for nothing without a status step, as below.
+        """Whether the estimate counts for nothing without a status step, as one is worth its cost.
 
-        So it is where a step is worth its cost.
+        `least` is what it may cost in any case, s.
         """
-        return self.can_be_proven(iterate, least=least)
+        return self._needs_proof or self.can_be_proven(iterate, least=least)
 
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
-        """Tell whether a status step is worth its cost by now.
+        """Whether a status step is worth its cost by now.
 
         Parameters
         ----------
@@ -131,38 +133,41 @@ class ErrorEstimate:
         """
         if not self._has_solver or not self._is_in_time(iterate):
             return False
+        if self._needs_proof:
+            return True
         return self._costs_of(iterate).afford(patience * iterate.number, least)
 
     def is_last_chance(self, iterate: Iterate) -> bool:
-        """Tell whether a run without an answer would have no time for a status step later."""
+        """Whether a run without an answer would have no time for a status step later."""
         if self.certificate is not None or math.isinf(self.deadline):
             return False
         return self._left() <= ROOM * self._costs_of(iterate).step
 
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
-        """Try the status step, unless it costs too much, as above; tell whether it holds."""
+        """Try the status step, unless it costs too much, as above; whether it holds."""
         if not self.can_be_proven(iterate, patience, least):
             return False
         self._last_trial = iterate.number
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
-        self._step = self._step or StatusSolver(iterate.problem)
+        problem, states = iterate.problem, states_of(iterate)
+        systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
-            systems = self._costs_of(iterate).systems(patience * iterate.number)
-            found = self._step(
-                states_of(iterate), systems, lambda: time.perf_counter() > self.deadline
+            self._solver = self._solver or incremental_solver(problem)
+            certificate, self.jumps = status_step(
+                self._solver, problem, states, systems, lambda: time.perf_counter() > self.deadline
             )
         except NoReferenceError:
             self._has_solver = False
             return False
         except Interrupted:
             return False
-        if found is None or found.residual > self._accuracy:
+        if certificate is None or certificate.residual > self._accuracy:
             return False
-        self.certificate = found
+        self.certificate = certificate
         return True
 
     def _is_worth_it(self, iterate: Iterate) -> bool:
-        """Tell whether to try the step though the force is not near: it may never seem so.
+        """Whether to try the step though the force is not near: it may never seem so.
 
         So it is where k is foolish, where solutions are all but several, or where the force dies.
         """
@@ -173,7 +178,7 @@ class ErrorEstimate:
         return self._costs_of(iterate).step <= self._left()
 
     def _left(self) -> float:
-        """Give the seconds that are left of the run's limit."""
+        """Seconds that are left of the run's limit."""
         return self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
@@ -182,18 +187,3 @@ class ErrorEstimate:
             self._costs_at = iterate.number
             self._costs = costs_of(iterate.problem, moving_share(states_of(iterate)))
         return self._costs
-
-
-class EstimateByProof(ErrorEstimate):
-    """The error on separated bases, where a proof alone counts.
-
-    Bases that are too small converge to something else, which no change shows.
-    """
-
-    def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
-        """Tell that it always has to be."""
-        return True
-
-    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
-        """Try a status step whatever it costs, where there is one."""
-        return self._has_solver and self._is_in_time(iterate)

@@ -1,0 +1,318 @@
+"""The linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
+
+With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G = k (u - Z)
+(paper, eq. 3), whose G + k Z is k u. So the search direction is met as well as modes can: the
+residual of problem 2.3 is k times what the new y has outside the modes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.discrete.substructure import Substructure
+from solver.latin.blocks import ALL, Blocks
+from solver.latin.iterate import Checkpoint
+from solver.latin.linear_stage import Bases, Group, LinearStage
+from solver.latin.response import Responses
+from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis
+from solver.reduction.enrichment import nearest_mode
+from solver.refusal import check_range
+
+SHARE_EVERY = 10
+"""Iterations between two looks for bases that can be shared."""
+NOTHING_LEFT = 1e-13
+"""Share of the field's squared norm below which a difference of squares is only rounding."""
+
+
+@dataclass(frozen=True)
+class PGD:
+    """A sum of a few modes, each a shape in space times a function of time (paper, section 2.2).
+
+    Attributes
+    ----------
+    modes
+        Most modes of a substructure; the smallest are dropped.
+    tolerance
+        Share of a substructure's field that may be lost with them; no mode is added for a residual
+        below it. It is that of W + F/k, most of which is displacement, and far below the share of
+        the force: 1e-4 left 15 % of it in layers whatever `modes` was (solver/study/README.md, 8).
+    pairs
+        Most modes that one iteration adds to a substructure.
+    sharing
+        Equal substructures use the same modes if these miss at most this share of each one's field;
+        0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
+        (solver/study/README.md, 8).
+    remedy, has_to_prove, responses
+        As of `Full`.
+    """
+
+    remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
+    has_to_prove: ClassVar[bool] = True
+
+    modes: int = 10
+    tolerance: float = 1e-7
+    pairs: int = 2
+    sharing: float = 1e-5
+    responses: Responses | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("modes", "pairs"):
+            check_range(self, name, 1, 1000)
+        for name in ("tolerance", "sharing"):
+            check_range(self, name, 0.0, 1.0)
+
+    def stage(
+        self, problem: Problem, k: Array, blocks: Blocks | None = None, *, multiscale: bool
+    ) -> LinearStage:
+        """Factor the linear stage, as `Full.stage` does; it works on all instants at once."""
+        return LinearStage(
+            problem,
+            k,
+            multiscale=multiscale,
+            make_group=partial(PGDGroup, pgd=self),
+            responses=self.responses,
+        )
+
+
+@dataclass
+class Family:
+    """One basis and the substructures of a group that use it.
+
+    Attributes
+    ----------
+    members
+        Places of the substructures in their group.
+    basis
+        Of y = W + F/k; columns run through the members, then through the instants.
+    incoming_modes
+        W - F/k of every mode, shape (n_boundary, n_modes).
+    record
+        What the last iteration did.
+    """
+
+    members: list[int]
+    basis: SeparatedBasis
+    incoming_modes: Array
+    record: ReductionRecord
+
+    def columns(self, field: Array) -> Array:
+        """Take the members of a group field as one matrix, shape (n_boundary, n_columns).
+
+        It is a view of the field if there is one member, otherwise a copy.
+        """
+        return members_of(field, self.members).reshape(len(field), -1, order="F")
+
+    def time_functions(self, place: int) -> Array:
+        """One member's time functions, shape (n_modes, n_instants)."""
+        return self.basis.time_functions[:, place :: len(self.members)]
+
+
+def members_of(field: Array, members: list[int]) -> Array:
+    """Members of a group field, shape (n_boundary, n_members, n_instants).
+
+    It is a view of the field if there is one member, otherwise a copy.
+    """
+    if len(members) == 1:
+        return field[:, members[0] : members[0] + 1]
+    return np.asfortranarray(field[:, members])
+
+
+class PGDGroup(Group[list[Family]]):
+    """Identical substructures whose states are separated.
+
+    The state is a list of families: one per substructure, fewer when bases are shared.
+
+    Parameters
+    ----------
+    problem, parts, k, responses
+        As of `Group`.
+    pgd
+        How modes are found, when, and how many are kept.
+
+    Attributes
+    ----------
+    iterations
+        Iterations done, which set the pace of looking for bases to share.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        parts: list[Substructure],
+        k: Array,
+        responses: Responses,
+        pgd: PGD,
+    ) -> None:
+        super().__init__(problem, parts, k, responses)
+        alike = {id(part) for part in parts}
+        every = enumerate(problem.substructures)
+        self._numbers = [number for number, part in every if id(part) in alike]
+        self._pgd = pgd
+        self._weights = problem.time_weights
+        self.iterations = 0
+
+    def start(self, checkpoint: Checkpoint | None) -> list[Family]:
+        """State of a checkpoint: its bases, or the nearest ones to its fields."""
+        self.iterations = checkpoint.number if checkpoint else 0
+        places = range(self.rows.shape[1])
+        if checkpoint is None:
+            return [self._family([place], self._empty(1)) for place in places]
+        if checkpoint.reduction is None:
+            self.gather(checkpoint.outgoing)
+            nearest = (self._basis_of(self.target[:, place], 1) for place in places)
+            return [self._family([place], basis) for place, basis in enumerate(nearest)]
+        modes, records = checkpoint.reduction.modes, checkpoint.reduction.records
+        own = self._numbers
+        return self._shared([modes[n] for n in own], [records[n] for n in own])
+
+    def outgoing(self, state: list[Family]) -> Array:
+        """W + F/k of a state, rebuilt."""
+        rebuilt = self.field()
+        for family in state:
+            self._put(rebuilt, family.members, family.basis.field())
+        return rebuilt
+
+    def relax(self, state: list[Family], relaxation: float, some: slice = ALL) -> None:
+        """Bring a state towards the target: update time functions, enrich, downsize."""
+        for family in state:
+            self._advance(family, relaxation)
+        self.iterations += 1
+        if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
+            self._share(state)
+
+    def reflect(self, state: list[Family], some: slice = ALL) -> Array:
+        """W - F/k of a state; the next call overwrites it."""
+        for family in state:
+            columns = family.columns(self._reflected)
+            np.matmul(family.incoming_modes, family.basis.time_functions, out=columns)
+            if len(family.members) > 1:
+                self._put(self._reflected, family.members, columns)
+        if self.body is not None:
+            self._reflected += 2.0 * self.body
+        return self._reflected
+
+    def bases(self, state: list[Family]) -> Bases:
+        """Separated bases of a state, by number of the substructure."""
+        bases: Bases = {}
+        for family in state:
+            for place, member in enumerate(family.members):
+                modes = Modes(
+                    outgoing=family.basis.modes,
+                    incoming=family.incoming_modes,
+                    time_functions=family.time_functions(place).copy(),
+                    k=self.k,
+                    stored=self._numbers[family.members[0]],
+                )
+                bases[self._numbers[member]] = modes, family.record
+        return bases
+
+    def _shared(self, modes: list[Modes], records: list[ReductionRecord]) -> list[Family]:
+        """State that was shown, bit by bit; one entry per substructure."""
+        places: dict[int, list[int]] = {}
+        for place, shown in enumerate(modes):
+            places.setdefault(shown.stored, []).append(place)
+        families = []
+        for members in places.values():
+            basis = self._empty(len(members))
+            basis.modes = np.asfortranarray(modes[members[0]].outgoing)
+            basis.time_functions = np.stack(
+                [modes[place].time_functions for place in members], axis=2
+            ).reshape(basis.n_modes, -1)
+            family = self._family(members, basis)
+            family.record = records[members[0]]
+            families.append(family)
+        return families
+
+    def _advance(self, family: Family, relaxation: float) -> None:
+        basis, pgd = family.basis, self._pgd
+        target = family.columns(self.target)
+        wanted = basis.coefficients(target)
+        # What was last reflected is read already, and its place is free.
+        whole = basis.squared(target, family.columns(self._reflected))
+        inside = basis.squared_of(wanted)
+        change = wanted - basis.time_functions
+        updated = basis.squared_of(change)
+        basis.time_functions += relaxation * change
+        left = whole - inside
+        if left < NOTHING_LEFT * whole:
+            left = 0.0
+        residual = left + updated
+        enough = pgd.tolerance**2 * whole
+        explained, added, dropped = 0.0, 0, 0.0
+        if left > enough:
+            rest = target - basis.modes @ wanted
+            while added < pgd.pairs and left - explained > enough:
+                mode = basis.orthonormal(nearest_mode(rest, self.k, basis.weights))
+                if mode is None:
+                    break
+                time_function = (self.k * mode) @ rest
+                rest -= np.multiply.outer(mode, time_function)
+                basis.append(mode, relaxation * time_function)
+                explained += basis.squared_of(time_function[None])
+                added += 1
+            dropped = basis.downsize(pgd.tolerance, self._pgd.modes)
+            family.incoming_modes = self._incoming(basis)
+        family.record = ReductionRecord(
+            modes=basis.n_modes,
+            added=added,
+            updated=updated / residual if residual > 0.0 else 1.0,
+            enriched=min(explained / residual, 1.0) if residual > 0.0 else 0.0,
+            dropped=dropped,
+        )
+
+    def _share(self, state: list[Family]) -> None:
+        """Join families whose fields lie in each other's modes up to the allowed share."""
+        joined: list[Family] = []
+        for family in state:
+            for other in joined:
+                apart = family.basis.outside(other.basis), other.basis.outside(family.basis)
+                if max(apart) <= self._pgd.sharing:
+                    self._join(other, family)
+                    break
+            else:
+                joined.append(family)
+        state[:] = joined
+
+    def _join(self, family: Family, other: Family) -> None:
+        members = sorted(family.members + other.members)
+        target = self.field()
+        for part in (family, other):
+            self._put(target, part.members, part.basis.field())
+        columns = members_of(target, members).reshape(len(target), -1, order="F")
+        basis = self._basis_of(columns, len(members))
+        family.members, family.basis = members, basis
+        family.incoming_modes = self._incoming(basis)
+
+    def _family(self, members: list[int], basis: SeparatedBasis) -> Family:
+        record = ReductionRecord.idle(basis.n_modes)
+        return Family(members, basis, self._incoming(basis), record)
+
+    def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
+        return SeparatedBasis.of_field(
+            columns,
+            self.k,
+            self._tiled(n_members),
+            self._pgd.tolerance,
+            self._pgd.modes,
+        )
+
+    def _empty(self, n_members: int) -> SeparatedBasis:
+        return SeparatedBasis.empty(self.k, self._tiled(n_members))
+
+    def _tiled(self, n_members: int) -> Array:
+        return np.repeat(self._weights, n_members)
+
+    def _incoming(self, basis: SeparatedBasis) -> Array:
+        incoming = np.empty(basis.modes.shape, order="F")
+        if basis.n_modes:
+            self.response.reflect(basis.modes, incoming)
+        return incoming
+
+    def _put(self, field: Array, members: list[int], columns: Array) -> None:
+        field[:, members] = columns.reshape(len(field), len(members), -1, order="F")

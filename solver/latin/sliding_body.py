@@ -1,0 +1,218 @@
+"""A body that slides as a whole against a slack spring: its rigid motion is the local stage's.
+
+A rigid motion costs no force, so the linear stage leaves it free and E+ alone holds it: with all
+contacts slipping, an iteration moves the body by about (spring over k) of what is missing. So here
+k is taken to be nothing along that motion: at every instant the local stage shifts the whole body
+to where its own forces and the load balance (solver/README.md, 2). What remains is the same
+iteration between both stages, on what deforms, whatever the spring.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.laws import Contact, SlackSpring
+from solver.laws.compliant import CompliantSliders
+from solver.laws.frictionless import Frictionless
+from solver.laws.sliders import Sliders
+
+KNOWN_BOUND = (Sliders, CompliantSliders, Frictionless)
+"""Tangential laws whose friction falls with a shift, their bound being known from the pressure."""
+SAME = 1e-9
+"""By how much a motion may differ from a slide along the support."""
+BALANCED = 1e-14
+"""Share of all that friction and load may be, which is left over where they balance."""
+TRIALS = 8
+"""Straight lines that are followed to their zero, before it is looked for between two shifts."""
+
+
+def slide_of(problem: Problem) -> Array | None:
+    """The rigid motion along its support of a body that a slack spring catches.
+
+    Returns
+    -------
+    Displacement of all degrees of freedom, shape (n_dofs,), 1 along the support; None where there
+    is no such body, or something else holds it.
+    """
+    ground = [law for law in problem.rubbing.values() if not _is_spring(law)]
+    if problem.motions is None or len(ground) != 1 or len(problem.rubbing) != 2:
+        return None
+    (law,) = ground
+    if law.normal is None or not law.is_on_support:
+        return None
+    if type(law.tangential) not in KNOWN_BOUND:
+        return None
+    along, across = law.tangent.above, law.normal.component.above
+    wanted = np.concatenate([np.ones(len(along)), np.zeros(len(across))])
+    own = problem.motions[problem.row_dofs[np.concatenate([along, across])]]
+    shares = np.linalg.lstsq(own, wanted, rcond=None)[0]
+    is_held = np.abs(own @ shares - wanted).max() > SAME
+    return None if is_held else np.asarray(problem.motions @ shares)
+
+
+def _is_spring(law: Contact) -> bool:
+    return isinstance(law.normal, SlackSpring)
+
+
+class Slide:
+    """The shift of a body to where the forces of a local stage balance its load.
+
+    With the pressing forces known friction falls with the shift, as the spring does.
+
+    Parameters
+    ----------
+    problem, way
+        What is solved, and the motion, as `slide_of` gives it.
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    """
+
+    def __init__(self, problem: Problem, way: Array, k: Array) -> None:
+        (ground,) = (law for law in problem.rubbing.values() if not _is_spring(law))
+        (spring,) = (law.normal for law in problem.rubbing.values() if _is_spring(law))
+        law, along = ground.normal, ground.tangential
+        assert law is not None
+        assert spring is not None
+        assert spring.softness is not None
+        held, pulls = law.component.above, spring.component.above
+        rubs = along.component.above
+        self._across, self._along, self._end = held, rubs, pulls
+        self._closed, self._k = -law.gap[:, None], k[held, None]
+        self._bound, self._friction = along.bound, along.friction[:, None]
+        soft = 1.0 / k[rubs] + (0.0 if along.softness is None else along.softness)
+        self._soft = soft[:, None]
+        stop = float(1.0 / (1.0 / k[pulls] + spring.softness)[0])
+        self._slack = float(spring.gap[0])
+        self._way = way[problem.row_dofs, None]
+        parts = problem.substructures
+        loads = [way[one.dofs] @ one.body_force for one in parts if one.body_force is not None]
+        load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
+        self._balance = Balance(1.0 / soft, stop, load)
+
+    def balanced(self, incoming: Array) -> Array:
+        """Shift z = W - F/k of all rows, shape (n_rows, n_instants), instant by instant."""
+        shifted = np.empty_like(incoming)
+        np.multiply(self._way, self.shifts(incoming), out=shifted)
+        return np.add(shifted, incoming, out=shifted)
+
+    def shifts(self, incoming: Array) -> Array:
+        """The shift of every instant, shape (n_instants,), scaled."""
+        held = incoming[self._across]
+        pressing = self._k * (np.maximum(held, self._closed) - held)
+        reach = (self._bound + self._friction * pressing) * self._soft
+        targets = np.ascontiguousarray(incoming[self._along].T)
+        ends = -self._slack - incoming[self._end][0]
+        return self._balance(targets, np.ascontiguousarray(reach.T), ends)
+
+
+class Balance:
+    """The shifts at which friction of many points, a spring and a load balance.
+
+    All points move by one shift. Their forces fall with it, in straight lines between the shifts at
+    which a point begins to slip and the spring to pull, so that there is one zero. A point that
+    sticks remembers where it came to rest, which ties each instant to the one before.
+
+    Parameters
+    ----------
+    stiffness
+        With which a point that sticks pulls the body back, shape (n_points,).
+    spring
+        Stiffness of the spring.
+    load
+        Shape (n_instants,).
+    """
+
+    def __init__(self, stiffness: Array, spring: float, load: Array) -> None:
+        self._stiffness, self._spring, self._load = stiffness, spring, load
+
+    def __call__(self, targets: Array, reach: Array, ends: Array) -> Array:
+        """The shift of every instant, shape (n_instants,).
+
+        Parameters
+        ----------
+        targets
+            Where the points would be without friction or shift, shape (n_instants, n_points).
+        reach
+            How far a point can be behind before it slips, same shape.
+        ends
+            Shift up to which the spring pulls, shape (n_instants,).
+        """
+        enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
+        # Points are seen from the body, where the digits of how far they are behind stay.
+        back = -np.diff(targets, axis=0, prepend=0.0)
+        numbers = (one.tolist() for one in (ends, self._load, enough))
+        held, shift = np.zeros(targets.shape[1]), 0.0
+        steps = []
+        for came, least, most, end, load, left in zip(back, -reach, reach, *numbers, strict=True):
+            given = held + came, least, most, end - shift, load
+            step, held = self._followed(*given, left) or self._between(*given)
+            shift += step
+            steps.append(step)
+        return np.cumsum(steps)
+
+    def _followed(
+        self,
+        behind: Array,
+        least: Array,
+        most: Array,
+        end: float,
+        load: float,
+        enough: float,
+    ) -> tuple[float, Array] | None:
+        """Follow straight lines to the step at which all balances, None where that fails.
+
+        With it, how far the points are behind then.
+        """
+        # The nearer the iteration is to its end, the less is left to shift.
+        pulled, wanted, step = self._stiffness.dot, behind, 0.0
+        for trial in range(TRIALS):
+            held = np.minimum(np.maximum(wanted, least), most)
+            left = float(pulled(held)) + load
+            if end > step:
+                left += self._spring * (end - step)
+            # A step that a line has led to is where that line ends; no step at all may be a flat.
+            if trial and abs(left) <= enough:
+                return step, held
+            slope = float(pulled(held == wanted)) + (self._spring if end > step else 0.0)
+            if not slope > 0.0:
+                return None
+            if abs(left) <= enough:
+                return step, held
+            step += left / slope
+            wanted = behind - step
+        return None
+
+    def _between(
+        self, behind: Array, least: Array, most: Array, end: float, load: float
+    ) -> tuple[float, Array]:
+        """Look for the same between the shifts at which anything begins to slip or pull."""
+
+        def held(step: float) -> Array:
+            return np.minimum(np.maximum(behind - step, least), most)
+
+        def left(step: float) -> float:
+            pull = self._spring * max(end - step, 0.0)
+            return float(self._stiffness.dot(held(step))) + pull + load
+
+        stays = float(behind.mean())
+        if left(stays) == 0.0:
+            return stays, held(stays)
+        turns = np.sort(np.concatenate([behind + least, behind + most, [end]])).tolist()
+        first, last = 0, len(turns) - 1
+        above, below = left(turns[first]), left(turns[last])
+        if above <= 0.0:
+            step = turns[first] + above / self._spring
+        elif below >= 0.0:
+            step = turns[last]
+        else:
+            while last - first > 1:
+                middle = (first + last) // 2
+                value = left(turns[middle])
+                if value > 0.0:
+                    first, above = middle, value
+                else:
+                    last, below = middle, value
+            step = turns[first] + above / (above - below) * (turns[last] - turns[first])
+        return step, held(step)

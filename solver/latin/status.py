@@ -1,0 +1,196 @@
+"""How a run ends: in a word, and what to try next in a sentence."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from solver.discrete.problem import Problem
+from solver.latin.iterate import Iterate
+from solver.latin.status_step import Certificate
+
+FAR = 0.1
+"""Error of the contact force from which on what a status step finds is not LATIN's own."""
+LOWEST = 1e-24
+"""LATIN indicator, a ratio of squares, that rounding leaves of fields that agree."""
+
+
+class Ending(StrEnum):
+    """How a run can end."""
+
+    CONVERGED = "converged"
+    EXHAUSTED = "exhausted"
+    STALLED = "stalled"
+    CANCELLED = "cancelled"
+    DIVERGED = "diverged"
+
+
+@dataclass(frozen=True)
+class Status:
+    """The end of a run, in a word, and what to try next in a sentence."""
+
+    ending: Ending
+    advice: str
+
+
+CANCELLED = Status(Ending.CANCELLED, "The run was stopped before its end; start it again.")
+PROVEN = Status(
+    Ending.CONVERGED,
+    "Accurate enough: the contact force of this iterate is within the accuracy of the exact "
+    "solution on this mesh, which a status step has found. What is shown is the iterate, not that "
+    "solution.",
+)
+EXPECTED = Status(
+    Ending.CONVERGED,
+    "Accurate enough by estimate: the contact force hardly changes any more. Proof by a status "
+    "step would take half as long again, or longer.",
+)
+BELOW = Status(
+    Ending.CONVERGED,
+    "The LATIN indicator is below its tolerance, and the k-free indicator agrees.",
+)
+JUMPS = Status(
+    Ending.STALLED,
+    "At some instant no equilibrium goes on from the one before: friction falls with slip faster "
+    "than the structure unloads, so that it jumps, and none is found beyond. Lower the load, raise "
+    "friction_ratio or slip_length, or prescribe a displacement in place of a force.",
+)
+_JUMPED = (
+    " At {:.4g} s no equilibrium goes on from the one before, as friction falls with slip faster "
+    "than the structure unloads: it jumps to another. Where it should not, raise friction_ratio, "
+    "slip_length or the number of elements."
+)
+_SEARCHED = " The iterates by themselves had come within {:g} % of its contact force."
+_CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
+_FOUND = " A status step found it from iterate {}, whose contact force was {} % away from it."
+_BY_INCREMENTS = (
+    " It is the incremental solver's answer: the status step began at the statuses of iterate {}, "
+    "whose own contact force was still {} % away from it."
+)
+_ON_BASES = " The modes are those of that iterate."
+_LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
+
+
+def diverged(iteration: int) -> Status:
+    """Status of a run whose numbers stopped being finite."""
+    return Status(
+        Ending.DIVERGED,
+        f"Numbers stopped being finite at iteration {iteration}, so that before it is kept. Lower "
+        "the relaxation, or bring k_scale nearer to 1 and the loads to ordinary sizes.",
+    )
+
+
+def certified(
+    finish: Iterate, certificate: Certificate | None, error: float = math.nan, advice: str = ""
+) -> Status:
+    """Status of a run that ends with a certified solution.
+
+    Parameters
+    ----------
+    finish
+        The iterate that is the solution. Separated bases that it shows are those of the search.
+    certificate
+        What it is made of, if the run has it.
+    error
+        Of the contact force of the last iterate before it; NaN without one.
+    advice
+        What to try, of a search that had to end earlier.
+    """
+    message = f"{_CERTIFIED} (residual {finish.residual or 0.0:.0e})."
+    if not math.isnan(error):
+        away, before = float(f"{100.0 * error:.2g}"), finish.number - 1
+        if error > FAR:
+            shown = f"{away:g}" if error <= 1.0 else "more than 100"
+            message += _BY_INCREMENTS.format(before, shown)
+        elif finish.is_answer:
+            message += _SEARCHED.format(away)
+        else:
+            message += _FOUND.format(before, f"{away:g}")
+        message += _ON_BASES * (finish.reduction is not None) + f" {advice}" * bool(advice)
+    return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
+
+
+def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:
+    """Status that also says when the certified solution jumps, if it does."""
+    if certificate is None or certificate.jumps_at is None:
+        return status
+    message = _JUMPED.format(problem.instants[certificate.jumps_at])
+    return replace(status, advice=status.advice + message)
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to try where a run does not converge, by its method.
+
+    Attributes
+    ----------
+    modes
+        What helps separated bases, to begin a sentence with; empty for full fields.
+    has_step
+        Whether a status step may end the run.
+    relaxation
+        Share of the new iterate.
+    """
+
+    modes: str
+    has_step: bool
+    relaxation: float
+
+    def exhausted(self, lack: str, *, is_late: bool) -> Status:
+        """Status of a run at its limit, of seconds if it is late, else of iterations.
+
+        `lack` says what is not met, in a sentence without its full stop.
+        """
+        remedy = self._of_bases or f"Raise max_iterations, or {self._of_k}."
+        return Status(Ending.EXHAUSTED, f"{lack}. {_LONGER if is_late else remedy}")
+
+    def stalled(self, lowest: float, tolerance: float, *, agrees: bool) -> Status:
+        """Status of a run whose LATIN indicator has stopped falling.
+
+        Parameters
+        ----------
+        lowest, tolerance
+            The lowest indicator so far, and the one that is low enough.
+        agrees
+            Whether the k-free indicator is low enough.
+        """
+        return Status(Ending.STALLED, self._against_stall(lowest, tolerance, agrees=agrees))
+
+    def _against_stall(self, lowest: float, tolerance: float, *, agrees: bool) -> str:
+        if lowest < LOWEST and agrees:
+            return "The LATIN indicator is down to rounding: more iterations change nothing."
+        if lowest < LOWEST:
+            return (
+                "The LATIN indicator is down to rounding, yet the k-free indicator shows that the "
+                "contact laws are broken: friction is too small beside the load, or k too far from "
+                "the stiffness, for more digits. Bring friction, the load and k_scale nearer to "
+                "each other."
+            )
+        if lowest <= tolerance and self.modes:
+            return (
+                "The LATIN indicator is below its tolerance, yet the contact force is not known to "
+                f"be accurate enough. {self._of_bases}"
+            )
+        if lowest <= tolerance:
+            return (
+                "The LATIN indicator is below its tolerance, yet the k-free indicator shows that "
+                "the contact laws are broken: k is far from what suits, or rigid motion so large "
+                f"that it hides how the body deforms. {self._of_k.capitalize()}."
+            )
+        if self.relaxation > 0.9:
+            return "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
+        remedy = self._of_bases or f"Accept a larger tolerance, or {self._of_k}."
+        return f"The LATIN indicator has stopped falling. {remedy}"
+
+    @property
+    def _of_k(self) -> str:
+        """What helps against an unsuitable k, as part of a sentence; a status step needs none."""
+        if not self.has_step:
+            return "set finish=at-once, for which k does not matter"
+        return "try a k_scale ten times smaller, and if that is no better ten times larger"
+
+    @property
+    def _of_bases(self) -> str:
+        also = "" if self.has_step else ", or set finish=at-once"
+        return f"{self.modes}{also}." if self.modes else ""
