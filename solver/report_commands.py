@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +12,6 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.prepared import print_tables
-from solver.scenes import CATALOGUE
-from solver.study.audit.audit import Audited, Trial, audit
-from solver.study.audit.report import HEAD, line, prepare
-from solver.study.audit.stability import cases_of, stability_report, trials_of
-from solver.study.audit.survey import draws, survey_report
-from solver.study.audit.units import SCENE, invariance, is_same
 from solver.study.benchmarks import cycles_problems
 from solver.study.benchmarks.ahead_problems import GROUPS, chosen_problems
 from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
@@ -26,6 +20,7 @@ from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_o
 from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.figures.figure_page import write_figures
 from solver.study.figures.paper_figures import paper_figures
+from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.sections import summary
 from solver.study.speed.crossover import crossover
@@ -34,7 +29,6 @@ from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.growth import growth
 from solver.study.speed.study_page import write_study
 from solver.study.speed.study_report import (
-    aligned,
     conditions,
     growth_table,
     table,
@@ -42,6 +36,19 @@ from solver.study.speed.study_report import (
     write_curves,
     write_growth,
 )
+from solver.study.stability import units
+from solver.study.stability.report import (
+    HEAD,
+    NOTES,
+    RANDOM_NOTES,
+    RANDOM_TITLE,
+    TITLE,
+    StabilityReport,
+    line,
+    prepare,
+)
+from solver.study.stability.trials import cases_of, random_trials, trials_of
+from solver.study.stability.verdict import JudgedRun, judged_runs
 
 REFUSED = 2
 """Exit code of refused input."""
@@ -81,21 +88,18 @@ def add_reports(commands: Any) -> None:
         "--large", action="store_true", help="sizes that take minutes too, on the map of the end"
     )
     study.set_defaults(command=_study)
-    stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
-    stable.add_argument("scene", nargs="?", help="a name of the catalogue; all without")
+    stable = commands.add_parser(
+        "stability", help="stiff and extreme cases, or random runs, each with a verdict"
+    )
+    stable.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
     stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    stable.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
+    stable.add_argument("--seed", type=int, default=1, help="of the random runs")
     stable.set_defaults(command=_stability)
     known = commands.add_parser("proof", help="closed forms beside what is found, row by row")
     known.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
     known.set_defaults(command=_proof)
-    random = commands.add_parser("survey", help="random runs of all scenes, each judged")
-    random.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
-    random.add_argument("--runs", type=int, default=100, help="number of runs")
-    random.add_argument("--seed", type=int, default=1, help="of the draws")
-    random.add_argument("--row", type=int, help="this row of one scene alone")
-    random.add_argument("--out", type=Path, default=Path("survey"), metavar="DIR")
-    random.set_defaults(command=_survey)
 
 
 def _check_repeats(chosen: argparse.Namespace) -> None:
@@ -199,25 +203,38 @@ def _study(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _audited(trials: Iterable[Trial], folder: Path, name: str) -> Iterator[Audited]:
-    """Run trials, with a line for each, once it is known that the report can be written."""
-    prepare(folder, name)
-    print(HEAD)
-    for row in audit(trials):
-        print(line(row), flush=True)
-        yield row
-
-
 def _stability(chosen: argparse.Namespace) -> int:
-    scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
-    matrix = trials_of(cases_of(scene, quick=chosen.quick))
+    scenes = [scene_settings(scene).scene for scene in chosen.scenes]
+    for name, least in (("random", 1), ("seed", 0)):
+        value = getattr(chosen, name)
+        if value is not None and value < least:
+            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
+    is_random = chosen.random is not None
+    if is_random:
+        trials = random_trials(scenes, chosen.random, chosen.seed)
+    else:
+        trials = iter(trials_of(cases_of(scenes, quick=chosen.quick)))
+    runs: list[JudgedRun] = []
+    notes, is_same = list(RANDOM_NOTES if is_random else NOTES), True
     with writing(chosen.out):
-        rows = list(_audited(matrix, chosen.out, "stability"))
-        apart = invariance() if scene in (None, SCENE) else {}
-        report = stability_report(rows, apart)
+        prepare(chosen.out)
+        print(HEAD)
+        is_whole = False
+        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
+            for run in judged_runs(trials, conditions=not is_random):
+                print(line(run), flush=True)
+                runs.append(run)
+            is_whole = True
+        if is_whole and not is_random and scenes in ([], ["bar"]):
+            differences = units.invariance()
+            is_same = units.is_same(differences)
+            notes.append(units.message(differences))
+        report = StabilityReport(runs, RANDOM_TITLE if is_random else TITLE, notes)
         files = report.write(chosen.out)
     print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
-    return 0 if report.passes and is_same(apart) else 1
+    if not is_whole:
+        raise KeyboardInterrupt
+    return 0 if report.passes and is_same else 1
 
 
 def _proof(chosen: argparse.Namespace) -> int:
@@ -230,20 +247,3 @@ def _proof(chosen: argparse.Namespace) -> int:
         files = proof.write_proof(rows, chosen.out)
     print(f"{summary(rows)}\n{len(files)} files in {chosen.out}")
     return 0 if all(row.holds for row in rows) else 1
-
-
-def _survey(chosen: argparse.Namespace) -> int:
-    scenes = [scene_settings(scene).scene for scene in chosen.scenes] or list(CATALOGUE)
-    for name, least in (("runs", 1), ("seed", 0), ("row", 0)):
-        value = getattr(chosen, name)
-        if value is not None and value < least:
-            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
-    numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
-    rows: list[Audited] = []
-    with writing(chosen.out):
-        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept
-            rows.extend(_audited(draws(scenes, numbers, chosen.seed), chosen.out, "survey"))
-        report = survey_report(rows)
-        files = report.write(chosen.out)
-    print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
-    return 0 if report.passes else 1

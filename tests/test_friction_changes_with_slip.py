@@ -15,7 +15,7 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.audit.residual import kkt_residual
+from solver.study.stability.residual import kkt_residual
 
 AXIAL, BOUND = 6.6e5, 1500.0
 CHANGING = {"friction_law": "slip-dependent"}

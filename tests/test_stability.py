@@ -19,25 +19,30 @@ from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
-from solver.study.audit.audit import Audited, Verdict, audit, judge
-from solver.study.audit.cases import (
-    METHODS,
+from solver.study.quantities.finished import BROKEN
+from solver.study.quantities.finished import REFUSED as REFUSED_RUN
+from solver.study.stability.case import METHODS, Case, graded
+from solver.study.stability.outcome import (
+    Outcome,
+    condition_of_structure,
+    condition_of_substructures,
+)
+from solver.study.stability.plane_cases import PRESSED
+from solver.study.stability.report import COLOURS, COLUMNS, NOTES, TITLE, StabilityReport
+from solver.study.stability.trials import cases_of, trials_of
+from solver.study.stability.units import SAME_UP_TO, invariance, is_same
+from solver.study.stability.verdict import (
+    MUST_REFUSE,
+    NOT_WRONG,
     PASSING,
-    REFUSED,
     RIGHT,
     UNCLEAR,
     UNSOLVED,
-    Case,
-    graded,
+    JudgedRun,
+    Verdict,
+    judge,
+    judged_runs,
 )
-from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
-from solver.study.audit.outcome import Outcome
-from solver.study.audit.plane_cases import PRESSED
-from solver.study.audit.report import COLOURS
-from solver.study.audit.stability import COLUMNS, cases_of, stability_report, trials_of
-from solver.study.audit.units import SAME_UP_TO, invariance, is_same
-from solver.study.quantities.finished import BROKEN
-from solver.study.quantities.finished import REFUSED as REFUSED_RUN
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -68,7 +73,7 @@ def rows():
     """Give each quick case by one of the methods, in turns; the whole report runs all by both."""
     trials = trials_of(cases_of(quick=True))
     pairs = zip(trials[::2], trials[1::2], strict=True)
-    return list(audit([pair[place % 2] for place, pair in enumerate(pairs)]))
+    return list(judged_runs([pair[place % 2] for place, pair in enumerate(pairs)], conditions=True))
 
 
 def changed(**changes):
@@ -84,9 +89,9 @@ def test_every_quick_case_comes_to_what_is_expected(rows):
 
 def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
     for row in rows:
-        place = (row.trial.labels["group"], row.trial.labels["case"])
+        place = (row.trial.group, row.trial.case)
         if row.verdict is Verdict.REFUSED:
-            assert row.trial.labels["expected"] == REFUSED
+            assert row.trial.expected == MUST_REFUSE
             assert "is refused; allowed: " in row.outcome.advice
         elif row.verdict is Verdict.UNSOLVED:
             assert place in KNOWN_UNSOLVED
@@ -122,41 +127,42 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
     unclear = changed(doubt="the reference finds no solution", error_force=math.nan)
     refused = Outcome(REFUSED_RUN, "load = 1 is refused")
     for found, passing in (
-        (wrong, {UNSOLVED, UNCLEAR}),
-        (unclear, {UNCLEAR}),
-        (refused, {REFUSED}),
-        (GOOD, {RIGHT, UNSOLVED, UNCLEAR}),
+        (wrong, {UNSOLVED, UNCLEAR, NOT_WRONG}),
+        (unclear, {UNCLEAR, NOT_WRONG}),
+        (refused, {MUST_REFUSE, NOT_WRONG}),
+        (GOOD, {RIGHT, UNSOLVED, UNCLEAR, NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = Audited(Case("a", "b", {}, expected).trial("fast"), found)
+            row = JudgedRun(Case("a", "b", {}, expected).trial("fast"), found)
             assert row.passed is (expected in passing)
 
 
 def test_one_failure_fails_the_whole():
     right, bad = (
-        Audited(Case("a", "b").trial("fast"), found) for found in (GOOD, changed(error_force=1.0))
+        JudgedRun(Case("a", "b").trial("fast"), found) for found in (GOOD, changed(error_force=1.0))
     )
-    assert stability_report([right], {}).passes
-    assert not stability_report([right, bad], {}).passes
+    assert StabilityReport([right], TITLE, NOTES).passes
+    assert not StabilityReport([right, bad], TITLE, NOTES).passes
 
 
 def test_a_warning_breaks_a_run(monkeypatch):
     def warns(problem):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.audit.outcome.reference_of", warns)
-    (row,) = audit([Case("load", "zero", {"peak": 0.0}).trial("fast")])
+    monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
+    trial = Case("load", "zero", {"peak": 0.0}).trial("fast")
+    (row,) = judged_runs([trial], conditions=True)
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
     assert row.verdict is Verdict.WRONG
 
 
 def test_the_matrix_covers_the_ranges():
-    groups = {case.group for case in cases_of("bar")}
+    groups = {case.group for case in cases_of(["bar"])}
     assert groups >= {"k_scale", "young", "length", "friction", "pressure", "load", "relaxation"}
     assert groups >= {"substructures", "instants", "nodes", "stiffness contrast"}
     for name in ("k_scale", "young", "length"):
-        tried = [case.changes[name] for case in cases_of("bar") if case.group == name]
+        tried = [case.changes[name] for case in cases_of(["bar"]) if case.group == name]
         low, high = BarSettings.definitions()[name].bounds
         assert (min(tried), max(tried)) == (low, high)
 
@@ -236,7 +242,7 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
 def test_every_verdict_has_its_own_colour_and_words(rows):
     assert set(COLOURS) == set(Verdict)
     assert len(set(COLOURS.values())) == len(Verdict)
-    report = stability_report(rows, {})
+    report = StabilityReport(rows, TITLE, NOTES)
     found = report.counts()[1:]
     assert [verdict for verdict, _, _ in found] == list(Verdict)
     assert len({meaning for _, _, meaning in found}) == len(Verdict)
@@ -245,7 +251,7 @@ def test_every_verdict_has_its_own_colour_and_words(rows):
 
 
 def test_one_scene_alone_can_be_asked(tmp_path, capsys):
-    assert {case.scene for case in cases_of("strand")} == {"strand"}
+    assert {case.scene for case in cases_of(["strand"])} == {"strand"}
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
     assert "In other units" not in capsys.readouterr().out
     assert main(["stability", "cable", "--out", str(tmp_path)]) == 2
@@ -266,7 +272,9 @@ def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_written_to_is_refused_before_the_runs(
     tmp_path, monkeypatch, capsys, obstacle
 ):
-    monkeypatch.setattr(report_commands, "audit", lambda *rest: pytest.fail("it ran"))
+    monkeypatch.setattr(
+        report_commands, "judged_runs", lambda *rest, **options: pytest.fail("it ran")
+    )
     folder = tmp_path / "out"
     if obstacle == "page is a folder":
         (folder / "stability.html").mkdir(parents=True)

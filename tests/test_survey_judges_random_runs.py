@@ -1,4 +1,4 @@
-"""A survey draws wide settings, alike each time, and knows what is called converged wrongly."""
+"""Random runs have wide settings, alike each time; it is known what is called converged wrongly."""
 
 from __future__ import annotations
 
@@ -12,17 +12,19 @@ import numpy as np
 import pytest
 from ropes import SMALL_ROPE
 
+from solver import report_commands
 from solver.cli import main
 from solver.files import settings_from_command
 from solver.latin import Ending
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
-from solver.study.audit.audit import Audited, Verdict, judge
-from solver.study.audit.draws import KEPT, LARGEST_FIELD, draw, is_foolish
-from solver.study.audit.outcome import AT_ROUNDING, Outcome
-from solver.study.audit.residual import kkt_residual
-from solver.study.audit.survey import drawn, survey_report, table_of_missed
 from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.study.stability.draws import KEPT, LARGEST_FIELD, draw, is_foolish
+from solver.study.stability.outcome import AT_ROUNDING, Outcome
+from solver.study.stability.report import RANDOM_NOTES, RANDOM_TITLE, StabilityReport, missed_table
+from solver.study.stability.residual import kkt_residual
+from solver.study.stability.trials import random_trial
+from solver.study.stability.verdict import JudgedRun, Verdict, judge
 
 SMALL = {
     "bar": {"elements": 20, "substructures": 4, "instants": 11},
@@ -87,7 +89,7 @@ def test_tables_with_peaks_between_instants_are_drawn(scene):
 def test_the_command_that_repeats_a_row_gives_the_same_settings(scene):
     for number in range(30):
         settings = draw(scene, 5, number)
-        words = shlex.split(drawn(settings, 5, number).again[1])
+        words = shlex.split(random_trial(settings, 5, number).command)
         assert words[:5] == ["python", "-m", "solver", "run", scene]
         assert settings_from_command(scene, words[6::2])[0].values() == settings.values()
 
@@ -127,8 +129,8 @@ def test_a_larger_accuracy_allows_a_larger_error_of_the_force():
     settings = CATALOGUE["bar"].settings
     found = changed(error_force=0.015, error_displacement=0.5)
     for accuracy, verdict in ((0.1, Verdict.RIGHT), (0.01, Verdict.WRONG)):
-        trial = drawn(settings.checked({"accuracy": accuracy}), 1, 1)
-        assert Audited(trial, found).verdict is verdict
+        trial = random_trial(settings.checked({"accuracy": accuracy}), 1, 1)
+        assert JudgedRun(trial, found).verdict is verdict
 
 
 def test_an_error_of_the_displacement_counts_where_it_is_limited():
@@ -152,35 +154,43 @@ def test_the_equations_alone_tell_a_solution_from_what_is_near_it(scene):
 
 
 def test_the_command_writes_a_table_and_a_page_of_its_own(tmp_path, capsys):
-    assert main(["survey", "bar", "--runs", "3", "--seed", "1", "--out", str(tmp_path)]) == 0
-    table, page = (tmp_path / f"survey.{kind}" for kind in ("csv", "html"))
+    command = ["stability", "bar", "--random", "3", "--seed", "1", "--out", str(tmp_path)]
+    assert main(command) == 0
+    table, page = (tmp_path / f"stability.{kind}" for kind in ("csv", "html"))
     with table.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert [row["row"] for row in rows] == ["0", "1", "2"]
+    assert [row["case"] for row in rows] == [f"row {number} of seed 1" for number in range(3)]
     text = page.read_text(encoding="utf-8")
     assert text.count("<tr>") >= 4
     assert "http" not in text
     assert "median iterations" in capsys.readouterr().out
-    main(["survey", "bar", "--row", "1", "--seed", "1", "--out", str(tmp_path)])
-    with table.open(encoding="utf-8", newline="") as file:
-        (alone,) = csv.DictReader(file)
-    assert alone["settings"] == rows[1]["settings"]
-    assert alone["error_force"] == rows[1]["error_force"]
+
+
+def test_a_random_report_that_is_ended_keeps_what_is_done(tmp_path, monkeypatch):
+    def end(trials, **options):
+        yield JudgedRun(next(trials), GOOD)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(report_commands, "judged_runs", end)
+    assert main(["stability", "bar", "--random", "3", "--out", str(tmp_path)]) == 130
+    with (tmp_path / "stability.csv").open(encoding="utf-8", newline="") as file:
+        assert len(list(csv.DictReader(file))) == 1
 
 
 def test_numbers_without_sense_are_refused(tmp_path, capsys):
-    assert main(["survey", "--runs", "0", "--out", str(tmp_path)]) == 2
-    assert "--runs = 0 is refused" in capsys.readouterr().err
+    assert main(["stability", "--random", "0", "--out", str(tmp_path)]) == 2
+    assert "--random = 0 is refused" in capsys.readouterr().err
 
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
-    wrong = Audited(drawn(draw("bar", 9, 4), 9, 4), changed(error_force=0.5, error_displacement=1))
-    right = Audited(drawn(draw("bar", 9, 5), 9, 5), changed(error_force=0.0))
-    report = survey_report([wrong, right])
+    wrong = JudgedRun(
+        random_trial(draw("bar", 9, 4), 9, 4), changed(error_force=0.5, error_displacement=1)
+    )
+    right = JudgedRun(random_trial(draw("bar", 9, 5), 9, 5), changed(error_force=0.0))
+    report = StabilityReport([wrong, right], RANDOM_TITLE, RANDOM_NOTES)
     text = "\n".join(report.lines())
-    assert "survey bar --seed 9 --row 4" in text
-    assert wrong.trial.again[1] in text
-    assert "--row 5" not in text
+    assert wrong.trial.command in text
+    assert right.trial.command not in text
     assert "1 of 2 runs pass" in text
     assert not report.passes
     counted = {verdict: runs for verdict, runs, _ in report.counts()[1:]}
@@ -191,11 +201,13 @@ def test_runs_that_did_not_converge_are_counted_by_whether_a_status_step_may_end
     settings = CATALOGUE["bar"].settings
     missed = changed(ending=Ending.EXHAUSTED)
     rows = [
-        Audited(drawn(settings.checked({"method": "paper"}), 9, 4), missed),
-        Audited(drawn(settings.checked({}), 9, 5), GOOD),
-        Audited(drawn(settings.checked({}), 9, 6), Outcome(REFUSED, "peak = 1 is refused")),
+        JudgedRun(random_trial(settings.checked({"method": "paper"}), 9, 4), missed),
+        JudgedRun(random_trial(settings.checked({}), 9, 5), GOOD),
+        JudgedRun(
+            random_trial(settings.checked({}), 9, 6), Outcome(REFUSED, "peak = 1 is refused")
+        ),
     ]
-    assert [row[1:] for row in table_of_missed(rows)[1:]] == [
+    assert [row[1:] for row in missed_table(rows)[1:]] == [
         ["1", "0", "0.0 %", "0"],
         ["1", "1", "100.0 %", "1"],
         ["2", "1", "50.0 %", "1"],

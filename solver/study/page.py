@@ -105,3 +105,12 @@ def plain_table(rows: Sequence[Sequence[str]]) -> str:
     """Write a table of texts, whose first row is its head."""
     head, *rest = rows
     return table(head, ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest])
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> str:
+    """Set a table in columns for a console."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )

@@ -15,8 +15,9 @@ from solver.prepared import print_tables
 from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
 from solver.study.other_programs.public_solvers import PUBLIC, peers
+from solver.study.page import aligned
 from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.study_report import aligned, conditions, table, winners
+from solver.study.speed.study_report import conditions, table, winners
 
 
 def main() -> int:

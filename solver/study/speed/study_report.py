@@ -109,15 +109,6 @@ def growth_table(found: Sequence[Growth]) -> list[Row]:
     return rows
 
 
-def aligned(rows: Sequence[Row]) -> str:
-    """Set a table in columns for a console."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    )
-
-
 def write_curves(study: Study, folder: Path) -> list[Path]:
     """Write `curves.csv` and `levels.csv` (s; errors as fractions).
 

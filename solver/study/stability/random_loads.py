@@ -1,4 +1,4 @@
-"""Random loads for a survey, up to ten times what friction carries."""
+"""Random loads, up to ten times what friction carries."""
 
 from __future__ import annotations
 

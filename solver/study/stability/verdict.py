@@ -1,15 +1,17 @@
-"""Runs that are audited: what each has to come to, and its verdict by one rule."""
+"""Runs that are judged: what each may come to, and its verdict by one rule."""
 
 from __future__ import annotations
 
+import json
 import math
+import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
 from solver.latin import Ending
-from solver.study.audit.outcome import AT_ROUNDING, Outcome, run
 from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.study.stability.outcome import AT_ROUNDING, Outcome, run
 
 
 class Verdict(StrEnum):
@@ -32,7 +34,19 @@ MEANING: dict[str, str] = {
     Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
     "not finite, or ended in a warning or an exception",
 }
-SOUND = frozenset(Verdict) - {Verdict.WRONG}
+RIGHT = "right answer"
+UNSOLVED = "right answer, or said not to be"
+MUST_REFUSE = "refused in words"
+UNCLEAR = "right answer, or one that cannot be judged"
+NOT_WRONG = "anything but a wrong answer"
+PASSING = {
+    RIGHT: {Verdict.RIGHT},
+    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
+    MUST_REFUSE: {Verdict.REFUSED},
+    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    NOT_WRONG: set(Verdict) - {Verdict.WRONG},
+}
+"""Verdicts with which a run passes, by what is expected of it."""
 
 
 @dataclass(frozen=True)
@@ -42,37 +56,39 @@ class Trial:
     Attributes
     ----------
     scene, method
-        Of the run, as its tables name them.
-    title
-        What tells it from others.
+        Of the run, as tables name them.
+    group, case
+        What is extreme, and how much; or that the run is random, and which one.
     values
         Settings that differ from the scene's own.
+    expected
+        A key of `PASSING`.
     error_force, error_displacement
         Errors up to which its answer is right.
-    passing
-        Verdicts that it may have.
-    conditions
-        Whether its condition numbers are wanted.
-    labels
-        What stands in its table besides.
-    again
-        Commands that repeat it.
     """
 
     scene: str
     method: str
-    title: str
+    group: str
+    case: str
     values: Mapping[str, object]
+    expected: str
     error_force: float
-    error_displacement: float
-    passing: frozenset[Verdict]
-    conditions: bool
-    labels: Mapping[str, object]
-    again: tuple[str, ...] = ()
+    error_displacement: float = math.inf
+
+    @property
+    def command(self) -> str:
+        """The command that makes the run."""
+        texts = {
+            name: value if isinstance(value, str) else json.dumps(value)
+            for name, value in self.values.items()
+        }
+        changes = (f"--set {shlex.quote(f'{name}={text}')}" for name, text in texts.items())
+        return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
 @dataclass(frozen=True)
-class Audited:
+class JudgedRun:
     """A trial, what it came to, and what that is worth."""
 
     trial: Trial
@@ -86,13 +102,21 @@ class Audited:
     @property
     def passed(self) -> bool:
         """Whether it came to what it has to."""
-        return self.verdict in self.trial.passing
+        return self.verdict in PASSING[self.trial.expected]
 
 
-def audit(trials: Iterable[Trial]) -> Iterator[Audited]:
-    """Run trials, and yield each as soon as it is done."""
+def judged_runs(trials: Iterable[Trial], *, conditions: bool) -> Iterator[JudgedRun]:
+    """Run trials, and yield each as soon as it is done.
+
+    Parameters
+    ----------
+    trials
+        What is to be run.
+    conditions
+        Whether condition numbers are wanted, which take their time.
+    """
     for trial in trials:
-        yield Audited(trial, run(trial.scene, trial.values, conditions=trial.conditions))
+        yield JudgedRun(trial, run(trial.scene, trial.values, conditions=conditions))
 
 
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:

@@ -1,4 +1,4 @@
-"""Stiff and extreme cases: what one is, and what makes one."""
+"""Stiff and extreme cases: what one is, and loads and sections that many share."""
 
 from __future__ import annotations
 
@@ -8,19 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solver.definitions import Pairs
-from solver.study.audit.audit import Trial, Verdict
+from solver.study.stability.verdict import RIGHT, Trial
 
-RIGHT = "right answer"
-UNSOLVED = "right answer, or said not to be"
-REFUSED = "refused in words"
-UNCLEAR = "right answer, or one that cannot be judged"
-PASSING = {
-    RIGHT: frozenset({Verdict.RIGHT}),
-    UNSOLVED: frozenset({Verdict.RIGHT, Verdict.UNSOLVED}),
-    REFUSED: frozenset({Verdict.REFUSED}),
-    UNCLEAR: frozenset({Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR}),
-}
-"""What may come of a case, by what is expected of it."""
 PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 RIGHT_UP_TO = 1e-6
@@ -39,7 +28,7 @@ class Case:
     changes
         Settings that differ from the scene's own, beside `PRECISE`.
     expected
-        `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its digits; `REFUSED`
+        `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its digits; `MUST_REFUSE`
         where there is no solution; `UNCLEAR` where friction is so large that there may be several.
     quick
         Whether it is one of the few for a short check.
@@ -53,22 +42,14 @@ class Case:
     scene: str = "bar"
 
     def trial(self, method: str) -> Trial:
-        """Give its run by one of `METHODS`."""
-        return Trial(
-            self.scene,
-            method,
-            f"{self.group}: {self.name}",
-            {**PRECISE, **METHODS[method], **self.changes},
-            RIGHT_UP_TO,
-            RIGHT_UP_TO,
-            PASSING[self.expected],
-            conditions=True,
-            labels={"group": self.group, "case": self.name, "expected": self.expected},
-        )
+        """Its run by one of `METHODS`."""
+        values = {**PRECISE, **METHODS[method], **self.changes}
+        what = self.scene, method, self.group, self.name
+        return Trial(*what, values, self.expected, RIGHT_UP_TO, RIGHT_UP_TO)
 
 
 def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
-    """Give what makes cases of a scene which have some settings in common."""
+    """A function that makes cases of a scene which have some settings in common."""
 
     def case(
         group: str,
@@ -83,7 +64,7 @@ def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
 
 
 def reversals(instants: int, peak: float) -> Pairs:
-    """Give a load of full size that turns at every instant of a second, (s, N)."""
+    """A load of full size that turns at every instant of a second, (s, N)."""
     step = 1.0 / (instants - 1)
     return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
 
@@ -93,7 +74,7 @@ JUMP_WIDTH = 1e-9
 
 
 def graded(contrast: float, elements: int) -> Pairs:
-    """Give a section that grows by equal factors from element to element of a bar of 1 m.
+    """A section that grows by equal factors from element to element of a bar of 1 m.
 
     Parameters
     ----------

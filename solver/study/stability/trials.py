@@ -1,0 +1,66 @@
+"""Runs that are made to be judged: stiff and extreme cases of all scenes, and random runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+from solver.study.stability.case import METHODS, Case
+from solver.study.stability.draws import draw
+from solver.study.stability.plane_cases import plane_cases
+from solver.study.stability.rod_cases import bar_cases, rope_cases, strand_cases
+from solver.study.stability.verdict import NOT_WRONG, Trial
+
+RANDOM = "random"
+"""Group of random runs."""
+
+
+def cases_of(scenes: Sequence[str] = (), *, quick: bool = False) -> list[Case]:
+    """Cases of some scenes, or of all; with `quick` only the few for a short check."""
+    return [
+        case
+        for case in (*bar_cases(), *strand_cases(), *rope_cases(), *plane_cases())
+        if case.scene in (scenes or CATALOGUE) and (case.quick or not quick)
+    ]
+
+
+def trials_of(cases: Sequence[Case]) -> list[Trial]:
+    """Runs of cases, each by both methods."""
+    return [case.trial(method) for case in cases for method in METHODS]
+
+
+def random_trials(scenes: Sequence[str], number: int, seed: int) -> Iterator[Trial]:
+    """Draw random runs of scenes in turn; row n is of scene n modulo their number.
+
+    Parameters
+    ----------
+    scenes
+        Names of the catalogue; all without.
+    number, seed
+        Of the runs, and of their draws.
+    """
+    names = list(scenes or CATALOGUE)
+    for row in range(number):
+        yield random_trial(draw(names[row % len(names)], seed, row), seed, row)
+
+
+def random_trial(settings: Settings, seed: int, row: int) -> Trial:
+    """The run of settings that were drawn; right are errors of its force within its accuracy."""
+    return Trial(
+        settings.scene,
+        _method_name(settings),
+        RANDOM,
+        f"row {row} of seed {seed}",
+        settings.changed(),
+        NOT_WRONG,
+        settings.accuracy,
+    )
+
+
+def _method_name(settings: Settings) -> str:
+    """Name of the method; with bases, or with options of its own, that is said."""
+    if settings.linear_stage == "pgd":
+        return "pgd"
+    own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
+    return f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
