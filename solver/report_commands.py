@@ -22,7 +22,6 @@ from solver.study.figures.figure_page import write_figures
 from solver.study.figures.paper_figures import paper_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
-from solver.study.proof.sections import summary
 from solver.study.speed.crossover import crossover
 from solver.study.speed.crossover_report import crossover_notes, crossover_table
 from solver.study.speed.error_against_time import error_against_time
@@ -97,7 +96,7 @@ def add_reports(commands: Any) -> None:
     stable.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
     stable.add_argument("--seed", type=int, default=1, help="of the random runs")
     stable.set_defaults(command=_stability)
-    known = commands.add_parser("proof", help="closed forms beside what is found, row by row")
+    known = commands.add_parser("proof", help="what is known beside what is found, row by row")
     known.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
     known.set_defaults(command=_proof)
 
@@ -241,9 +240,9 @@ def _proof(chosen: argparse.Namespace) -> int:
     rows = []
     with writing(chosen.out):
         print(proof.HEAD)
-        for row in proof.proven(chosen.out, list(proof.cases())):
+        for row in proof.proven(chosen.out, proof.cases()):
             print(proof.line(row), flush=True)
             rows.append(row)
         files = proof.write_proof(rows, chosen.out)
-    print(f"{summary(rows)}\n{len(files)} files in {chosen.out}")
+    print(f"{proof.summary(rows)}\n{len(files)} files in {chosen.out}")
     return 0 if all(row.holds for row in rows) else 1

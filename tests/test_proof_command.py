@@ -5,13 +5,12 @@ from __future__ import annotations
 import csv
 import json
 import re
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from urllib.parse import parse_qsl
 
-import numpy as np
 import pytest
 
 import solver.reference.closed_forms as closed_forms
@@ -19,10 +18,8 @@ from app.link import read as read_address
 from solver.cli import main
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
-from solver.scenes.block import block
-from solver.study.proof import by_getfem, others, published, report
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_field
-from solver.study.speed.error_against_time import PeerError
+from solver.study.proof import published, report
+from solver.study.proof.case import Answer, KnownCase, KnownNumber
 
 CASES = list(report.cases())
 CLOSED_FORMS = {
@@ -43,8 +40,8 @@ def read(folder: Path) -> list[dict[str, str]]:
 def wrong(case: KnownCase) -> KnownCase:
     """Give a case that claims one more in a hundred than is true."""
 
-    def numbers(answer: object) -> Iterator[KnownNumber]:
-        for number in case.numbers(answer):  # type: ignore[arg-type]
+    def numbers(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+        for number in case.numbers(settings, answer):
             yield replace(number, exact=1.01 * number.exact)
 
     return replace(case, numbers=numbers)
@@ -76,12 +73,11 @@ def test_the_page_has_every_row_and_loads_nothing(folder: Path) -> None:
     numbers = {(row["case"], row["quantity"]) for row in rows}
     assert page.count("<tr>") == len(numbers) + len(CASES) + len(parts)
     assert page.count(">holds</td>") == len(numbers)
-    assert re.findall("<h2>(.*)</h2>", page) == [part.value for part in ProofPart]
-    assert parts >= {ProofPart.CLOSED_FORMS.value, ProofPart.PUBLISHED.value}
+    assert set(re.findall("<h2>(.*?)</h2>", page)) == parts == {"Closed forms", "Published numbers"}
     assert not re.search(r"<(script|link|img|iframe)", page)
 
 
-@pytest.mark.parametrize("case", [one for one in CASES if one.address], ids=lambda one: one.title)
+@pytest.mark.parametrize("case", CASES, ids=lambda one: one.title)
 def test_an_address_opens_the_run_of_its_row(case: KnownCase) -> None:
     place, complaint = read_address(case.address)
     settings = place.settings
@@ -132,74 +128,14 @@ def test_every_closed_form_that_has_a_file_of_its_own_is_used() -> None:
         assert any(f"{closed_forms.__name__}.{name}" in source for source in sources), name
 
 
-def test_a_program_that_is_not_installed_is_said_to_be_absent(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    gone = [replace(one, module="not_there") for one in others.PUBLIC]
-    monkeypatch.setattr(others, "PUBLIC", gone)
-    monkeypatch.setattr(by_getfem, "installed", lambda: None)
-    assert not list(others.other_cases())
-    _, page = report.write_proof([], tmp_path)
-    assert "Not installed: PIQP, OSQP, DAQP, Clarabel, GetFEM." in page.read_text(encoding="utf-8")
-
-
-def test_a_field_is_as_far_off_as_where_it_is_farthest_off() -> None:
-    theirs = np.zeros((2, 5, 3))
-    theirs[:, 1, 2] = 3.0, -4.0
-    ours = theirs.copy()
-    ours[:, 4, 0] = 0.3, 0.4
-    number = of_field("displacement", "m", theirs, ours)
-    assert (number.exact, number.found) == (5.0, 5.0)
-    assert number.deviation == pytest.approx(0.1)
-    assert of_field("displacement", "m", theirs, theirs).deviation == 0.0
-    assert np.isnan(of_field("displacement", "m", theirs * np.nan, ours).deviation)
-
-
-def test_getfem_finds_the_same_at_all_nodes_and_instants() -> None:
-    there = by_getfem.installed()
-    if there is None:
-        pytest.skip("GetFEM is not installed")
-    settings = CATALOGUE["block"].settings.checked({**others.SHEARED, "plane": "stress"})
-    theirs = by_getfem.solve_block(block(settings), there.python)
-    problem = discretise(settings)
-    reference = reference_of(problem)
-    ours, inside = reference.contact("support"), problem.inside
-    assert ours.normal_force is not None
-    assert inside is not None
-    scale = ours.normal_force.max()
-    assert np.abs(theirs.normal_force - ours.normal_force).max() < 1e-9 * scale
-    assert np.abs(theirs.tangential_force - ours.tangential_force).max() < 1e-9 * scale
-    moved = inside.displacement(reference.displacement, slice(None))
-    for component, one in enumerate(theirs.displacement):
-        assert np.abs(one - moved[:, component]).max() < 1e-9 * np.abs(moved).max()
-
-
-def test_a_program_that_gives_up_proves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def give_up(*_given: object) -> object:
-        raise PeerError("gave up at instant 1: no more digits")
-
-    monkeypatch.setattr(others, "solve_by", give_up)
-    monkeypatch.setattr(others, "PUBLIC", [replace(others.PUBLIC[0], module="numpy")])
-    broken = by_getfem.Installed(sys.executable, "0")
-    monkeypatch.setattr(by_getfem, "installed", lambda: broken)
-    monkeypatch.setattr(by_getfem, "PROGRAM", tmp_path / "nowhere.py")
-    found = list(others.other_cases())
-    assert len(found) == 2
-    for case in found:
-        rows = list(report.rows_of(case))
-        assert rows
-        assert not any(row.holds for row in rows)
-
-
 def test_slip_in_an_infinite_body_is_nearer_on_a_finer_mesh(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def deviation() -> float:
         *_, case = published.published_cases()
-        answer = Answer(problem := case.problem(), reference_of(problem))
-        return max(number.deviation for number in case.numbers(answer))
+        problem = discretise(case.settings)
+        answer = Answer(problem, reference_of(problem))
+        return max(number.deviation for number in case.numbers(case.settings, answer))
 
     coarse = deviation()
     fine = {"elements": 192, "elements_up": 96, "substructures": 16, "substructures_up": 8}

@@ -1,17 +1,17 @@
-"""Public QP solvers, where they are installed, agree with the incremental solver."""
+"""Public QP solvers and GetFEM, where they are installed, agree with the incremental solver."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import pytest
+from benchmarks import by_getfem, public_solvers
+from benchmarks.public_solvers import PUBLIC, solve_by
 
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
-from solver.scenes import discretise
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
-from solver.study.other_programs import public_solvers
-from solver.study.other_programs.public_solvers import PUBLIC, solve_by
 from solver.study.speed.error_against_time import Peer, PeerError, error_against_time
 
 WHAT_THEY_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
@@ -33,6 +33,15 @@ def test_public_solvers_agree_with_the_incremental_solver(public, changes):
     fields = solve_by(public, problem, public.tolerances[-1])
     assert distance.of_friction_force(fields) < WHAT_THEY_REACH[public.name]
     assert distance.of_displacement(fields) < WHAT_THEY_REACH[public.name]
+
+
+def test_getfem_finds_the_same_at_all_nodes_and_instants():
+    python = by_getfem.interpreter()
+    if python is None:
+        pytest.skip("GetFEM is not installed")
+    settings = CATALOGUE["block"].settings.checked({**by_getfem.SHEARED, "plane": "stress"})
+    for name, difference in by_getfem.differences(settings, python).items():
+        assert difference < 1e-9, name
 
 
 def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):

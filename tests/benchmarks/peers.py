@@ -2,7 +2,7 @@
 
 `python tests/benchmarks/peers.py bar --set elements=100`
 
-How they are given the problem: `solver/study/other_programs/public_solvers.py`.
+How they are given the problem: `tests/benchmarks/public_solvers.py`.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ from __future__ import annotations
 import argparse
 import sys
 
+from public_solvers import PUBLIC, peers
+
 from solver.files import settings_from_command
 from solver.prepared import print_tables
 from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
-from solver.study.other_programs.public_solvers import PUBLIC, peers
 from solver.study.page import aligned
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.study_report import conditions, table, winners
