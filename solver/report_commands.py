@@ -12,21 +12,13 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.prepared import print_tables
-from solver.study.benchmarks import cycles_problems
-from solver.study.benchmarks.ahead_problems import GROUPS, chosen_problems
-from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
-from solver.study.benchmarks.cycles_report import measured, write_cycles
-from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
-from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.figures.figure_page import write_figures
 from solver.study.figures.paper_figures import paper_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
-from solver.study.speed.crossover import crossover
-from solver.study.speed.crossover_report import crossover_notes, crossover_table
+from solver.study.speed.crossover import crossover, notes, ratio_table
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.growth import growth
-from solver.study.speed.study_page import write_study
 from solver.study.speed.study_report import (
     conditions,
     growth_table,
@@ -34,6 +26,7 @@ from solver.study.speed.study_report import (
     winners,
     write_curves,
     write_growth,
+    write_study,
 )
 from solver.study.stability import units
 from solver.study.stability.report import (
@@ -55,23 +48,6 @@ REFUSED = 2
 
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
-    cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
-    cost.add_argument("--repeats", type=int, help="whose median is taken; 7, or 3 of long ones")
-    kinds = cost.add_mutually_exclusive_group()
-    kinds.add_argument(
-        "--whole", action="store_true", help="what runs take against what they say before, instead"
-    )
-    kinds.add_argument(
-        "--ahead", action="store_true", help="LATIN beside the incremental solver, instead"
-    )
-    kinds.add_argument(
-        "--cycles", action="store_true", help="speed-up over the number of cycles, instead"
-    )
-    both = "of --ahead and --cycles:"
-    cost.add_argument("--only", choices=GROUPS, help=f"{both} these problems alone")
-    cost.add_argument("--large", action="store_true", help=f"{both} those of minutes too")
-    cost.add_argument("--out", type=Path, metavar="DIR", help=f"{both} write files there")
-    cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
     figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
     figures.set_defaults(command=_figures)
@@ -101,11 +77,6 @@ def add_reports(commands: Any) -> None:
     known.set_defaults(command=_proof)
 
 
-def _check_repeats(chosen: argparse.Namespace) -> None:
-    if chosen.repeats < 1:
-        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
-
-
 @contextlib.contextmanager
 def writing(folder: Path) -> Iterator[None]:
     """Make a folder for files; refuse one that cannot be made or written to, before all work."""
@@ -118,52 +89,6 @@ def writing(folder: Path) -> Iterator[None]:
     except OSError as problem:
         allowed_folder = "a folder that can be made and written to"
         raise SettingError("--out", str(folder), allowed_folder, why(problem)) from None
-
-
-def _benchmark(chosen: argparse.Namespace) -> int:
-    is_long = chosen.ahead or chosen.cycles
-    chosen.repeats = (3 if is_long else 7) if chosen.repeats is None else chosen.repeats
-    _check_repeats(chosen)
-    if is_long:
-        return _ahead(chosen) if chosen.ahead else _cycles(chosen)
-    for name in ("only", "large", "out"):
-        if value := getattr(chosen, name):
-            raise SettingError(
-                f"--{name}", str(value), "only with --ahead or --cycles", "leave it out"
-            )
-    if chosen.whole:
-        print_whole_cost()
-        return 0
-    print_iteration_cost(chosen.repeats)
-    print_overheads(chosen.repeats)
-    return 0
-
-
-def _ahead(chosen: argparse.Namespace) -> int:
-    problems = chosen_problems(chosen.only, with_large=chosen.large)
-    if chosen.out is None:
-        print_ahead(problems, chosen.repeats)
-        return 0
-    with writing(chosen.out):
-        write_ahead(print_ahead(problems, chosen.repeats), chosen.out / "ahead.csv")
-    return 0
-
-
-def _cycles(chosen: argparse.Namespace) -> int:
-    problems = [one for one in cycles_problems.PROBLEMS if chosen.only in (None, one.group)]
-    if not problems:
-        allowed = " or ".join(cycles_problems.GROUPS)
-        raise SettingError("--only", chosen.only, f"with --cycles {allowed}", "choose one of them")
-    numbers = cycles_problems.MANY if chosen.large else cycles_problems.FEW
-    if chosen.out is None:
-        measured(problems, numbers, chosen.repeats)
-        return 0
-    with writing(chosen.out):
-        files, note = write_cycles(measured(problems, numbers, chosen.repeats), chosen.out)
-    if note:
-        print(note)
-    print(f"{len(files)} files in {chosen.out}")
-    return 0
 
 
 def _figures(chosen: argparse.Namespace) -> int:
@@ -180,7 +105,8 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 def _study(chosen: argparse.Namespace) -> int:
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    _check_repeats(chosen)
+    if chosen.repeats < 1:
+        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
     print_tables(tables)
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
@@ -195,7 +121,7 @@ def _study(chosen: argparse.Namespace) -> int:
     print(aligned(winners(found)))
     if sizes:
         print(f"\n{aligned(growth_table(sizes))}")
-    print("", aligned(crossover_table(who)), *crossover_notes(who), sep="\n")
+    print("", aligned(ratio_table(who)), *notes(who), sep="\n")
     if note:
         print(note)
     print(f"{len(files)} files in {chosen.out}")

@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import pytest
 from benchmarks import by_getfem, public_solvers
-from benchmarks.public_solvers import PUBLIC, solve_by
+from benchmarks.public_solvers import PUBLIC, PeerError, solve_by
 
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
-from solver.study.speed.error_against_time import Peer, PeerError, error_against_time
 
 WHAT_THEY_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
 
@@ -51,21 +50,3 @@ def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):
         solve_by(
             idle, discretise(BarSettings.checked({"method": "paper", "substructures": 2})), 1.0
         )
-
-
-def test_other_solvers_stand_in_a_study_with_what_they_said_where_they_gave_up():
-    settings = BarSettings.checked(
-        {"elements": 6, "instants": 5, "substructures": 2, "max_iterations": 5}
-    )
-
-    def exact_or_nothing(problem, tolerance):
-        if tolerance < 0.1:
-            raise PeerError("gave up at instant 1: no more digits")
-        return incremental(problem)
-
-    study = error_against_time(settings, 1, peers=[Peer("other", (0.5, 1e-9), exact_or_nothing)])
-    *_, found = study.courses
-    assert (found.method, found.kind, list(found.steps)) == ("other", "peer", [0.5])
-    assert found.error_force[0] < 1e-9
-    assert found.seconds[0] > 0.0
-    assert study.troubles == ("other at tolerance 1e-09 gave up at instant 1: no more digits.",)

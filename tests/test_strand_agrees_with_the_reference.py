@@ -129,6 +129,6 @@ def test_the_command_line_knows_the_errors_of_strands(change, capsys):
 def test_a_study_of_strands_compares_all_forms_with_the_reference():
     settings = options(elements=12, instants=7, peak=300.0)
     study = error_against_time(settings, repeats=1)
-    assert [course.method for course in study.courses] == [*FORMS, INCREMENTAL]
-    best = min(course.error_force.min() for course in study.courses if course.kind == "latin")
+    assert [course.method for course in study.curves] == [*FORMS, INCREMENTAL]
+    best = min(course.error_force.min() for course in study.curves if course.kind == "latin")
     assert best <= GOAL

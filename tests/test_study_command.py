@@ -30,8 +30,7 @@ from solver.study.speed.error_against_time import (
     error_against_time,
 )
 from solver.study.speed.growth import MEASURED, Growth, Size, growth
-from solver.study.speed.study_panels import error_panels
-from solver.study.speed.study_report import growth_table, table, winners
+from solver.study.speed.study_report import error_panels, growth_table, table, winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
@@ -60,13 +59,13 @@ def measured(tmp_path_factory):
     return folder, kept[0]
 
 
-def course(method, kind, seconds, errors):
+def course(method, seconds, errors):
     steps = np.arange(1.0, len(seconds) + 1.0)
-    return ErrorCurve(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
+    return ErrorCurve(method, steps, np.array(seconds), np.array(errors), np.array(errors))
 
 
 def study_of(*courses):
-    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses, ())
+    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses)
 
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
@@ -98,14 +97,14 @@ def test_the_curves_have_every_method_with_times_that_increase(measured):
 
 
 def test_the_first_iteration_pays_for_the_set_up(measured):
-    for one in measured[1].courses:
+    for one in measured[1].curves:
         assert one.seconds.min() > 0.0
         if one.kind == "latin":
             assert one.seconds[0] > one.seconds_per_iteration
 
 
 def test_accelerated_forms_end_below_a_millionth(measured):
-    for one in measured[1].courses:
+    for one in measured[1].curves:
         if "Anderson" in one.method:
             assert one.error_force[-1] <= 1e-6
             assert one.error_displacement[-1] <= 1e-6
@@ -116,7 +115,7 @@ def test_one_clock_bills_all_methods(monkeypatch):
     monkeypatch.setattr(time, "perf_counter", lambda: next(seconds))
     monkeypatch.setattr("solver.study.speed.growth.MEASURED", MEASURED[:1])
     settings = BarSettings.checked({"elements": 6, "instants": 6, "substructures": 3})
-    for one in error_against_time(settings, 1).courses:
+    for one in error_against_time(settings, 1).curves:
         assert (one.seconds >= 1.0).all()
     sizes = [size for one in growth(settings) if one.setting == "instants" for size in one.sizes]
     assert all(size.seconds >= 1.0 for size in sizes)
@@ -147,8 +146,8 @@ def test_the_table_names_the_first_of_the_levels(measured):
 
 def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
     study = study_of(
-        course("LATIN multiscale", "latin", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
-        course(INCREMENTAL, "incremental", [0.02], [0.0]),
+        course("LATIN multiscale", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
+        course(INCREMENTAL, [0.02], [0.0]),
     )
     head, coarse, *_, fine = winners(study)
     assert head[-1] == f"LATIN / {INCREMENTAL}"
@@ -158,8 +157,8 @@ def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
 
 def test_where_latin_wins_or_never_arrives_the_report_says_so():
     study = study_of(
-        course("LATIN multiscale", "latin", [0.01, 0.02], [0.05, 0.005]),
-        course(INCREMENTAL, "incremental", [0.04], [0.0]),
+        course("LATIN multiscale", [0.01, 0.02], [0.05, 0.005]),
+        course(INCREMENTAL, [0.04], [0.0]),
     )
     _, first, second, third, _ = winners(study)
     assert first == ["10 %", "LATIN multiscale", "10", "LATIN multiscale", "10", "0.25"]
@@ -264,10 +263,9 @@ def test_the_report_states_the_threads_that_the_command_line_sets(given, stated)
 
 
 def test_every_method_of_a_study_has_a_color_of_its_own():
-    names = [(name, "latin") for name in FORMS]
-    names += [(INCREMENTAL, "incremental"), *((f"other {number}", "peer") for number in range(4))]
-    courses = tuple(course(name, kind, [0.1, 0.2], [0.1, 0.01]) for name, kind in names)
-    for panel in error_panels(Study(BarSettings.checked({"method": "paper"}), 1, "", courses, ())):
+    names = [*FORMS, INCREMENTAL]
+    curves = [course(name, [0.1, 0.2], [0.1, 0.01]) for name in names]
+    for panel in error_panels(study_of(*curves)):
         hues = [curve.hue for curve in panel.curves]
         assert len(set(hues)) == len(hues) == len(names)
         assert max(hues) <= len(HUES)

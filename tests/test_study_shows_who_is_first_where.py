@@ -11,8 +11,16 @@ import pytest
 from solver.reference.condensation import NoReferenceError
 from solver.scenes import CATALOGUE
 from solver.study.speed import crossover as measuring
-from solver.study.speed.crossover import FACTORS, LARGE, Crossover, Duel, crossover, equal_at
-from solver.study.speed.crossover_report import crossover_notes, crossover_table
+from solver.study.speed.crossover import (
+    FACTORS,
+    LARGE,
+    Comparison,
+    Crossover,
+    crossover,
+    equal_at,
+    notes,
+    ratio_table,
+)
 
 TINY: dict[str, dict[str, Any]] = {
     "bar": {"elements": 12, "instants": 11, "substructures": 3},
@@ -24,9 +32,9 @@ MADE = Crossover(
     "Layers",
     (),
     (
-        *(Duel(size, 41, latin, 1.0) for size, latin in ((4, 4.0), (16, 1.0), (64, 0.25))),
-        *(Duel(size, 81, latin, 1.0) for size, latin in ((4, 2.0), (16, 0.5))),
-        Duel(64, 81, math.nan, math.nan, "left out: it would take about 2 h and 3 GB"),
+        *(Comparison(size, 41, latin, 1.0) for size, latin in ((4, 4.0), (16, 1.0), (64, 0.25))),
+        *(Comparison(size, 81, latin, 1.0) for size, latin in ((4, 2.0), (16, 0.5))),
+        Comparison(64, 81, math.nan, math.nan, "left out: it would take about 2 h and 3 GB"),
     ),
 )
 
@@ -58,7 +66,7 @@ def test_all_that_makes_a_body_larger_grows_together(monkeypatch: pytest.MonkeyP
         (2.0, 12.0)
     }
     assert np.isnan(found.ratios).all()
-    assert {one.said for one in found.duels} == {"too large"}
+    assert {one.message for one in found.comparisons} == {"too large"}
 
 
 def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
@@ -68,16 +76,16 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     monkeypatch.setattr(measuring, "LONGEST", 0.0)
     found = crossover(settings)
     assert found.sizes == [1, 2, 4]
-    said = {one.size: one.said for one in found.duels}
+    said = {one.size: one.message for one in found.comparisons}
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
-    assert any("Wires 4" in line and "left out" in line for line in crossover_notes(found))
+    assert any("Wires 4" in line and "left out" in line for line in notes(found))
 
 
 def test_a_run_that_has_not_converged_is_no_answer() -> None:
-    duel = Duel(4, 41, 1.0, 2.0, "LATIN: exhausted")
-    assert math.isnan(duel.ratio)
-    assert Duel(4, 41, 1.0, 2.0).ratio == 0.5
+    comparison = Comparison(4, 41, 1.0, 2.0, "LATIN: exhausted")
+    assert math.isnan(comparison.ratio)
+    assert Comparison(4, 41, 1.0, 2.0).ratio == 0.5
 
 
 def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
@@ -88,8 +96,8 @@ def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
 
 
 def test_the_table_has_the_ratios_and_where_they_are_one() -> None:
-    head, first, second = crossover_table(MADE)
+    head, first, second = ratio_table(MADE)
     assert head[1:] == ["layers 4", "layers 16", "layers 64", "equal at"]
     assert first == ["41 instants", "4", "1", "0.25", "16"]
     assert second == ["81 instants", "2", "0.5", "-", "8"]
-    assert "2 of 5 sizes" in crossover_notes(MADE)[0]
+    assert "2 of 5 sizes" in notes(MADE)[0]
