@@ -16,7 +16,7 @@ from solver.reference.condensation import Condensation
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.study.other_programs import fclib
-from solver.study.other_programs.fclib import contacts_of, local_problem, save_fclib
+from solver.study.other_programs.fclib import contacts_of, local_problem, write_fclib
 
 SMALL = {
     "block": {"elements": 16, "elements_up": 6, "instants": 21},
@@ -89,7 +89,8 @@ def test_a_solver_of_the_file_alone_finds_the_reactions_of_the_reference(scene, 
         local = local_problem(contacts, reference, instant, scene, certified=True)
         pytest.importorskip("h5py")
         path = tmp_path / f"{instant}.hdf5"
-        save_fclib(path, local)
+        with path.open("wb") as file:
+            write_fclib(file, local)
         compliance, free, friction, solution, words = read(path)
         force = solve(compliance, free, friction) if free.any() else np.zeros_like(free)
         wanted = reference.contact_force[contacts.places, instant]
