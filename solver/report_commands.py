@@ -12,8 +12,7 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.prepared import print_tables
-from solver.study.figures.figure_page import write_figures
-from solver.study.figures.paper_figures import paper_figures
+from solver.study.figures.figure_report import paper_figures, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.speed.crossover import crossover, notes, ratio_table
@@ -96,7 +95,7 @@ def _figures(chosen: argparse.Namespace) -> int:
         figures = paper_figures()
         files, notes = write_figures(figures, chosen.out)
     for figure in figures:
-        print(f"Fig. {figure.number}: {figure.title} ({figure.verdict})")
+        print(f"{figure.heading} ({figure.verdict})")
         for found in figure.findings:
             print(f"  {'+' if found.holds else '-'} {found.text}")
     print("\n".join([*notes, f"{len(files)} files in {chosen.out}"]))

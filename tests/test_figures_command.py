@@ -13,8 +13,8 @@ import pytest
 from solver import report_commands
 from solver.cli import main
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.figures.figure_data import Finding, PaperFigure
-from solver.study.figures.paper_figures import paper_figures
+from solver.study.figures.figure import Finding, PaperFigure
+from solver.study.figures.figure_report import paper_figures
 
 ROOT = Path(__file__).resolve().parents[1]
 NUMBERS = (3, 4, 5, 6, 7, 8)
@@ -180,7 +180,6 @@ def test_without_matplotlib_there_is_the_page_alone_and_a_line_says_what_to_inst
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for module in [name for name in sys.modules if name.startswith("matplotlib.")]:
         monkeypatch.delitem(sys.modules, module)
-    monkeypatch.delitem(sys.modules, "solver.study.figures.drawing", raising=False)
     assert main(["figures", "--out", str(tmp_path)]) == 0
     assert {file.name for file in tmp_path.iterdir()} == {"figures.html"}
     assert "PNG files need matplotlib: pip install 'slipfront[figures]'" in (
@@ -190,7 +189,7 @@ def test_without_matplotlib_there_is_the_page_alone_and_a_line_says_what_to_inst
 
 def test_nothing_else_loads_matplotlib(tmp_path):
     done = program(
-        "import sys\nfrom solver.cli import main\nimport solver.study.figures.paper_figures\n"
+        "import sys\nfrom solver.cli import main\nimport solver.study.figures.figure_report\n"
         "main(['scenes'])\nsys.exit('matplotlib' in sys.modules)\n",
         tmp_path,
     )

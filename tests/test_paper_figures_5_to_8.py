@@ -14,7 +14,7 @@ from solver.reduction.svd import InterfaceField, decompositions
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.study.figures.paper_figures import figure_5, figure_6, figure_7, figure_8
+from solver.study.figures.modes import figure_5, figure_6, figure_7, figure_8
 
 
 def test_the_analysed_solution_is_converged(paper_runs):
