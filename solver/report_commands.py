@@ -28,6 +28,7 @@ from solver.study.speed.study_report import (
     write_study,
 )
 from solver.study.stability import units
+from solver.study.stability.all_cases import by_all_methods, cases_of, random_cases
 from solver.study.stability.report import (
     HEAD,
     NOTES,
@@ -38,7 +39,6 @@ from solver.study.stability.report import (
     line,
     prepare,
 )
-from solver.study.stability.trials import cases_of, random_trials, trials_of
 from solver.study.stability.verdict import JudgedRun, judged_runs
 
 REFUSED = 2
@@ -135,9 +135,9 @@ def _stability(chosen: argparse.Namespace) -> int:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
     is_random = chosen.random is not None
     if is_random:
-        trials = random_trials(scenes, chosen.random, chosen.seed)
+        cases = random_cases(scenes, chosen.random, chosen.seed)
     else:
-        trials = iter(trials_of(cases_of(scenes, quick=chosen.quick)))
+        cases = iter(by_all_methods(cases_of(scenes, quick=chosen.quick)))
     runs: list[JudgedRun] = []
     notes, is_same = list(RANDOM_NOTES if is_random else NOTES), True
     with writing(chosen.out):
@@ -145,7 +145,7 @@ def _stability(chosen: argparse.Namespace) -> int:
         print(HEAD)
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
-            for run in judged_runs(trials, conditions=not is_random):
+            for run in judged_runs(cases, conditions=not is_random):
                 print(line(run), flush=True)
                 runs.append(run)
             is_whole = True

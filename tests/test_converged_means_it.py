@@ -10,9 +10,10 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
+from solver.study.stability.case import Verdict
 from solver.study.stability.outcome import AT_ROUNDING, run
 from solver.study.stability.residual import kkt_residual
-from solver.study.stability.verdict import Verdict, judge
+from solver.study.stability.verdict import judge
 
 BLOCK = (
     "block gap=flat plane=stress poisson=0.499 length=0.01 height=0.321 elements=59 elements_up=5 "

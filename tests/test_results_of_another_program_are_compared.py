@@ -18,7 +18,7 @@ from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
 from solver.study.other_programs.beside import Beside, weights_of
-from solver.study.other_programs.brought import Brought, read_brought
+from solver.study.other_programs.brought import read_brought
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -226,13 +226,6 @@ def test_friction_of_bodies_in_the_plane_is_a_traction() -> None:
         read_brought("x,t,friction [N/m]\n0.01,0,1\n", "theirs.csv", settings_of("block"))
     text = "x,t,friction [MPa]\n" + "0.01,0,1\n" * 4
     assert read_brought(text, "theirs.csv", settings_of("block")).values[0] == 1e6
-
-
-def test_what_is_drawn_at_an_instant_is_the_nearest_of_theirs() -> None:
-    rows = np.array([[0.3, 0.5, 3.0], [0.1, 0.0, 1.0], [0.2, 0.5, 2.0], [0.5, 0.0, 4.0]])
-    brought = Brought("displacement", *rows.T, "a.csv", "bar", "")
-    time, x, values = brought.nearest(0.4)
-    assert (time, list(x), list(values)) == (0.5, [0.2, 0.3], [2.0, 3.0])
 
 
 def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) -> None:

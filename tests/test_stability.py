@@ -21,7 +21,19 @@ from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study.quantities.finished import BROKEN
 from solver.study.quantities.finished import REFUSED as REFUSED_RUN
-from solver.study.stability.case import METHODS, Case, graded
+from solver.study.stability.all_cases import by_all_methods, cases_of
+from solver.study.stability.case import (
+    METHODS,
+    MUST_REFUSE,
+    NOT_WRONG,
+    PASSING,
+    RIGHT,
+    UNCLEAR,
+    UNSOLVED,
+    Case,
+    Verdict,
+    graded,
+)
 from solver.study.stability.outcome import (
     Outcome,
     condition_of_structure,
@@ -29,20 +41,8 @@ from solver.study.stability.outcome import (
 )
 from solver.study.stability.plane_cases import PRESSED
 from solver.study.stability.report import COLOURS, COLUMNS, NOTES, TITLE, StabilityReport
-from solver.study.stability.trials import cases_of, trials_of
 from solver.study.stability.units import SAME_UP_TO, invariance, is_same
-from solver.study.stability.verdict import (
-    MUST_REFUSE,
-    NOT_WRONG,
-    PASSING,
-    RIGHT,
-    UNCLEAR,
-    UNSOLVED,
-    JudgedRun,
-    Verdict,
-    judge,
-    judged_runs,
-)
+from solver.study.stability.verdict import JudgedRun, judge, judged_runs
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -71,7 +71,7 @@ KNOWN_UNSOLVED = {
 @pytest.fixture(scope="module")
 def rows():
     """Give each quick case by one of the methods, in turns; the whole report runs all by both."""
-    trials = trials_of(cases_of(quick=True))
+    trials = by_all_methods(cases_of(quick=True))
     pairs = zip(trials[::2], trials[1::2], strict=True)
     return list(judged_runs([pair[place % 2] for place, pair in enumerate(pairs)], conditions=True))
 
@@ -83,15 +83,15 @@ def changed(**changes):
 def test_every_quick_case_comes_to_what_is_expected(rows):
     assert [row for row in rows if not row.passed] == []
     assert len(rows) == len(cases_of(quick=True))
-    assert {row.trial.method for row in rows} == set(METHODS)
-    assert {row.trial.scene for row in rows} == set(CATALOGUE)
+    assert {row.case.method for row in rows} == set(METHODS)
+    assert {row.case.scene for row in rows} == set(CATALOGUE)
 
 
 def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
     for row in rows:
-        place = (row.trial.group, row.trial.case)
+        place = (row.case.group, row.case.name)
         if row.verdict is Verdict.REFUSED:
-            assert row.trial.expected == MUST_REFUSE
+            assert row.case.expected == MUST_REFUSE
             assert "is refused; allowed: " in row.outcome.advice
         elif row.verdict is Verdict.UNSOLVED:
             assert place in KNOWN_UNSOLVED
@@ -133,13 +133,13 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
         (GOOD, {RIGHT, UNSOLVED, UNCLEAR, NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = JudgedRun(Case("a", "b", {}, expected).trial("fast"), found)
+            row = JudgedRun(Case("a", "b", {}, expected).by("fast"), found)
             assert row.passed is (expected in passing)
 
 
 def test_one_failure_fails_the_whole():
     right, bad = (
-        JudgedRun(Case("a", "b").trial("fast"), found) for found in (GOOD, changed(error_force=1.0))
+        JudgedRun(Case("a", "b").by("fast"), found) for found in (GOOD, changed(error_force=1.0))
     )
     assert StabilityReport([right], TITLE, NOTES).passes
     assert not StabilityReport([right, bad], TITLE, NOTES).passes
@@ -150,7 +150,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
     monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
-    trial = Case("load", "zero", {"peak": 0.0}).trial("fast")
+    trial = Case("load", "zero", {"peak": 0.0}).by("fast")
     (row,) = judged_runs([trial], conditions=True)
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
@@ -162,7 +162,7 @@ def test_the_matrix_covers_the_ranges():
     assert groups >= {"k_scale", "young", "length", "friction", "pressure", "load", "relaxation"}
     assert groups >= {"substructures", "instants", "nodes", "stiffness contrast"}
     for name in ("k_scale", "young", "length"):
-        tried = [case.changes[name] for case in cases_of(["bar"]) if case.group == name]
+        tried = [case.values[name] for case in cases_of(["bar"]) if case.group == name]
         low, high = BarSettings.definitions()[name].bounds
         assert (min(tried), max(tried)) == (low, high)
 

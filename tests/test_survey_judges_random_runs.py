@@ -19,12 +19,13 @@ from solver.latin import Ending
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.study.stability.all_cases import random_case
+from solver.study.stability.case import Verdict
 from solver.study.stability.draws import KEPT, LARGEST_FIELD, draw, is_foolish
 from solver.study.stability.outcome import AT_ROUNDING, Outcome
 from solver.study.stability.report import RANDOM_NOTES, RANDOM_TITLE, StabilityReport, missed_table
 from solver.study.stability.residual import kkt_residual
-from solver.study.stability.trials import random_trial
-from solver.study.stability.verdict import JudgedRun, Verdict, judge
+from solver.study.stability.verdict import JudgedRun, judge
 
 SMALL = {
     "bar": {"elements": 20, "substructures": 4, "instants": 11},
@@ -89,7 +90,7 @@ def test_tables_with_peaks_between_instants_are_drawn(scene):
 def test_the_command_that_repeats_a_row_gives_the_same_settings(scene):
     for number in range(30):
         settings = draw(scene, 5, number)
-        words = shlex.split(random_trial(settings, 5, number).command)
+        words = shlex.split(random_case(settings, 5, number).command)
         assert words[:5] == ["python", "-m", "solver", "run", scene]
         assert settings_from_command(scene, words[6::2])[0].values() == settings.values()
 
@@ -129,7 +130,7 @@ def test_a_larger_accuracy_allows_a_larger_error_of_the_force():
     settings = CATALOGUE["bar"].settings
     found = changed(error_force=0.015, error_displacement=0.5)
     for accuracy, verdict in ((0.1, Verdict.RIGHT), (0.01, Verdict.WRONG)):
-        trial = random_trial(settings.checked({"accuracy": accuracy}), 1, 1)
+        trial = random_case(settings.checked({"accuracy": accuracy}), 1, 1)
         assert JudgedRun(trial, found).verdict is verdict
 
 
@@ -184,13 +185,13 @@ def test_numbers_without_sense_are_refused(tmp_path, capsys):
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
     wrong = JudgedRun(
-        random_trial(draw("bar", 9, 4), 9, 4), changed(error_force=0.5, error_displacement=1)
+        random_case(draw("bar", 9, 4), 9, 4), changed(error_force=0.5, error_displacement=1)
     )
-    right = JudgedRun(random_trial(draw("bar", 9, 5), 9, 5), changed(error_force=0.0))
+    right = JudgedRun(random_case(draw("bar", 9, 5), 9, 5), changed(error_force=0.0))
     report = StabilityReport([wrong, right], RANDOM_TITLE, RANDOM_NOTES)
     text = "\n".join(report.lines())
-    assert wrong.trial.command in text
-    assert right.trial.command not in text
+    assert wrong.case.command in text
+    assert right.case.command not in text
     assert "1 of 2 runs pass" in text
     assert not report.passes
     counted = {verdict: runs for verdict, runs, _ in report.counts()[1:]}
@@ -201,11 +202,9 @@ def test_runs_that_did_not_converge_are_counted_by_whether_a_status_step_may_end
     settings = CATALOGUE["bar"].settings
     missed = changed(ending=Ending.EXHAUSTED)
     rows = [
-        JudgedRun(random_trial(settings.checked({"method": "paper"}), 9, 4), missed),
-        JudgedRun(random_trial(settings.checked({}), 9, 5), GOOD),
-        JudgedRun(
-            random_trial(settings.checked({}), 9, 6), Outcome(REFUSED, "peak = 1 is refused")
-        ),
+        JudgedRun(random_case(settings.checked({"method": "paper"}), 9, 4), missed),
+        JudgedRun(random_case(settings.checked({}), 9, 5), GOOD),
+        JudgedRun(random_case(settings.checked({}), 9, 6), Outcome(REFUSED, "peak = 1 is refused")),
     ]
     assert [row[1:] for row in missed_table(rows)[1:]] == [
         ["1", "0", "0.0 %", "0"],

@@ -1,15 +1,41 @@
-"""Stiff and extreme cases: what one is, and loads and sections that many share."""
+"""A case: a run that is to be made, and what may come of it; loads and sections that many share."""
 
 from __future__ import annotations
 
+import json
+import shlex
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
 
 import numpy as np
 
 from solver.definitions import Pairs
-from solver.study.stability.verdict import RIGHT, Trial
 
+
+class Verdict(StrEnum):
+    """What a run is worth."""
+
+    RIGHT = "right"
+    UNSOLVED = "unsolved"
+    REFUSED = "refused"
+    UNCLEAR = "unclear"
+    WRONG = "wrong"
+
+
+RIGHT = "right answer"
+UNSOLVED = "right answer, or said not to be"
+MUST_REFUSE = "refused in words"
+UNCLEAR = "right answer, or one that cannot be judged"
+NOT_WRONG = "anything but a wrong answer"
+PASSING = {
+    RIGHT: {Verdict.RIGHT},
+    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
+    MUST_REFUSE: {Verdict.REFUSED},
+    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    NOT_WRONG: set(Verdict) - {Verdict.WRONG},
+}
+"""Verdicts with which a run passes, by what is expected of it."""
 PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 RIGHT_UP_TO = 1e-6
@@ -19,33 +45,49 @@ METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"
 
 @dataclass(frozen=True)
 class Case:
-    """A run of a scene, by any method.
+    """A run that is to be made, and what may come of it.
 
     Attributes
     ----------
     group, name
-        What is extreme, and how much.
-    changes
-        Settings that differ from the scene's own, beside `PRECISE`.
+        What is extreme, and how much; or that it is random, and which one.
+    values
+        Settings that differ from the scene's own.
     expected
-        `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its digits; `MUST_REFUSE`
-        where there is no solution; `UNCLEAR` where friction is so large that there may be several.
+        A key of `PASSING`: `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its
+        digits; `MUST_REFUSE` where there is no solution; `UNCLEAR` where friction is so large that
+        there may be several.
     quick
         Whether it is one of the few for a short check.
+    scene, method
+        As tables name them.
+    error_force, error_displacement
+        Errors up to which the answer is right.
     """
 
     group: str
     name: str
-    changes: Mapping[str, object] = field(default_factory=dict)
+    values: Mapping[str, object] = field(default_factory=dict)
     expected: str = RIGHT
     quick: bool = False
     scene: str = "bar"
+    method: str = "fast"
+    error_force: float = RIGHT_UP_TO
+    error_displacement: float = RIGHT_UP_TO
 
-    def trial(self, method: str) -> Trial:
-        """Its run by one of `METHODS`."""
-        values = {**PRECISE, **METHODS[method], **self.changes}
-        what = self.scene, method, self.group, self.name
-        return Trial(*what, values, self.expected, RIGHT_UP_TO, RIGHT_UP_TO)
+    def by(self, method: str) -> Case:
+        """The same by one of `METHODS`, precisely."""
+        return replace(self, method=method, values={**PRECISE, **METHODS[method], **self.values})
+
+    @property
+    def command(self) -> str:
+        """The command that makes the run."""
+        texts = {
+            name: value if isinstance(value, str) else json.dumps(value)
+            for name, value in self.values.items()
+        }
+        changes = (f"--set {shlex.quote(f'{name}={text}')}" for name, text in texts.items())
+        return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
 def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
@@ -54,11 +96,11 @@ def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
     def case(
         group: str,
         name: str,
-        changes: Mapping[str, object],
+        values: Mapping[str, object],
         expected: str = RIGHT,
         quick: bool = False,
     ) -> Case:
-        return Case(group, name, {**usual, **changes}, expected, quick, scene)
+        return Case(group, name, {**usual, **values}, expected, quick, scene)
 
     return case
 

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from solver.study.stability.case import Case, cases_with, reversals
-from solver.study.stability.verdict import MUST_REFUSE, RIGHT, UNCLEAR, UNSOLVED
+from solver.study.stability.case import (
+    MUST_REFUSE,
+    RIGHT,
+    UNCLEAR,
+    UNSOLVED,
+    Case,
+    cases_with,
+    reversals,
+)
 
 BLOCK = {
     "elements": 16,

@@ -15,8 +15,9 @@ from solver.disk import check_place, whole_file
 from solver.latin import Ending
 from solver.scenes import CATALOGUE
 from solver.study.page import aligned, bullets, plain_table, table, write_page
+from solver.study.stability.case import Verdict
 from solver.study.stability.draws import is_foolish
-from solver.study.stability.verdict import MEANING, JudgedRun, Verdict
+from solver.study.stability.verdict import MEANING, JudgedRun
 
 COLUMNS = (
     *("scene", "group", "case", "method", "expected", "verdict", "passed", "status", "certified"),
@@ -55,11 +56,11 @@ MISSED = "Not converged, of runs that have one solution and a k that is not fool
 
 def line(run: JudgedRun) -> str:
     """One row of the console's table."""
-    trial, outcome = run.trial, run.outcome
+    case, outcome = run.case, run.outcome
     errors = outcome.estimated_error, outcome.error_displacement, outcome.error_force
     return (
-        f"{_passed(run):<5} {run.verdict:<8} {trial.scene:<7} {f'{trial.group}: {trial.case}':<44} "
-        f"{trial.method:<12} {outcome.ending.split()[0]:<10} "
+        f"{_passed(run):<5} {run.verdict:<8} {case.scene:<7} {f'{case.group}: {case.name}':<44} "
+        f"{case.method:<12} {outcome.ending.split()[0]:<10} "
         f"{'certified' if outcome.certified else '':<9} {outcome.iterations:>5} "
         f"{' '.join(f'{_number(error):>8}' for error in errors)} {outcome.seconds:6.2f} s"
     )
@@ -68,12 +69,13 @@ def line(run: JudgedRun) -> str:
 def entries(run: JudgedRun) -> dict[str, object]:
     """Entries of a row by column."""
     own = {
-        **vars(run.trial),
+        **vars(run.case),
         **vars(run.outcome),
+        "case": run.case.name,
         "verdict": str(run.verdict),
         "passed": _passed(run),
         "status": str(run.outcome.ending),
-        "settings": json.dumps(run.trial.values),
+        "settings": json.dumps(run.case.values),
     }
     return {column: own[column] for column in COLUMNS}
 
@@ -130,7 +132,7 @@ class StabilityReport:
         """Numbers of runs by scene, method and verdict, and of those certified; with a head."""
         by_method: dict[tuple[str, str], list[JudgedRun]] = {}
         for run in self.runs:
-            by_method.setdefault((run.trial.scene, run.trial.method), []).append(run)
+            by_method.setdefault((run.case.scene, run.case.method), []).append(run)
         rows = [["scene", "method", "runs", *Verdict, "certified", "median iterations"]]
         for name, runs in sorted(by_method.items()):
             verdicts = Counter(run.verdict for run in runs)
@@ -152,7 +154,7 @@ class StabilityReport:
             lines += ["", f"{heading}:", aligned(rows)]
         for run in self.runs:
             if not run.passed:
-                more = run.outcome.advice, run.trial.command
+                more = run.outcome.advice, run.case.command
                 lines += ["", line(run), *(f"      {text}" for text in more)]
         return lines
 
@@ -191,7 +193,7 @@ def missed_table(runs: Sequence[JudgedRun]) -> list[list[str]]:
     """Numbers of random runs that could converge and did not; with a head."""
     kinds: dict[str, list[JudgedRun]] = {ENDS: [], ITERATES: []}
     for run in runs:
-        settings = CATALOGUE[run.trial.scene].settings.checked(run.trial.values)
+        settings = CATALOGUE[run.case.scene].settings.checked(run.case.values)
         if not (run.verdict is Verdict.REFUSED or run.outcome.doubt or is_foolish(settings)):
             kinds[ITERATES if settings.finish == "none" else ENDS].append(run)
     rows = [["runs that", "in all", "not converged", "share", "of these out of iterations"]]

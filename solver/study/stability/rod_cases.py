@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
-from solver.study.stability.case import JUMP, PLATEAUS, Case, cases_with, graded, reversals
-from solver.study.stability.verdict import MUST_REFUSE, RIGHT, UNSOLVED
+from solver.study.stability.case import (
+    JUMP,
+    MUST_REFUSE,
+    PLATEAUS,
+    RIGHT,
+    UNSOLVED,
+    Case,
+    cases_with,
+    graded,
+    reversals,
+)
 
 SMALL_BAR = {"elements": 20, "substructures": 4, "instants": 41}
 """A quarter of the work of Table 1."""

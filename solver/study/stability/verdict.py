@@ -1,28 +1,15 @@
-"""Runs that are judged: what each may come to, and its verdict by one rule."""
+"""Runs that are judged by one rule."""
 
 from __future__ import annotations
 
-import json
 import math
-import shlex
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from enum import StrEnum
 
 from solver.latin import Ending
 from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.study.stability.case import PASSING, Case, Verdict
 from solver.study.stability.outcome import AT_ROUNDING, Outcome, run
-
-
-class Verdict(StrEnum):
-    """What a run is worth."""
-
-    RIGHT = "right"
-    UNSOLVED = "unsolved"
-    REFUSED = "refused"
-    UNCLEAR = "unclear"
-    WRONG = "wrong"
-
 
 MEANING: dict[str, str] = {
     Verdict.RIGHT: "the errors are as small as they have to be; or certified, and the equations "
@@ -34,89 +21,38 @@ MEANING: dict[str, str] = {
     Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
     "not finite, or ended in a warning or an exception",
 }
-RIGHT = "right answer"
-UNSOLVED = "right answer, or said not to be"
-MUST_REFUSE = "refused in words"
-UNCLEAR = "right answer, or one that cannot be judged"
-NOT_WRONG = "anything but a wrong answer"
-PASSING = {
-    RIGHT: {Verdict.RIGHT},
-    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
-    MUST_REFUSE: {Verdict.REFUSED},
-    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
-    NOT_WRONG: set(Verdict) - {Verdict.WRONG},
-}
-"""Verdicts with which a run passes, by what is expected of it."""
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A run that is to be made, and what may come of it.
-
-    Attributes
-    ----------
-    scene, method
-        Of the run, as tables name them.
-    group, case
-        What is extreme, and how much; or that the run is random, and which one.
-    values
-        Settings that differ from the scene's own.
-    expected
-        A key of `PASSING`.
-    error_force, error_displacement
-        Errors up to which its answer is right.
-    """
-
-    scene: str
-    method: str
-    group: str
-    case: str
-    values: Mapping[str, object]
-    expected: str
-    error_force: float
-    error_displacement: float = math.inf
-
-    @property
-    def command(self) -> str:
-        """The command that makes the run."""
-        texts = {
-            name: value if isinstance(value, str) else json.dumps(value)
-            for name, value in self.values.items()
-        }
-        changes = (f"--set {shlex.quote(f'{name}={text}')}" for name, text in texts.items())
-        return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
 @dataclass(frozen=True)
 class JudgedRun:
-    """A trial, what it came to, and what that is worth."""
+    """A case, what it came to, and what that is worth."""
 
-    trial: Trial
+    case: Case
     outcome: Outcome
 
     @property
     def verdict(self) -> Verdict:
         """What it is worth."""
-        return judge(self.outcome, self.trial.error_force, self.trial.error_displacement)
+        return judge(self.outcome, self.case.error_force, self.case.error_displacement)
 
     @property
     def passed(self) -> bool:
         """Whether it came to what it has to."""
-        return self.verdict in PASSING[self.trial.expected]
+        return self.verdict in PASSING[self.case.expected]
 
 
-def judged_runs(trials: Iterable[Trial], *, conditions: bool) -> Iterator[JudgedRun]:
-    """Run trials, and yield each as soon as it is done.
+def judged_runs(cases: Iterable[Case], *, conditions: bool) -> Iterator[JudgedRun]:
+    """Run cases, and yield each as soon as it is done.
 
     Parameters
     ----------
-    trials
+    cases
         What is to be run.
     conditions
         Whether condition numbers are wanted, which take their time.
     """
-    for trial in trials:
-        yield JudgedRun(trial, run(trial.scene, trial.values, conditions=conditions))
+    for case in cases:
+        yield JudgedRun(case, run(case.scene, case.values, conditions=conditions))
 
 
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:

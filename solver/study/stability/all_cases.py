@@ -1,16 +1,16 @@
-"""Runs that are made to be judged: stiff and extreme cases of all scenes, and random runs."""
+"""All cases: stiff and extreme ones of all scenes, and random ones."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.stability.case import METHODS, Case
+from solver.study.stability.case import METHODS, NOT_WRONG, Case
 from solver.study.stability.draws import draw
 from solver.study.stability.plane_cases import plane_cases
 from solver.study.stability.rod_cases import bar_cases, rope_cases, strand_cases
-from solver.study.stability.verdict import NOT_WRONG, Trial
 
 RANDOM = "random"
 """Group of random runs."""
@@ -25,12 +25,12 @@ def cases_of(scenes: Sequence[str] = (), *, quick: bool = False) -> list[Case]:
     ]
 
 
-def trials_of(cases: Sequence[Case]) -> list[Trial]:
-    """Runs of cases, each by both methods."""
-    return [case.trial(method) for case in cases for method in METHODS]
+def by_all_methods(cases: Sequence[Case]) -> list[Case]:
+    """Cases, each by both methods."""
+    return [case.by(method) for case in cases for method in METHODS]
 
 
-def random_trials(scenes: Sequence[str], number: int, seed: int) -> Iterator[Trial]:
+def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Case]:
     """Draw random runs of scenes in turn; row n is of scene n modulo their number.
 
     Parameters
@@ -42,19 +42,20 @@ def random_trials(scenes: Sequence[str], number: int, seed: int) -> Iterator[Tri
     """
     names = list(scenes or CATALOGUE)
     for row in range(number):
-        yield random_trial(draw(names[row % len(names)], seed, row), seed, row)
+        yield random_case(draw(names[row % len(names)], seed, row), seed, row)
 
 
-def random_trial(settings: Settings, seed: int, row: int) -> Trial:
+def random_case(settings: Settings, seed: int, row: int) -> Case:
     """The run of settings that were drawn; right are errors of its force within its accuracy."""
-    return Trial(
-        settings.scene,
-        _method_name(settings),
+    return Case(
         RANDOM,
         f"row {row} of seed {seed}",
         settings.changed(),
         NOT_WRONG,
-        settings.accuracy,
+        scene=settings.scene,
+        method=_method_name(settings),
+        error_force=settings.accuracy,
+        error_displacement=math.inf,
     )
 
 
