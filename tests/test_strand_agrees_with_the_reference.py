@@ -18,7 +18,12 @@ from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
-from solver.study.speed.error_against_time import FORMS, GOAL, INCREMENTAL, error_against_time
+from solver.study.speed.error_against_time import (
+    GOAL,
+    INCREMENTAL,
+    error_against_time,
+    forms_of,
+)
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}
@@ -129,6 +134,6 @@ def test_the_command_line_knows_the_errors_of_strands(change, capsys):
 def test_a_study_of_strands_compares_all_forms_with_the_reference():
     settings = options(elements=12, instants=7, peak=300.0)
     study = error_against_time(settings, repeats=1)
-    assert [course.method for course in study.curves] == [*FORMS, INCREMENTAL]
+    assert [course.method for course in study.curves] == [*forms_of(settings), INCREMENTAL]
     best = min(course.error_force.min() for course in study.curves if course.kind == "latin")
     assert best <= GOAL

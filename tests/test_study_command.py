@@ -22,16 +22,17 @@ from solver.scenes.bar import BarSettings
 from solver.study.chart import HUES
 from solver.study.page import NO_CHARTS
 from solver.study.speed.error_against_time import (
-    FORMS,
     INCREMENTAL,
     LEVELS,
     ErrorCurve,
     Study,
     error_against_time,
+    forms_of,
 )
 from solver.study.speed.growth import MEASURED, Growth, Size, growth
 from solver.study.speed.study_report import error_panels, growth_table, table, winners
 
+FORMS = list(forms_of(BarSettings.checked({})))
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
 

@@ -40,28 +40,7 @@ PLAIN: dict[str, Any] = {
     "k_update": "none",
     "finish": "none",
 }
-AUTO: dict[str, Any] = {**PLAIN, "search_direction": "auto"}
-NESTED: dict[str, Any] = {**AUTO, "start": "nested", "acceleration": "anderson"}
-FORMS: dict[str, dict[str, Any]] = {
-    "LATIN monoscale": {**PLAIN, "multiscale": False},
-    "LATIN multiscale": PLAIN,
-    "LATIN auto k, nested": {**AUTO, "start": "nested"},
-    "LATIN auto k, nested, Anderson": NESTED,
-    "LATIN auto k, nested, Anderson, k updated": {**NESTED, "k_update": "status"},
-    "LATIN fast": {**NESTED, "finish": "at-once"},
-    "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
-}
-"""Settings that make the forms of LATIN; all others are those of the run."""
-FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
-    "LATIN monoscale": {**PLAIN, "multiscale": False},
-    "LATIN multiscale": PLAIN,
-    "LATIN auto k": AUTO,
-    "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
-    "LATIN auto k, Anderson, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
-    "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "at-once"},
-    "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
-}
-"""The same of scenes where no run starts from a coarser mesh."""
+"""Settings that the forms of LATIN start from; all others are those of the run."""
 INCREMENTAL = "incremental solver"
 
 
@@ -115,7 +94,7 @@ class Study:
     Attributes
     ----------
     settings
-        The scene; the forms of LATIN change what `FORMS` names.
+        The scene; the forms of LATIN change what `forms_of` says.
     repeats
         Timed passes.
     machine
@@ -170,9 +149,21 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
 
 
 def forms_of(settings: Settings) -> dict[str, Settings]:
-    """Settings of every form of LATIN that a scene has, by name."""
-    forms = FORMS if entry_of(settings).coarser is not None else FORMS_FROM_ZERO
-    return {method: settings.replace(**form) for method, form in forms.items()}
+    """Settings of every form of LATIN that a scene has, by name; nested where it has a start so."""
+    is_nested = entry_of(settings).coarser is not None
+    auto = {"search_direction": "auto", **({"start": "nested"} if is_nested else {})}
+    anderson = {**auto, "acceleration": "anderson"}
+    name = "LATIN auto k, nested" if is_nested else "LATIN auto k"
+    forms: dict[str, dict[str, Any]] = {
+        "LATIN monoscale": {"multiscale": False},
+        "LATIN multiscale": {},
+        name: auto,
+        f"{name}, Anderson": anderson,
+        f"{name}, Anderson, k updated": {**anderson, "k_update": "status"},
+        "LATIN fast": {**anderson, "finish": "at-once"},
+        "LATIN PGD": {"linear_stage": "pgd", **({} if is_nested else auto)},
+    }
+    return {method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()}
 
 
 def _latin_entry(method: str, settings: Settings, distance: Distance) -> _Entry:
