@@ -67,13 +67,14 @@ def add_reports(commands: Any) -> None:
     )
     stable.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
-    stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
-    stable.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
+    kinds = stable.add_mutually_exclusive_group()
+    kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    kinds.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
     stable.add_argument("--seed", type=int, default=1, help="of the random runs")
     stable.set_defaults(command=_stability)
-    known = commands.add_parser("proof", help="what is known beside what is found, row by row")
-    known.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
-    known.set_defaults(command=_proof)
+    proven = commands.add_parser("proof", help="what is known beside what is found, row by row")
+    proven.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
+    proven.set_defaults(command=_proof)
 
 
 @contextlib.contextmanager
@@ -96,8 +97,8 @@ def _figures(chosen: argparse.Namespace) -> int:
         files, notes = write_figures(figures, chosen.out)
     for figure in figures:
         print(f"{figure.heading} ({figure.verdict})")
-        for found in figure.findings:
-            print(f"  {'+' if found.holds else '-'} {found.text}")
+        for finding in figure.findings:
+            print(f"  {'+' if finding.holds else '-'} {finding.text}")
     print("\n".join([*notes, f"{len(files)} files in {chosen.out}"]))
     return 0
 
@@ -109,18 +110,18 @@ def _study(chosen: argparse.Namespace) -> int:
     print_tables(tables)
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
-        found = error_against_time(settings, chosen.repeats)
-        write_curves(found, chosen.out)
-        sizes = growth(settings) if chosen.growth else []
-        write_growth(sizes, chosen.out)
-        who = crossover(settings, large=chosen.large)
-        files, note = write_study(found, sizes, who, chosen.out)
-    print("\n".join(conditions(found)), end="\n\n")
-    print(aligned(table(found)), end="\n\n")
-    print(aligned(winners(found)))
-    if sizes:
-        print(f"\n{aligned(growth_table(sizes))}")
-    print("", aligned(ratio_table(who)), *notes(who), sep="\n")
+        curves = error_against_time(settings, chosen.repeats)
+        write_curves(curves, chosen.out)
+        growths = growth(settings) if chosen.growth else []
+        write_growth(growths, chosen.out)
+        sizes = crossover(settings, large=chosen.large)
+        files, note = write_study(curves, growths, sizes, chosen.out)
+    print("\n".join(conditions(curves)), end="\n\n")
+    print(aligned(table(curves)), end="\n\n")
+    print(aligned(winners(curves)))
+    if growths:
+        print(f"\n{aligned(growth_table(growths))}")
+    print("", aligned(ratio_table(sizes)), *notes(sizes), sep="\n")
     if note:
         print(note)
     print(f"{len(files)} files in {chosen.out}")

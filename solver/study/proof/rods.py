@@ -33,7 +33,7 @@ STEPS = 60
 
 
 def _bar(settings: Any) -> tuple[float, float]:
-    """Give ES and mu p of a uniform bar."""
+    """ES and mu p of a uniform bar."""
     return settings.young * settings.section, settings.friction * settings.pressure
 
 
@@ -80,7 +80,7 @@ def _loosened(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
 
 
 def _sprung(settings: Any) -> tuple[float, float, float, float]:
-    """Give length, ES, bound and density of the springs, as the closed forms take them."""
+    """Length, ES, bound and density of the springs, as the closed forms take them."""
     stiffness, bound = _bar(settings)
     density = settings.contact_stiffness * stiffness / settings.length**2
     return settings.length, stiffness, bound, density

@@ -92,10 +92,10 @@ class Crossover:
     @property
     def ratios(self) -> Array:
         """Time of LATIN over that of the incremental solver, (instants, sizes); NaN for none."""
-        found = np.full((len(self.instants), len(self.sizes)), np.nan)
+        ratios = np.full((len(self.instants), len(self.sizes)), np.nan)
         for one in self.comparisons:
-            found[self.instants.index(one.instants), self.sizes.index(one.size)] = one.ratio
-        return found
+            ratios[self.instants.index(one.instants), self.sizes.index(one.size)] = one.ratio
+        return ratios
 
 
 def crossover(settings: Settings, *, large: bool = False) -> Crossover:

@@ -142,22 +142,22 @@ def _often(name: str, group: str, mixed: bool) -> float:
 
 def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:
     """Draw the mesh, its cuts, and as many instants as there is room for."""
-    found: dict[str, Any] = {}
+    mesh: dict[str, Any] = {}
     while True:
         usual = BODY if "elements_up" in definitions else ROD
         for name, (low, high) in MESHES.get(scene, usual).items():
-            found[name] = min(int(log_uniform(generator, low, high + 1)), high)
-        unknowns = math.prod(found.values()) * (2 if "elements_up" in found else 1)
+            mesh[name] = min(int(log_uniform(generator, low, high + 1)), high)
+        unknowns = math.prod(mesh.values()) * (2 if "elements_up" in mesh else 1)
         if unknowns <= LARGEST_FIELD // 3:
             break
     most = min(MOST_INSTANTS, LARGEST_FIELD // unknowns)
     fewest = max(1, most // 3) if generator.random() < 0.7 else 1
-    found["instants"] = int(log_uniform(generator, fewest, most + 1))
+    mesh["instants"] = int(log_uniform(generator, fewest, most + 1))
     for name, (elements, largest) in CUTS.items():
         if name in definitions:
-            most_cuts = min(found[elements], largest)
-            found[name] = min(int(log_uniform(generator, 1, most_cuts + 1)), most_cuts)
-    return found
+            most_cuts = min(mesh[elements], largest)
+            mesh[name] = min(int(log_uniform(generator, 1, most_cuts + 1)), most_cuts)
+    return mesh
 
 
 def _stretch(
