@@ -150,7 +150,7 @@ def _stability(chosen: argparse.Namespace) -> int:
                 print(line(run), flush=True)
                 runs.append(run)
             is_whole = True
-        if is_whole and not is_random and scenes in ([], ["bar"]):
+        if is_whole and not is_random and scenes in ([], [units.SCENE]):
             differences = units.invariance()
             is_same = units.is_same(differences)
             notes.append(units.message(differences))

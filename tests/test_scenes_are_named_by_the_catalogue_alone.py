@@ -14,8 +14,7 @@ from solver.scenes import CATALOGUE, discretise, loads_of
 ROOT = Path(__file__).resolve().parents[1]
 SCENES = "solver/scenes/"
 EXPERIMENTS = (
-    "solver/study/audit/",
-    "solver/study/benchmarks/",
+    "solver/study/stability/",
     "solver/study/quantities/memory.py",
     "solver/study/figures/paper_runs.py",
     "solver/study/proof/",

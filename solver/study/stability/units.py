@@ -14,6 +14,8 @@ from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.study.stability.case import METHODS
 
+SCENE = BarSettings.scene
+"""What `invariance` is about."""
 UNITS = {
     "millimetres and newtons": (1e3, 1.0),
     "inches and pounds": (1.0 / 0.0254, 1.0 / 4.4482216152605),
