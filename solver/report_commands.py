@@ -15,6 +15,7 @@ from solver.prepared import print_tables
 from solver.study.figures.figure_report import paper_figures, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
+from solver.study.proof.case import rows_of
 from solver.study.speed.crossover import crossover, notes, ratio_table
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.growth import growth
@@ -30,6 +31,7 @@ from solver.study.speed.study_report import (
 from solver.study.stability import units
 from solver.study.stability.all_cases import by_all_methods, cases_of, random_cases
 from solver.study.stability.report import (
+    FILES,
     HEAD,
     NOTES,
     RANDOM_NOTES,
@@ -37,7 +39,6 @@ from solver.study.stability.report import (
     TITLE,
     StabilityReport,
     line,
-    prepare,
 )
 from solver.study.stability.verdict import JudgedRun, judged_runs
 
@@ -78,11 +79,12 @@ def add_reports(commands: Any) -> None:
 
 
 @contextlib.contextmanager
-def writing(folder: Path) -> Iterator[None]:
+def writing(folder: Path, *files: str) -> Iterator[None]:
     """Make a folder for files; refuse one that cannot be made or written to, before all work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        check_place(folder / "any")
+        for file in files or ("any",):
+            check_place(folder / file)
         yield
     except BrokenPipeError:
         raise
@@ -141,8 +143,7 @@ def _stability(chosen: argparse.Namespace) -> int:
         cases = iter(by_all_methods(cases_of(scenes, quick=chosen.quick)))
     runs: list[JudgedRun] = []
     notes, is_same = list(RANDOM_NOTES if is_random else NOTES), True
-    with writing(chosen.out):
-        prepare(chosen.out)
+    with writing(chosen.out, *FILES):
         print(HEAD)
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
@@ -164,11 +165,12 @@ def _stability(chosen: argparse.Namespace) -> int:
 
 def _proof(chosen: argparse.Namespace) -> int:
     rows = []
-    with writing(chosen.out):
+    with writing(chosen.out, *proof.FILES):
         print(proof.HEAD)
-        for row in proof.proven(chosen.out, proof.cases()):
-            print(proof.line(row), flush=True)
-            rows.append(row)
+        for case in proof.cases():
+            for row in rows_of(case):
+                print(proof.line(row), flush=True)
+                rows.append(row)
         files = proof.write_proof(rows, chosen.out)
     print(f"{proof.summary(rows)}\n{len(files)} files in {chosen.out}")
     return 0 if all(row.holds for row in rows) else 1

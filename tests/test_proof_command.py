@@ -19,7 +19,7 @@ from solver.cli import main
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.study.proof import published, report
-from solver.study.proof.case import Answer, KnownCase, KnownNumber
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, rows_of
 
 CASES = list(report.cases())
 CLOSED_FORMS = {
@@ -112,7 +112,7 @@ def test_a_wrong_number_fails_and_says_so(
 
 def test_a_run_that_does_not_end_proves_nothing() -> None:
     case = CASES[0]
-    (row, *_) = report.rows_of(case)
+    (row, *_) = rows_of(case)
     assert row.holds
     assert not replace(row, ended=False).holds
     assert not replace(row, number=replace(row.number, found=float("nan"))).holds

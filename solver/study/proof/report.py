@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import groupby
 from pathlib import Path
 
-from solver.disk import check_place, whole_file
-from solver.study.page import table, write_page
+from solver.study.page import table, write_csv, write_page
 from solver.study.proof.case import (
     CLOSED_FORMS,
     INCREMENTAL,
@@ -17,7 +15,6 @@ from solver.study.proof.case import (
     PUBLISHED,
     KnownCase,
     ProofRow,
-    rows_of,
 )
 from solver.study.proof.plane import plane_cases
 from solver.study.proof.published import published_cases
@@ -28,6 +25,7 @@ COLUMNS = (
     *("holds", "part", "case", "solver", "quantity", "unit", "known", "ours", "deviation"),
     *("allowed", "mesh", "source", "address"),
 )
+FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
 """Where the page is served by default; links of the report open runs there."""
 TITLE = "Proof: what is known beside what Slipfront finds"
@@ -48,25 +46,6 @@ def cases() -> Iterator[KnownCase]:
     yield from published_cases()
 
 
-def proven(folder: Path, chosen: Iterable[KnownCase]) -> Iterator[ProofRow]:
-    """Solve cases one by one, once it is known that the report can be written.
-
-    Raises
-    ------
-    OSError
-        When it cannot.
-    """
-    for file in files_of(folder):
-        check_place(file)
-    for case in chosen:
-        yield from rows_of(case)
-
-
-def files_of(folder: Path) -> tuple[Path, Path]:
-    """Names of the table and the page."""
-    return folder / "proof.csv", folder / "proof.html"
-
-
 def line(row: ProofRow) -> str:
     """One row of the console's table."""
     return (
@@ -81,18 +60,16 @@ def summary(rows: Sequence[ProofRow]) -> str:
 
 
 def write_proof(rows: Sequence[ProofRow], folder: Path) -> tuple[Path, Path]:
-    """Write the table and the page; give their names."""
-    csv_file, page = files_of(folder)
-    with whole_file(csv_file) as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerows([COLUMNS, *map(_entries, rows)])
+    """Write the table and the page; their places."""
+    table_file, page = (folder / file for file in FILES)
+    write_csv(table_file, COLUMNS, map(_entries, rows))
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
     for part in (CLOSED_FORMS, PUBLISHED):
         lines = list(_html_rows(row for row in rows if row.case.part == part))
         if lines:
             sections.append(f"<h2>{part}</h2>{table(HEADS, lines)}")
     write_page(page, TITLE, sections)
-    return csv_file, page
+    return table_file, page
 
 
 def _verdict(row: ProofRow) -> str:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import astuple
 from pathlib import Path
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.disk import whole_file
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.page import PlotSection, Section, bullets, plain_table, write_page
+from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
 from solver.study.speed.crossover import MAP, Crossover, crossover_map, notes, ratio_table
 from solver.study.speed.error_against_time import (
     GOAL,
@@ -193,8 +191,8 @@ def write_curves(study: Study, folder: Path) -> list[Path]:
     head = ["method", "kind", "step", *columns[1:]]
     level_head = ["method", "kind", "level", "seconds", "step", "seconds_per_iteration"]
     return [
-        _write(folder / "curves.csv", head, curves),
-        _write(folder / "levels.csv", level_head, levels),
+        write_csv(folder / "curves.csv", head, curves),
+        write_csv(folder / "levels.csv", level_head, levels),
     ]
 
 
@@ -212,7 +210,7 @@ def write_growth(growths: Sequence[Growth], folder: Path) -> list[Path]:
         for one in growths
         for size in one.sizes
     )
-    return [_write(folder / "growth.csv", head, rows)] if growths else []
+    return [write_csv(folder / "growth.csv", head, rows)] if growths else []
 
 
 def write_study(
@@ -256,17 +254,9 @@ def write_study(
     message = write_page(page, TITLE, sections)
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
     rows = ((crossover.setting, *astuple(one)) for one in crossover.comparisons)
-    sizes = _write(folder / "map.csv", head, rows)
+    sizes = write_csv(folder / "map.csv", head, rows)
     files = [*write_curves(study, folder), *write_growth(growths, folder), sizes, page]
     return files, message
-
-
-def _write(file: Path, head: Row, rows: Iterable[Sequence[object]]) -> Path:
-    with whole_file(file) as open_file:
-        writer = csv.writer(open_file)
-        writer.writerow(head)
-        writer.writerows(rows)
-    return file
 
 
 def _ms(seconds: float) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections import Counter
@@ -11,14 +10,14 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from solver.disk import check_place, whole_file
 from solver.latin import Ending
 from solver.scenes import CATALOGUE
-from solver.study.page import aligned, bullets, plain_table, table, write_page
+from solver.study.page import aligned, bullets, plain_table, table, write_csv, write_page
 from solver.study.stability.case import Verdict
 from solver.study.stability.draws import is_foolish
 from solver.study.stability.verdict import MEANING, JudgedRun
 
+FILES = "stability.csv", "stability.html"
 COLUMNS = (
     *("scene", "group", "case", "method", "expected", "verdict", "passed", "status", "certified"),
     *("iterations", "estimated_error", "error_displacement", "error_force", "residual"),
@@ -78,20 +77,6 @@ def entries(run: JudgedRun) -> dict[str, object]:
         "settings": json.dumps(run.case.values),
     }
     return {column: own[column] for column in COLUMNS}
-
-
-def prepare(folder: Path) -> tuple[Path, Path]:
-    """Name the two files, in a folder that is there; a long run must not fail at its end.
-
-    Raises
-    ------
-    OSError
-        When that is not possible.
-    """
-    files = folder / "stability.csv", folder / "stability.html"
-    for file in files:
-        check_place(file)
-    return files
 
 
 @dataclass(frozen=True)
@@ -171,12 +156,9 @@ class StabilityReport:
         OSError
             When a file cannot be written.
         """
-        csv_file, page = prepare(folder)
+        table_file, page = (folder / file for file in FILES)
         rows = [entries(run) for run in self.runs]
-        with whole_file(csv_file) as file:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            writer.writerows(rows)
+        write_csv(table_file, COLUMNS, (row.values() for row in rows))
         heads = [column.replace("_", " ") for column in COLUMNS if column not in LONG]
         every = table(heads, [html for row in rows for html in _html_rows(row)])
         sections = [
@@ -186,7 +168,7 @@ class StabilityReport:
             f"<h2>Every run</h2>\n{every}",
         ]
         write_page(page, self.title, sections)
-        return csv_file, page
+        return table_file, page
 
 
 def missed_table(runs: Sequence[JudgedRun]) -> list[list[str]]:
