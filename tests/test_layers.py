@@ -39,7 +39,7 @@ LAYERS = [
     ["prepared"],
     ["running"],
     ["study"],
-    ["lessons", "mesh_command", "report_commands", "compare_command", "fclib_command"],
+    ["lessons", "mesh_command", "report_commands", "compare_command"],
     ["sweep_command"],
     ["cli"],
     ["__main__"],
