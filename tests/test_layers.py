@@ -54,7 +54,7 @@ GROUND = {"blocks", "iterate", "indicators", "cycle"}
 FLOORS = [["units", "frame", "messages"], ["worker"], ["refusals", "state"], ["views"]]
 """Parts of the page; each may import itself, what stands beside it and before it. All others are
 above, and in no worker."""
-STUDIES = "audit", "benchmarks", "figures", "proof"
+STUDIES = "figures", "proof", "stability"
 EXPERIMENTS = ("solver.scenes", *(f"solver.study.{one}" for one in STUDIES))
 """They may import the module of a scene: its own, and those that measure scenes of their choice."""
 
