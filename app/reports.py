@@ -25,9 +25,8 @@ WORDS = {
     "alone.",
     STABILITY: "Stiff and extreme cases of every scene, whatever the settings of the page: does "
     "each end with the right answer, or say that it has none?",
-    PROOF: "Closed forms, published numbers, and other programs on the same mesh where they are "
-    "installed: each number beside what LATIN and the incremental solver find. A name that is a "
-    "link opens that run.",
+    PROOF: "Closed forms and published numbers, each beside what LATIN and the incremental solver "
+    "find. A name that is a link opens that run.",
 }
 NO_REFERENCE = (
     "The reference to measure errors by would take too long here: choose fewer bodies or "

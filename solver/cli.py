@@ -21,7 +21,6 @@ from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.disk import check_place, why
-from solver.fclib_command import add_fclib
 from solver.files import (
     remarks,
     save_result,
@@ -43,6 +42,7 @@ from solver.report_commands import REFUSED, add_reports
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.other_programs.fclib import add_fclib
 from solver.sweep_command import add_sweep
 
 OUT_OF_MEMORY, INTERRUPTED = 3, 130

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,36 +12,35 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.prepared import print_tables
-from solver.scenes import CATALOGUE
-from solver.study.audit.audit import Audited, Trial, audit
-from solver.study.audit.report import HEAD, line, prepare
-from solver.study.audit.stability import cases_of, stability_report, trials_of
-from solver.study.audit.survey import draws, survey_report
-from solver.study.audit.units import SCENE, invariance, is_same
-from solver.study.benchmarks import cycles_problems
-from solver.study.benchmarks.ahead_problems import GROUPS, chosen_problems
-from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
-from solver.study.benchmarks.cycles_report import measured, write_cycles
-from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
-from solver.study.benchmarks.whole_cost import print_whole_cost
-from solver.study.figures.figure_page import write_figures
-from solver.study.figures.paper_figures import paper_figures
+from solver.study.figures.figure_report import paper_figures, write_figures
+from solver.study.page import aligned
 from solver.study.proof import report as proof
-from solver.study.proof.sections import summary
-from solver.study.speed.crossover import crossover
-from solver.study.speed.crossover_report import crossover_notes, crossover_table
+from solver.study.proof.case import rows_of
+from solver.study.speed.crossover import crossover, notes, ratio_table
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.growth import growth
-from solver.study.speed.study_page import write_study
 from solver.study.speed.study_report import (
-    aligned,
     conditions,
     growth_table,
     table,
     winners,
     write_curves,
     write_growth,
+    write_study,
 )
+from solver.study.stability import units
+from solver.study.stability.all_cases import by_all_methods, cases_of, random_cases
+from solver.study.stability.report import (
+    FILES,
+    HEAD,
+    NOTES,
+    RANDOM_NOTES,
+    RANDOM_TITLE,
+    TITLE,
+    StabilityReport,
+    line,
+)
+from solver.study.stability.verdict import JudgedRun, judged_runs
 
 REFUSED = 2
 """Exit code of refused input."""
@@ -49,23 +48,6 @@ REFUSED = 2
 
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
-    cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
-    cost.add_argument("--repeats", type=int, help="whose median is taken; 7, or 3 of long ones")
-    kinds = cost.add_mutually_exclusive_group()
-    kinds.add_argument(
-        "--whole", action="store_true", help="what runs take against what they say before, instead"
-    )
-    kinds.add_argument(
-        "--ahead", action="store_true", help="LATIN beside the incremental solver, instead"
-    )
-    kinds.add_argument(
-        "--cycles", action="store_true", help="speed-up over the number of cycles, instead"
-    )
-    both = "of --ahead and --cycles:"
-    cost.add_argument("--only", choices=GROUPS, help=f"{both} these problems alone")
-    cost.add_argument("--large", action="store_true", help=f"{both} those of minutes too")
-    cost.add_argument("--out", type=Path, metavar="DIR", help=f"{both} write files there")
-    cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
     figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
     figures.set_defaults(command=_figures)
@@ -81,34 +63,28 @@ def add_reports(commands: Any) -> None:
         "--large", action="store_true", help="sizes that take minutes too, on the map of the end"
     )
     study.set_defaults(command=_study)
-    stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
-    stable.add_argument("scene", nargs="?", help="a name of the catalogue; all without")
+    stable = commands.add_parser(
+        "stability", help="stiff and extreme cases, or random runs, each with a verdict"
+    )
+    stable.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
-    stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    kinds = stable.add_mutually_exclusive_group()
+    kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    kinds.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
+    stable.add_argument("--seed", type=int, default=1, help="of the random runs")
     stable.set_defaults(command=_stability)
-    known = commands.add_parser("proof", help="closed forms beside what is found, row by row")
-    known.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
-    known.set_defaults(command=_proof)
-    random = commands.add_parser("survey", help="random runs of all scenes, each judged")
-    random.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
-    random.add_argument("--runs", type=int, default=100, help="number of runs")
-    random.add_argument("--seed", type=int, default=1, help="of the draws")
-    random.add_argument("--row", type=int, help="this row of one scene alone")
-    random.add_argument("--out", type=Path, default=Path("survey"), metavar="DIR")
-    random.set_defaults(command=_survey)
-
-
-def _check_repeats(chosen: argparse.Namespace) -> None:
-    if chosen.repeats < 1:
-        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+    proven = commands.add_parser("proof", help="what is known beside what is found, row by row")
+    proven.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
+    proven.set_defaults(command=_proof)
 
 
 @contextlib.contextmanager
-def writing(folder: Path) -> Iterator[None]:
+def writing(folder: Path, *files: str) -> Iterator[None]:
     """Make a folder for files; refuse one that cannot be made or written to, before all work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        check_place(folder / "any")
+        for file in files or ("any",):
+            check_place(folder / file)
         yield
     except BrokenPipeError:
         raise
@@ -117,133 +93,84 @@ def writing(folder: Path) -> Iterator[None]:
         raise SettingError("--out", str(folder), allowed_folder, why(problem)) from None
 
 
-def _benchmark(chosen: argparse.Namespace) -> int:
-    is_long = chosen.ahead or chosen.cycles
-    chosen.repeats = (3 if is_long else 7) if chosen.repeats is None else chosen.repeats
-    _check_repeats(chosen)
-    if is_long:
-        return _ahead(chosen) if chosen.ahead else _cycles(chosen)
-    for name in ("only", "large", "out"):
-        if value := getattr(chosen, name):
-            raise SettingError(
-                f"--{name}", str(value), "only with --ahead or --cycles", "leave it out"
-            )
-    if chosen.whole:
-        print_whole_cost()
-        return 0
-    print_iteration_cost(chosen.repeats)
-    print_overheads(chosen.repeats)
-    return 0
-
-
-def _ahead(chosen: argparse.Namespace) -> int:
-    problems = chosen_problems(chosen.only, with_large=chosen.large)
-    if chosen.out is None:
-        print_ahead(problems, chosen.repeats)
-        return 0
-    with writing(chosen.out):
-        write_ahead(print_ahead(problems, chosen.repeats), chosen.out / "ahead.csv")
-    return 0
-
-
-def _cycles(chosen: argparse.Namespace) -> int:
-    problems = [one for one in cycles_problems.PROBLEMS if chosen.only in (None, one.group)]
-    if not problems:
-        allowed = " or ".join(cycles_problems.GROUPS)
-        raise SettingError("--only", chosen.only, f"with --cycles {allowed}", "choose one of them")
-    numbers = cycles_problems.MANY if chosen.large else cycles_problems.FEW
-    if chosen.out is None:
-        measured(problems, numbers, chosen.repeats)
-        return 0
-    with writing(chosen.out):
-        files, note = write_cycles(measured(problems, numbers, chosen.repeats), chosen.out)
-    if note:
-        print(note)
-    print(f"{len(files)} files in {chosen.out}")
-    return 0
-
-
 def _figures(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         figures = paper_figures()
         files, notes = write_figures(figures, chosen.out)
     for figure in figures:
-        print(f"Fig. {figure.number}: {figure.title} ({figure.verdict})")
-        for found in figure.findings:
-            print(f"  {'+' if found.holds else '-'} {found.text}")
+        print(f"{figure.heading} ({figure.verdict})")
+        for finding in figure.findings:
+            print(f"  {'+' if finding.holds else '-'} {finding.text}")
     print("\n".join([*notes, f"{len(files)} files in {chosen.out}"]))
     return 0
 
 
 def _study(chosen: argparse.Namespace) -> int:
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    _check_repeats(chosen)
+    if chosen.repeats < 1:
+        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
     print_tables(tables)
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
-        found = error_against_time(settings, chosen.repeats)
-        write_curves(found, chosen.out)
-        sizes = growth(settings) if chosen.growth else []
-        write_growth(sizes, chosen.out)
-        who = crossover(settings, large=chosen.large)
-        files, note = write_study(found, sizes, who, chosen.out)
-    print("\n".join(conditions(found)), end="\n\n")
-    print(aligned(table(found)), end="\n\n")
-    print(aligned(winners(found)))
-    if sizes:
-        print(f"\n{aligned(growth_table(sizes))}")
-    print("", aligned(crossover_table(who)), *crossover_notes(who), sep="\n")
+        curves = error_against_time(settings, chosen.repeats)
+        write_curves(curves, chosen.out)
+        growths = growth(settings) if chosen.growth else []
+        write_growth(growths, chosen.out)
+        sizes = crossover(settings, large=chosen.large)
+        files, note = write_study(curves, growths, sizes, chosen.out)
+    print("\n".join(conditions(curves)), end="\n\n")
+    print(aligned(table(curves)), end="\n\n")
+    print(aligned(winners(curves)))
+    if growths:
+        print(f"\n{aligned(growth_table(growths))}")
+    print("", aligned(ratio_table(sizes)), *notes(sizes), sep="\n")
     if note:
         print(note)
     print(f"{len(files)} files in {chosen.out}")
     return 0
 
 
-def _audited(trials: Iterable[Trial], folder: Path, name: str) -> Iterator[Audited]:
-    """Run trials, with a line for each, once it is known that the report can be written."""
-    prepare(folder, name)
-    print(HEAD)
-    for row in audit(trials):
-        print(line(row), flush=True)
-        yield row
-
-
 def _stability(chosen: argparse.Namespace) -> int:
-    scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
-    matrix = trials_of(cases_of(scene, quick=chosen.quick))
-    with writing(chosen.out):
-        rows = list(_audited(matrix, chosen.out, "stability"))
-        apart = invariance() if scene in (None, SCENE) else {}
-        report = stability_report(rows, apart)
+    scenes = [scene_settings(scene).scene for scene in chosen.scenes]
+    for name, least in (("random", 1), ("seed", 0)):
+        value = getattr(chosen, name)
+        if value is not None and value < least:
+            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
+    is_random = chosen.random is not None
+    if is_random:
+        cases = random_cases(scenes, chosen.random, chosen.seed)
+    else:
+        cases = iter(by_all_methods(cases_of(scenes, quick=chosen.quick)))
+    runs: list[JudgedRun] = []
+    notes, is_same = list(RANDOM_NOTES if is_random else NOTES), True
+    with writing(chosen.out, *FILES):
+        print(HEAD)
+        is_whole = False
+        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
+            for run in judged_runs(cases, conditions=not is_random):
+                print(line(run), flush=True)
+                runs.append(run)
+            is_whole = True
+        if is_whole and not is_random and scenes in ([], [units.SCENE]):
+            differences = units.invariance()
+            is_same = units.is_same(differences)
+            notes.append(units.message(differences))
+        report = StabilityReport(runs, RANDOM_TITLE if is_random else TITLE, notes)
         files = report.write(chosen.out)
     print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
-    return 0 if report.passes and is_same(apart) else 1
+    if not is_whole:
+        raise KeyboardInterrupt
+    return 0 if report.passes and is_same else 1
 
 
 def _proof(chosen: argparse.Namespace) -> int:
     rows = []
-    with writing(chosen.out):
+    with writing(chosen.out, *proof.FILES):
         print(proof.HEAD)
-        for row in proof.proven(chosen.out, list(proof.cases())):
-            print(proof.line(row), flush=True)
-            rows.append(row)
+        for case in proof.cases():
+            for row in rows_of(case):
+                print(proof.line(row), flush=True)
+                rows.append(row)
         files = proof.write_proof(rows, chosen.out)
-    print(f"{summary(rows)}\n{len(files)} files in {chosen.out}")
+    print(f"{proof.summary(rows)}\n{len(files)} files in {chosen.out}")
     return 0 if all(row.holds for row in rows) else 1
-
-
-def _survey(chosen: argparse.Namespace) -> int:
-    scenes = [scene_settings(scene).scene for scene in chosen.scenes] or list(CATALOGUE)
-    for name, least in (("runs", 1), ("seed", 0), ("row", 0)):
-        value = getattr(chosen, name)
-        if value is not None and value < least:
-            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
-    numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
-    rows: list[Audited] = []
-    with writing(chosen.out):
-        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept
-            rows.extend(_audited(draws(scenes, numbers, chosen.seed), chosen.out, "survey"))
-        report = survey_report(rows)
-        files = report.write(chosen.out)
-    print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
-    return 0 if report.passes else 1

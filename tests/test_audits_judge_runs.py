@@ -1,4 +1,4 @@
-"""The stability matrix and the survey of random runs: how they judge, and what they write."""
+"""The stability of extreme and random runs: how they are judged, and what is written."""
 
 from __future__ import annotations
 
@@ -19,25 +19,30 @@ from solver.latin import Ending
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
-from solver.study.audit.audit import Audited, Verdict, audit, judge
-from solver.study.audit.cases import (
+from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.study.stability.all_cases import cases_of, random_case
+from solver.study.stability.case import (
     METHODS,
+    MUST_REFUSE,
+    NOT_WRONG,
     PASSING,
-    REFUSED,
     RIGHT,
     UNCLEAR,
     UNSOLVED,
     Case,
+    Verdict,
     graded,
 )
-from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
-from solver.study.audit.draws import draw
-from solver.study.audit.outcome import AT_ROUNDING, Outcome
-from solver.study.audit.residual import kkt_residual
-from solver.study.audit.stability import COLUMNS, cases_of
-from solver.study.audit.survey import drawn, survey_report
-from solver.study.quantities.finished import BROKEN
-from solver.study.quantities.finished import REFUSED as REFUSED_RUN
+from solver.study.stability.draws import draw
+from solver.study.stability.outcome import (
+    AT_ROUNDING,
+    Outcome,
+    condition_of_structure,
+    condition_of_substructures,
+)
+from solver.study.stability.report import COLUMNS, RANDOM_NOTES, RANDOM_TITLE, StabilityReport
+from solver.study.stability.residual import kkt_residual
+from solver.study.stability.verdict import JudgedRun, judge, judged_runs
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -72,7 +77,7 @@ def changed(**changes):
         (changed(finite=False, ending=Ending.DIVERGED), Verdict.WRONG),
         (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
         (changed(doubt="it is one of several", finite=False), Verdict.WRONG),
-        (Outcome(REFUSED_RUN, "load = 1 is refused"), Verdict.REFUSED),
+        (Outcome(REFUSED, "load = 1 is refused"), Verdict.REFUSED),
         (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG),
         (changed(error_force=0.5, certified=True, residual=1e-13), Verdict.WRONG),
         (changed(error_force=0.5, doubt="one", certified=True, residual=1e-13), Verdict.RIGHT),
@@ -88,15 +93,15 @@ def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
 def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
     wrong = changed(error_force=0.5, ending=Ending.STALLED)
     unclear = changed(doubt="the reference finds no solution", error_force=math.nan)
-    refused = Outcome(REFUSED_RUN, "load = 1 is refused")
+    refused = Outcome(REFUSED, "load = 1 is refused")
     for found, passing in (
-        (wrong, {UNSOLVED, UNCLEAR}),
-        (unclear, {UNCLEAR}),
-        (refused, {REFUSED}),
-        (GOOD, {RIGHT, UNSOLVED, UNCLEAR}),
+        (wrong, {UNSOLVED, UNCLEAR, NOT_WRONG}),
+        (unclear, {UNCLEAR, NOT_WRONG}),
+        (refused, {MUST_REFUSE, NOT_WRONG}),
+        (GOOD, {RIGHT, UNSOLVED, UNCLEAR, NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = Audited(Case("a", "b", {}, expected).trial("fast"), found)
+            row = JudgedRun(Case("a", "b", {}, expected).by("fast"), found)
             assert row.passed is (expected in passing)
 
 
@@ -104,8 +109,8 @@ def test_a_warning_breaks_a_run(monkeypatch):
     def warns(problem):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.audit.outcome.reference_of", warns)
-    (row,) = audit([Case("load", "zero", {"peak": 0.0}).trial("fast")])
+    monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
+    (row,) = judged_runs([Case("load", "zero", {"peak": 0.0}).by("fast")], conditions=True)
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
     assert row.verdict is Verdict.WRONG
@@ -151,7 +156,7 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
 
 
 def test_one_scene_alone_can_be_asked(tmp_path, capsys):
-    assert {case.scene for case in cases_of("strand")} == {"strand"}
+    assert {case.scene for case in cases_of(["strand"])} == {"strand"}
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
     assert "In other units" not in capsys.readouterr().out
     assert main(["stability", "cable", "--out", str(tmp_path)]) == 2
@@ -188,31 +193,28 @@ def test_the_equations_alone_tell_a_solution_from_what_is_near_it(scene):
     assert kkt_residual(further, problem) > 100.0 * AT_ROUNDING
 
 
-def test_the_command_writes_a_table_and_a_page_of_its_own(tmp_path, capsys):
-    assert main(["survey", "bar", "--runs", "3", "--seed", "1", "--out", str(tmp_path)]) == 0
-    table, page = (tmp_path / f"survey.{kind}" for kind in ("csv", "html"))
+def test_random_runs_are_written_row_by_row(tmp_path, capsys):
+    command = ["stability", "bar", "--random", "3", "--seed", "1", "--out", str(tmp_path)]
+    assert main(command) == 0
+    table, page = (tmp_path / f"stability.{kind}" for kind in ("csv", "html"))
     with table.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert [row["row"] for row in rows] == ["0", "1", "2"]
+    assert [row["case"] for row in rows] == [f"row {number} of seed 1" for number in range(3)]
     text = page.read_text(encoding="utf-8")
     assert text.count("<tr>") >= 4
     assert "http" not in text
     assert "median iterations" in capsys.readouterr().out
-    main(["survey", "bar", "--row", "1", "--seed", "1", "--out", str(tmp_path)])
-    with table.open(encoding="utf-8", newline="") as file:
-        (alone,) = csv.DictReader(file)
-    assert alone["settings"] == rows[1]["settings"]
-    assert alone["error_force"] == rows[1]["error_force"]
 
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
-    wrong = Audited(drawn(draw("bar", 9, 4), 9, 4), nearly(error_force=0.5, error_displacement=1))
-    right = Audited(drawn(draw("bar", 9, 5), 9, 5), nearly(error_force=0.0))
-    report = survey_report([wrong, right])
+    wrong, right = (
+        JudgedRun(random_case(draw("bar", 9, row), 9, row), nearly(error_force=error))
+        for row, error in ((4, 0.5), (5, 0.0))
+    )
+    report = StabilityReport([wrong, right], RANDOM_TITLE, RANDOM_NOTES)
     text = "\n".join(report.lines())
-    assert "survey bar --seed 9 --row 4" in text
-    assert wrong.trial.again[1] in text
-    assert "--row 5" not in text
+    assert wrong.case.command in text
+    assert right.case.command not in text
     assert "1 of 2 runs pass" in text
     assert not report.passes
     counted = {verdict: runs for verdict, runs, _ in report.counts()[1:]}

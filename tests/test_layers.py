@@ -39,7 +39,7 @@ LAYERS = [
     ["prepared"],
     ["running"],
     ["study"],
-    ["lessons", "mesh_command", "report_commands", "compare_command", "fclib_command"],
+    ["lessons", "mesh_command", "report_commands", "compare_command"],
     ["sweep_command"],
     ["cli"],
     ["__main__"],
@@ -52,7 +52,7 @@ ABOVE = {"method", "iteration", "solve", "slabs", "run_cost"}
 FLOORS = [["units", "frame", "messages"], ["worker"], ["refusals", "state"], ["views"]]
 """Parts of the page; each may import itself, what stands beside it and before it. All others are
 above, and in no worker."""
-STUDIES = "audit", "benchmarks", "figures", "proof"
+STUDIES = "figures", "proof", "stability"
 EXPERIMENTS = ("solver.scenes", *(f"solver.study.{one}" for one in STUDIES))
 """They may import the module of a scene: its own, and those that measure scenes of their choice."""
 

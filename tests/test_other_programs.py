@@ -22,7 +22,7 @@ from solver.settings import Settings
 from solver.study.other_programs import fclib
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import read_brought
-from solver.study.other_programs.fclib import contacts_of, local_problem, save_fclib
+from solver.study.other_programs.fclib import contacts_of, local_problem, write_fclib
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -225,7 +225,8 @@ def test_a_solver_of_the_file_alone_finds_the_reactions_of_the_reference(scene, 
         local = local_problem(contacts, reference, instant, scene, certified=True)
         pytest.importorskip("h5py")
         path = tmp_path / f"{instant}.hdf5"
-        save_fclib(path, local)
+        with path.open("wb") as file:
+            write_fclib(file, local)
         compliance, free, friction, solution, words = read_hdf5(path)
         force = gauss_seidel(compliance, free, friction) if free.any() else 0.0 * free
         wanted = reference.contact_force[contacts.places, instant]

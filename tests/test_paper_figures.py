@@ -25,8 +25,9 @@ from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.figures import paper_runs as runs_of_the_paper
-from solver.study.figures.figure_data import Finding, PaperFigure
-from solver.study.figures.paper_figures import figure_5, figure_6, figure_7, figure_8, paper_figures
+from solver.study.figures.figure import Finding, PaperFigure
+from solver.study.figures.figure_report import paper_figures
+from solver.study.figures.modes import figure_5, figure_6, figure_7, figure_8
 from solver.study.figures.paper_runs import PaperRuns
 
 NUMBERS = (3, 4, 5, 6, 7, 8)
@@ -145,7 +146,6 @@ def test_without_matplotlib_there_is_the_page_alone_and_a_line_says_what_to_inst
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for module in [name for name in sys.modules if name.startswith("matplotlib.")]:
         monkeypatch.delitem(sys.modules, module)
-    monkeypatch.delitem(sys.modules, "solver.study.figures.drawing", raising=False)
     assert main(["figures", "--out", str(tmp_path)]) == 0
     assert {file.name for file in tmp_path.iterdir()} == {"figures.html"}
     assert "PNG files need matplotlib: pip install 'slipfront[figures]'" in (

@@ -16,23 +16,18 @@ import pytest
 
 from solver import report_commands
 from solver.cli import main
-from solver.reference.incremental import incremental
 from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
 from solver.study.speed import crossover as measuring
-from solver.study.speed.crossover import FACTORS, crossover, equal_at
-from solver.study.speed.crossover_report import crossover_notes
+from solver.study.speed.crossover import FACTORS, crossover, equal_at, notes
 from solver.study.speed.error_against_time import (
-    FORMS,
     INCREMENTAL,
     LEVELS,
     ErrorCurve,
-    Peer,
-    PeerError,
     Study,
-    error_against_time,
+    forms_of,
 )
 from solver.study.speed.growth import growth
 from solver.study.speed.study_report import winners
@@ -64,13 +59,13 @@ def measured(tmp_path_factory):
     return folder, kept[0]
 
 
-def course(method, kind, seconds, errors):
+def course(method, seconds, errors):
     steps = np.arange(1.0, len(seconds) + 1.0)
-    return ErrorCurve(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
+    return ErrorCurve(method, steps, np.array(seconds), np.array(errors), np.array(errors))
 
 
 def study_of(*courses):
-    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses, ())
+    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses)
 
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
@@ -85,7 +80,7 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)
     cells = {f"<td>{cell}</td>" for row in winners(study)[1:] for cell in row}
-    for words in (*FORMS, INCREMENTAL, "BLAS threads: 1", *cells):
+    for words in (*forms_of(study.settings), INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
 
 
@@ -102,8 +97,8 @@ def test_the_table_names_the_first_of_the_levels(measured):
 
 def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
     study = study_of(
-        course("LATIN multiscale", "latin", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
-        course(INCREMENTAL, "incremental", [0.02], [0.0]),
+        course("LATIN multiscale", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
+        course(INCREMENTAL, [0.02], [0.0]),
     )
     head, coarse, *_, fine = winners(study)
     assert head[-1] == f"LATIN / {INCREMENTAL}"
@@ -197,10 +192,10 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     monkeypatch.setattr(measuring, "LONGEST", 0.0)
     found = crossover(settings)
     assert found.sizes == [1, 2, 4]
-    said = {one.size: one.said for one in found.duels}
+    said = {one.size: one.message for one in found.comparisons}
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
-    assert any("Wires 4" in line and "left out" in line for line in crossover_notes(found))
+    assert any("Wires 4" in line and "left out" in line for line in notes(found))
 
 
 def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
@@ -208,21 +203,3 @@ def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
     assert equal_at([4, 16, 64], [4.0, math.nan, 0.25]) == pytest.approx(16.0)
     assert equal_at([4, 16], [0.5, 0.4]) is None
     assert equal_at([4, 16], [4.0, 2.0]) is None
-
-
-def test_other_solvers_stand_in_a_study_with_what_they_said_where_they_gave_up():
-    settings = BarSettings.checked(
-        {"elements": 6, "instants": 5, "substructures": 2, "max_iterations": 5}
-    )
-
-    def exact_or_nothing(problem, tolerance):
-        if tolerance < 0.1:
-            raise PeerError("gave up at instant 1: no more digits")
-        return incremental(problem)
-
-    study = error_against_time(settings, 1, peers=[Peer("other", (0.5, 1e-9), exact_or_nothing)])
-    *_, found = study.courses
-    assert (found.method, found.kind, list(found.steps)) == ("other", "peer", [0.5])
-    assert found.error_force[0] < 1e-9
-    assert found.seconds[0] > 0.0
-    assert study.troubles == ("other at tolerance 1e-09 gave up at instant 1: no more digits.",)

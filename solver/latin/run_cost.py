@@ -1,7 +1,7 @@
 """What a whole run takes, told before it begins.
 
 Estimated from counts, as the status step's cost is (`solver.latin.step_cost`), with its rates.
-`python -m solver benchmark --whole` sets estimates beside what is measured.
+`python tests/benchmarks/whole_cost.py` sets estimates beside what is measured.
 """
 
 from __future__ import annotations

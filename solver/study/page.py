@@ -7,13 +7,14 @@ For pages they are drawn by an entry point of the group `slipfront.renderers`: t
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Sequence
+import csv
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from solver.disk import write
+from solver.disk import whole_file, write
 from solver.study.chart import Chart
 
 GROUP = "slipfront.renderers"
@@ -105,3 +106,25 @@ def plain_table(rows: Sequence[Sequence[str]]) -> str:
     """Write a table of texts, whose first row is its head."""
     head, *rest = rows
     return table(head, ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest])
+
+
+def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:
+    """Write a table as CSV; its place.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    with whole_file(file) as open_file:
+        csv.writer(open_file).writerows([head, *rows])
+    return file
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> str:
+    """A table in columns for a console."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )

@@ -1,26 +1,57 @@
-"""Public QP solvers set beside a study (the extra `peers`).
+"""Public QP solvers beside a study (the extra `peers`).
 
 `python tests/benchmarks/peers.py bar --set elements=100`
 
-How they are given the problem: `solver/study/other_programs/public_solvers.py`.
+How they are given the problem: `tests/benchmarks/public_solvers.py`.
 """
 
 from __future__ import annotations
 
 import argparse
+import statistics
 import sys
+import time
+from collections.abc import Iterator
+
+from public_solvers import PUBLIC, PeerError, solve_by
 
 from solver.files import settings_from_command
 from solver.prepared import print_tables
+from solver.reference.choice import reference_of
+from solver.reference.distance import distance_to
 from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
-from solver.study.other_programs.public_solvers import PUBLIC, peers
+from solver.settings import Settings
+from solver.study.page import aligned
 from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.study_report import aligned, conditions, table, winners
+from solver.study.speed.study_report import conditions, table, winners
+from solver.study.speed.timed import seconds_of
+
+
+def rows(settings: Settings, repeats: int) -> Iterator[list[str]]:
+    """Time and errors of every solver that is installed, at each of its tolerances."""
+    problem = discretise(settings)
+    distance = distance_to(reference_of(problem), problem)
+    for public in PUBLIC:
+        for tolerance in public.tolerances if public.installed else ():
+            name = f"{public.name} {public.version}"
+
+            def solve(public=public, tolerance=tolerance):
+                return solve_by(public, discretise(settings), tolerance)
+
+            try:
+                fields = solve()
+                times = [seconds_of(solve, time.perf_counter) for _ in range(repeats)]
+            except PeerError as trouble:
+                yield [name, f"{tolerance:g}", str(trouble), "", ""]
+                continue
+            errors = distance.of_friction_force(fields), distance.of_displacement(fields)
+            seconds = statistics.median(times)
+            yield [name, f"{tolerance:g}", f"{1e3 * seconds:.3g}", *(f"{e:.1e}" for e in errors)]
 
 
 def main() -> int:
-    """Print a study with them."""
+    """Print a study, and below it their times and errors."""
     asked = argparse.ArgumentParser(description="A study with public QP solvers.")
     asked.add_argument("scene", help="one of a known bound on a rigid support")
     asked.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
@@ -31,14 +62,12 @@ def main() -> int:
     if not rubs_on_supports(discretise(settings)):
         print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
         return 2
-    found = error_against_time(settings, chosen.repeats, peers=peers())
+    study = error_against_time(settings, chosen.repeats)
+    print(*conditions(study), "", aligned(table(study)), "", aligned(winners(study)), "", sep="\n")
+    head = ["solver", "tolerance", "ms", "error of the friction force", "of the displacement"]
+    print(aligned([head, *rows(settings, chosen.repeats)]))
     absent = [one.name for one in PUBLIC if not one.installed]
-    print("\n".join(conditions(found)))
-    for one in peers():
-        print(f"{one.name} at tolerances {', '.join(f'{step:g}' for step in one.tolerances)}.")
-    print(f"Not installed: {', '.join(absent) or 'none'}.", end="\n\n")
-    print(aligned(table(found)), end="\n\n")
-    print(aligned(winners(found)))
+    print(f"Not installed: {', '.join(absent) or 'none'}.")
     return 0
 
 

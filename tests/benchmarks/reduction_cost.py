@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import statistics
 import sys
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -24,7 +25,6 @@ from solver.laws import Component, Contact, Sliders
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.study.benchmarks.timing import medians_of
 
 MODES = (2, 4, 8, 16, 32, 64)
 BARS = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
@@ -63,6 +63,25 @@ class ReductionCost:
     def pays_up_to(self) -> int:
         """Most of the measured modes with which projecting is cheaper than the full stage."""
         return max((n for n, seconds in self.reduced.items() if seconds < self.full), default=0)
+
+
+def samples_of(
+    parts: Sequence[Callable[[], object]], repeats: int, calls: int = 1
+) -> list[list[float]]:
+    """Seconds of a call of each part, in turns: a machine that slows down slows all of them."""
+    samples: list[list[float]] = [[] for _ in parts]
+    for _ in range(repeats):
+        for part, own in zip(parts, samples, strict=True):
+            start = time.perf_counter()
+            for _ in range(calls):
+                part()
+            own.append((time.perf_counter() - start) / calls)
+    return samples
+
+
+def medians_of(parts: Sequence[Callable[[], object]], repeats: int, calls: int) -> list[float]:
+    """Median of `samples_of` for each part."""
+    return [statistics.median(own) for own in samples_of(parts, repeats, calls)]
 
 
 def half_plane(points: int, instants: int) -> Problem:

@@ -73,7 +73,7 @@ class Beside:
         self._weights = weights_of(brought.positions[counts], brought.times[counts])
 
     def of(self, fields: Fields) -> float:
-        """Give the distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
+        """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
         if self.counted < FEWEST:
             return float("nan")
         own = self.own(fields)
@@ -81,14 +81,14 @@ class Beside:
         return self._norm(own - self._values) / size
 
     def own(self, fields: Fields) -> Array:
-        """Give our field at the rows that both cover, shape (n_counted,)."""
+        """Our field at the rows that both cover, shape (n_counted,)."""
         field = fields.displacement
         if self._of_friction:
             field = fields.contact_force[self._places] / self._sizes
-        found = np.zeros(self.counted)
+        values = np.zeros(self.counted)
         for (points, instants), share in zip(self._corners(), self._shares, strict=True):
-            found += share * field[points, instants]
-        return found
+            values += share * field[points, instants]
+        return values
 
     def _corners(self) -> list[tuple[Indices, Indices]]:
         (lower, upper), (before, after) = self._points, self._instants
@@ -102,7 +102,7 @@ class Beside:
 
 
 def weights_of(positions: Array, times: Array) -> Array:
-    """Give what every row counts, as above, shape (n_rows,)."""
+    """What every row counts, as above, shape (n_rows,)."""
     order = np.lexsort((positions, times))
     instants, number = np.unique(times[order], return_inverse=True)
     own = _halves(positions[order], np.diff(number) == 0)
@@ -111,20 +111,20 @@ def weights_of(positions: Array, times: Array) -> Array:
     own[lengths[number] == 0.0] = 1.0
     lengths = np.bincount(number, own, len(instants))
     over_time = _halves(instants) if len(instants) > 1 else np.ones(len(instants))
-    found = np.empty(len(times))
-    found[order] = over_time[number] * own / lengths[number]
-    return found
+    weights = np.empty(len(times))
+    weights[order] = over_time[number] * own / lengths[number]
+    return weights
 
 
 def _covers(grid: Array, places: Array) -> NDArray[np.bool_]:
-    """Tell which places lie between the ends of a grid."""
+    """Which places lie between the ends of a grid."""
     low, high = float(grid.min()), float(grid.max())
     edge = EDGE * (high - low)
     return np.asarray((places >= low - edge) & (places <= high + edge))
 
 
 def _between(grid: Array, places: Array) -> tuple[Indices, Indices, Array]:
-    """Give the grid points below and above places, and the share of the one above."""
+    """The grid points below and above places, and the share of the one above."""
     upper = np.clip(np.searchsorted(grid, places, side="right"), 1, len(grid) - 1)
     lower = upper - 1
     width = grid[upper] - grid[lower]
@@ -133,9 +133,9 @@ def _between(grid: Array, places: Array) -> tuple[Indices, Indices, Array]:
 
 
 def _halves(places: Array, joined: NDArray[np.bool_] | bool = True) -> Array:
-    """Give half of the distances to the neighbours, of places that rise where they are joined."""
+    """Half of the distances to the neighbours, of places that rise where they are joined."""
     steps = np.diff(places) * joined
-    found = np.zeros(len(places))
-    found[:-1] += 0.5 * steps
-    found[1:] += 0.5 * steps
-    return found
+    halves = np.zeros(len(places))
+    halves[:-1] += 0.5 * steps
+    halves[1:] += 0.5 * steps
+    return halves

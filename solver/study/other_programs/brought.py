@@ -8,7 +8,6 @@ How far they are from a run is told by `solver.study.other_programs.beside`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -56,18 +55,6 @@ class Brought:
     source: str
     scene: str
     message: str
-
-    @cached_property
-    def instants(self) -> Array:
-        """Times of which there are rows, rising, s."""
-        return np.unique(self.times)
-
-    def nearest(self, time: float) -> tuple[float, Array, Array]:
-        """Give the instant of its own that is nearest to a time, s; its points, and its values."""
-        instant = float(self.instants[np.abs(self.instants - time).argmin()])
-        rows = np.flatnonzero(self.times == instant)
-        rows = rows[np.argsort(self.positions[rows])]
-        return instant, self.positions[rows], self.values[rows]
 
 
 def read_brought(data: bytes | str, source: str, settings: Settings) -> Brought:

@@ -1,4 +1,4 @@
-"""One instant of a run as a local contact problem in the public FCLIB format.
+"""One instant of a run as a local contact problem in the public FCLIB format, and its command.
 
 FCLIB is a collection of frictional contact problems, and the layout of their HDF5 files, which
 siconos among others reads: V. Acary, M. Brémond, T. Koziara, F. Pérignon, "FCLIB: a collection of
@@ -17,8 +17,9 @@ slipped before the instant is in q.
 
 from __future__ import annotations
 
+import argparse
 import math
-from collections.abc import Mapping
+import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -31,13 +32,16 @@ from scipy.sparse.linalg import SuperLU
 from solver.arrays import Array, Indices
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
-from solver.disk import whole_file
-from solver.latin import Iterate
+from solver.disk import check_place, whole_file, why
+from solver.files import settings_from_command
+from solver.latin import Ending, Iterate, solve
+from solver.prepared import prepared
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.condensation import NotHeldError, factored
 from solver.reference.glued import jumps
 from solver.reference.states import rules_of
 from solver.refusal import RefusedError
+from solver.scenes.method import method_of
 
 SPACEDIM = 2
 MOST = 4000
@@ -102,15 +106,8 @@ class LocalProblem:
 
 
 def can_write() -> bool:
-    """Tell whether there is what writes HDF5: the extra `peers`."""
+    """Whether there is what writes HDF5: the extra `peers`."""
     return find_spec("h5py") is not None
-
-
-def check_writer() -> None:
-    """Refuse to write files where that extra is missing."""
-    if not can_write():
-        remedy = "install it: pip install 'slipfront[peers]'"
-        raise RefusedError("FCLIB", "a file in HDF5", "where h5py is installed", remedy)
 
 
 def contacts_of(problem: Problem) -> Contacts:
@@ -128,7 +125,7 @@ def contacts_of(problem: Problem) -> Contacts:
         factor = factored(stiffness[:, free])
     except NotHeldError:
         remedy = "hold a side of every body"
-        raise _refused("contact alone holds one of its bodies", remedy) from None
+        raise _no_problem("contact alone holds one of its bodies", remedy) from None
     moving = own[:, free]
     whole = moving @ factor.solve(moving.T.toarray())
     return Contacts(problem, places, friction, own, 0.5 * (whole + whole.T), factor)
@@ -137,7 +134,7 @@ def contacts_of(problem: Problem) -> Contacts:
 def local_problem(
     contacts: Contacts, iterate: Iterate, instant: int, scene: str, *, certified: bool
 ) -> LocalProblem:
-    """Give the contact problem of one instant, from where the instant before has left the contacts.
+    """The contact problem of one instant, from where the instant before has left the contacts.
 
     Parameters
     ----------
@@ -175,7 +172,7 @@ def local_problem(
 
 
 def instant_at(time: float, instants: Array) -> int:
-    """Give the number of the instant that is nearest to a time, s.
+    """The number of the instant that is nearest to a time, s.
 
     Raises
     ------
@@ -188,50 +185,44 @@ def instant_at(time: float, instants: Array) -> int:
     return int(np.abs(instants - time).argmin())
 
 
-def save_fclib(path: Path, local: LocalProblem) -> None:
-    """Write a file that FCLIB reads, complete or not at all.
-
-    Raises
-    ------
-    OSError
-        As for `whole_file`.
-    """
-    with whole_file(path, "wb") as file:
-        write_fclib(file, local)
-
-
 def write_fclib(file: IO[bytes], local: LocalProblem) -> None:
     """Write HDF5 as `src/fclib.h` lays it out: numbers as arrays of one, W by columns (nz = -1)."""
     import h5py  # an extra
 
+    matrix = sparse.csc_array(local.compliance)
+    sizes = {"nzmax": matrix.nnz, "m": matrix.shape[0], "n": matrix.shape[1], "nz": -1}
+    arrays: dict[str, Any] = {"spacedim": np.array([SPACEDIM], np.int32)}
+    arrays |= {f"W/{name}": np.array([size], np.int32) for name, size in sizes.items()}
+    arrays |= {"W/p": matrix.indptr.astype(np.int32), "W/i": matrix.indices.astype(np.int32)}
+    arrays |= {"W/x": matrix.data, "vectors/q": local.free, "vectors/mu": local.friction}
+    for name in ("title", "description"):
+        text = getattr(local, name).encode("ascii", "replace")
+        # As C has it, with a zero at its end.
+        arrays[f"info/{name}"] = np.array(text, dtype=f"S{len(text) + 1}")
     with h5py.File(file, "w") as whole:
-        group = whole.create_group("fclib_local")
-        _write(group, {"spacedim": _whole(SPACEDIM)})
-        _write(group.create_group("W"), _columns(local.compliance))
-        _write(group.create_group("vectors"), {"q": local.free, "mu": local.friction})
-        words = {"title": local.title, "description": local.description}
-        _write(group.create_group("info"), {name: _text(one) for name, one in words.items()})
+        for name, value in arrays.items():
+            whole[f"fclib_local/{name}"] = value
         if local.move is not None and local.force is not None:
-            _write(whole.create_group("solution"), {"u": local.move, "r": local.force})
+            whole["solution/u"], whole["solution/r"] = local.move, local.force
 
 
 def _points(problem: Problem) -> tuple[Indices, Array]:
-    """Give the places of all points' components, normal and tangential in turn, and their mu.
+    """The places of all points' components, normal and tangential in turn, and their mu.
 
     A point whose opening is prescribed is left out: it shares its force with what holds it.
     """
     rules, own = rules_of(problem), jumps(problem)
     opening = [law for law in problem.rubbing.values() if law.opens]
     if len(opening) < len(problem.rubbing) or rules.bounded.any():
-        raise _refused(
+        raise _no_problem(
             "its friction has a bound that is known beforehand", "take a scene in the plane"
         )
     if rules.compliance.any():
-        raise _refused("its contact gives way, or is a spring", "set friction_law=coulomb")
+        raise _no_problem("its contact gives way, or is a spring", "set friction_law=coulomb")
     if np.isfinite(rules.slip_length).any():
-        raise _refused("its friction changes with slip", "set friction_law=coulomb")
+        raise _no_problem("its friction changes with slip", "set friction_law=coulomb")
     if len(rules.gap) > MOST:
-        raise _refused(
+        raise _no_problem(
             f"it has {len(rules.gap)} components of contact", f"take fewer elements: at most {MOST}"
         )
     pairs = np.concatenate(
@@ -247,18 +238,18 @@ def _points(problem: Problem) -> tuple[Indices, Array]:
     return pairs.ravel(), rules.friction[pairs[:, 1]]
 
 
-def _refused(why: str, remedy: str) -> RefusedError:
-    return RefusedError("FCLIB", why, CAN, remedy)
+def _no_problem(reason: str, remedy: str) -> RefusedError:
+    return RefusedError("FCLIB", reason, CAN, remedy)
 
 
 def _without_contacts(problem: Problem) -> tuple[Indices, sparse.csc_array]:
-    """Give what no displacement is prescribed of, and its rows of the stiffness."""
+    """What no displacement is prescribed of, and its rows of the stiffness."""
     free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
     return free, sparse.csc_array(assembled_stiffness(problem)[free])
 
 
 def _free(contacts: Contacts, instant: int) -> Array:
-    """Give the jumps at an instant without contact forces, shape (2 n_points,), scaled."""
+    """The jumps at an instant without contact forces, shape (2 n_points,), scaled."""
     problem, own = contacts.problem, contacts.jumps
     free, stiffness = _without_contacts(problem)
     fixed, prescribed = problem.prescribed[0], problem.prescribed[1][:, instant]
@@ -266,24 +257,52 @@ def _free(contacts: Contacts, instant: int) -> Array:
     return np.asarray(own[:, free] @ contacts.factor.solve(load) + own[:, fixed] @ prescribed)
 
 
-def _write(group: Any, values: Mapping[str, Any]) -> None:
-    for name, value in values.items():
-        group.create_dataset(name, data=value)
+def add_fclib(commands: Any) -> None:
+    """Add the command."""
+    parser = commands.add_parser("fclib", help="one instant as a contact problem for others")
+    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="FILE.hdf5", help="write it here"
+    )
+    parser.add_argument(
+        "--instant", type=float, metavar="SECONDS", help="the nearest one; the last without"
+    )
+    parser.set_defaults(command=_fclib)
 
 
-def _columns(matrix: Array) -> dict[str, Any]:
-    """Give a matrix by columns, as CSparse keeps it."""
-    found = sparse.csc_array(matrix)
-    sizes = {"nzmax": found.nnz, "m": found.shape[0], "n": found.shape[1], "nz": -1}
-    places = {"p": found.indptr.astype(np.int32), "i": found.indices.astype(np.int32)}
-    return {**{name: _whole(size) for name, size in sizes.items()}, **places, "x": found.data}
+def _fclib(chosen: argparse.Namespace) -> int:
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    if not can_write():
+        remedy = "install it: pip install 'slipfront[peers]'"
+        raise RefusedError("FCLIB", "a file in HDF5", "where h5py is installed", remedy)
+    try:
+        check_place(chosen.out)
+    except OSError as problem_there:
+        raise _no_place(chosen.out, problem_there) from None
+    problem = prepared(settings, chosen.changes, tables)
+    instants = problem.instants
+    time = float(instants[-1]) if chosen.instant is None else chosen.instant
+    contacts, instant = contacts_of(problem), instant_at(time, instants)
+    solution = solve(problem, method_of(settings))
+    is_sure = solution.is_certified
+    local = local_problem(contacts, solution.iterate, instant, settings.scene, certified=is_sure)
+    try:
+        with whole_file(chosen.out, "wb") as file:
+            write_fclib(file, local)
+    except OSError as problem_there:
+        raise _no_place(chosen.out, problem_there) from None
+    if not is_sure:
+        print(
+            "slipfront: the run is not certified: where contacts stood before is what it has "
+            "found, and no solution stands in the file",
+            file=sys.stderr,
+        )
+    print(f"t = {instants[instant]:.6g} s, {len(local.friction)} points: {chosen.out}")
+    return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
-def _whole(number: int) -> Any:
-    return np.array([number], dtype=np.int32)
-
-
-def _text(words: str) -> Any:
-    """Give a text as C has it, with a zero at its end."""
-    found = words.encode("ascii", "replace")
-    return np.array(found, dtype=f"S{len(found) + 1}")
+def _no_place(path: Path, problem: OSError) -> SettingError:
+    return SettingError(
+        "--out", str(path), "a file in an existing folder that can be written", why(problem)
+    )

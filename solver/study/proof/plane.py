@@ -10,7 +10,7 @@ import numpy as np
 from solver.reference.closed_forms.cantilever import cantilever
 from solver.reference.closed_forms.half_plane import HalfPlane
 from solver.scenes import loop_of
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, of_scene
+from solver.study.proof.case import Answer, KnownCase, KnownNumber
 
 JOHNSON = "K. L. Johnson, Contact Mechanics, Cambridge 1985, section"
 HERTZ = f"{JOHNSON} 4.2 (Hertz)"
@@ -116,11 +116,11 @@ def _leaves(*, are_glued: bool) -> KnownCase:
         yield KnownNumber("bending stiffness", "N/m", exact, abs(float(found)))
 
     title = "three layers that friction glues" if are_glued else "three layers without friction"
-    return of_scene(title, BEAM, 5e-3, "layers", values, numbers)
+    return KnownCase(title, BEAM, 5e-3, "layers", values, numbers)
 
 
 def plane_cases() -> Iterator[KnownCase]:
-    """Give the cases, none of them solved yet."""
+    """Cases, none of them solved yet."""
     total = np.pi * 210e9 / (1.0 - 0.3**2) * 0.1**2 / (4.0 * 10.0)
     body = {"gap": "parabola", "radius": 10.0, "length": 1.0, "height": 1.0}
     pressed = {
@@ -132,7 +132,7 @@ def plane_cases() -> Iterator[KnownCase]:
         "top": "traction",
         "top_normal_traction": -float(f"{total:.6g}"),
     }
-    yield of_scene("parabola pressed on a plane", HERTZ, 2e-2, "block", pressed, _pressed)
+    yield KnownCase("parabola pressed on a plane", HERTZ, 2e-2, "block", pressed, _pressed)
     half_width, radius, friction, length = 0.01, 5.0, 0.3, 0.1
     modulus = 210e9 / (1.0 - 0.4999**2)
     shear = float(f"{0.125 * friction * np.pi * modulus * half_width**2 / radius / length:.6g}")
@@ -151,8 +151,8 @@ def plane_cases() -> Iterator[KnownCase]:
         "top_normal_load": [[0.0, 0.0], [1.0, -3.31e-5]],
         "top_tangential_load": [[1.0, 0.0], [2.0, shear], [4.0, -shear], [6.0, shear]],
     }
-    yield of_scene("parabola sheared to and fro", MINDLIN, 7e-2, "block", sheared, _sheared)
+    yield KnownCase("parabola sheared to and fro", MINDLIN, 7e-2, "block", sheared, _sheared)
     slope = {"elements": 12, "elements_up": 6, "instants": 41}
-    yield of_scene("block on a slope, caught by a spring", SLOPE, 1e-7, "incline", slope, _tilted)
+    yield KnownCase("block on a slope, caught by a spring", SLOPE, 1e-7, "incline", slope, _tilted)
     yield _leaves(are_glued=False)
     yield _leaves(are_glued=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from solver.reference.closed_forms.slip_front import (
     front_over_diffusion,
     slip_under_growing_strength,
 )
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_scene
+from solver.study.proof.case import PUBLISHED, Answer, KnownCase, KnownNumber
 
 SHOE = (
     "code_aster, V6.04.503: SSNV503, Patin glissant sur un plan rigide, section 2 (reference "
@@ -51,7 +51,7 @@ STUCK = 2.0
 
 
 def published_cases() -> Iterator[KnownCase]:
-    """Give the cases, none of them solved yet."""
+    """Cases, none of them solved yet."""
     yield _shoe()
     for stress in (0.1, 0.3, 0.5, 0.7, 0.9):
         yield _driven_by_fluid(stress)
@@ -90,18 +90,8 @@ def _shoe() -> KnownCase:
         yield KnownNumber("friction at 0.99", "N/m", 3.564e6, float(held[2]))
         yield KnownNumber("displacement at 1.01", "m", 9e-3, float(-contact.slip[:, 3].mean()))
 
-    return _published("shoe on a rigid plane (SSNV503)", SHOE, 1e-2, "block", values, numbers)
-
-
-def _published(
-    title: str,
-    source: str,
-    allowed: float,
-    scene: str,
-    values: Mapping[str, Any],
-    numbers: Callable[[Any, Answer], Iterable[KnownNumber]],
-) -> KnownCase:
-    return of_scene(title, source, allowed, scene, values, numbers, ProofPart.PUBLISHED)
+    title = "shoe on a rigid plane (SSNV503)"
+    return KnownCase(title, SHOE, 1e-2, "block", values, numbers, PUBLISHED)
 
 
 def _driven_by_fluid(stress: float) -> KnownCase:
@@ -125,7 +115,7 @@ def _driven_by_fluid(stress: float) -> KnownCase:
         yield KnownNumber("front over sqrt(4 alpha t)", "-", exact, found)
 
     title = f"slip front driven by a fluid, T = {stress:g}"
-    return _published(title, VIESCA, 1.2e-2, "fault", values, numbers)
+    return KnownCase(title, VIESCA, 1.2e-2, "fault", values, numbers, PUBLISHED)
 
 
 def _front(place: Array, slip: Array) -> float:
@@ -162,4 +152,4 @@ def _growing_strength() -> KnownCase:
         yield KnownNumber("slip half-way to the end", "m", float(exact[half]), float(slip[half]))
 
     title = "slip under a strength that grows from the middle"
-    return _published(title, BUERGMANN, 4e-2, "fault", values, numbers)
+    return KnownCase(title, BUERGMANN, 4e-2, "fault", values, numbers, PUBLISHED)

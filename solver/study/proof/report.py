@@ -1,96 +1,115 @@
-"""The page of proof: every number that is known beside ours, as lines, CSV and one HTML page."""
+"""The proof: every number that is known beside ours, as lines, CSV and one HTML page."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+from itertools import groupby
 from pathlib import Path
 
-from solver.disk import check_place, write
-from solver.study.page import write_page
-from solver.study.proof.case import HeldNumber, KnownCase, rows_of
-from solver.study.proof.others import other_cases
+from solver.study.page import table, write_csv, write_page
+from solver.study.proof.case import (
+    CLOSED_FORMS,
+    INCREMENTAL,
+    LATIN,
+    PUBLISHED,
+    KnownCase,
+    ProofRow,
+)
 from solver.study.proof.plane import plane_cases
 from solver.study.proof.published import published_cases
 from solver.study.proof.rods import rod_cases
-from solver.study.proof.sections import proof_sections, verdict
 
 HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<28} {'deviation':>9} {'allowed':>8}"
 COLUMNS = (
-    "holds",
-    "part",
-    "case",
-    "solver",
-    "quantity",
-    "unit",
-    "known",
-    "ours",
-    "deviation",
-    "allowed",
-    "mesh",
-    "source",
-    "address",
+    *("holds", "part", "case", "solver", "quantity", "unit", "known", "ours", "deviation"),
+    *("allowed", "mesh", "source", "address"),
 )
+FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
 """Where the page is served by default; links of the report open runs there."""
 TITLE = "Proof: what is known beside what Slipfront finds"
-LINKS = f'<p>Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>'
+WORDS = (
+    f'<p>Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>\n'
+    "<p>Each row is a number that is known, and the same number of a run: by LATIN, ended as a run "
+    "on the page ends, and by the incremental solver on the same mesh. <em>Deviation</em> is the "
+    "distance of each over the number that is known, <em>allowed</em> what the mesh leaves.</p>"
+)
+HEADS = "", "quantity", "unit", "known", LATIN, "deviation", INCREMENTAL, "deviation", "allowed"
+HOLDS, FAILS = "holds", "FAILS"
 
 
 def cases() -> Iterator[KnownCase]:
-    """Give all cases, none of them solved yet."""
+    """All cases, none of them solved yet."""
     yield from rod_cases()
     yield from plane_cases()
     yield from published_cases()
-    yield from other_cases()
 
 
-def proven(folder: Path, chosen: Sequence[KnownCase]) -> Iterator[HeldNumber]:
-    """Solve cases one by one, once it is known that the report can be written.
-
-    Raises
-    ------
-    OSError
-        When it cannot.
-    """
-    for file in files_of(folder):
-        check_place(file)
-    for case in chosen:
-        yield from rows_of(case)
-
-
-def files_of(folder: Path) -> tuple[Path, Path]:
-    """Name the table and the page."""
-    return folder / "proof.csv", folder / "proof.html"
-
-
-def line(row: HeldNumber) -> str:
-    """Give one row of the console's table."""
+def line(row: ProofRow) -> str:
+    """One row of the console's table."""
     return (
-        f"{verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.number.quantity:<28} "
+        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.number.quantity:<28} "
         f"{row.number.deviation:9.1e} {row.case.allowed:8.0e}"
     )
 
 
-def write_proof(rows: Sequence[HeldNumber], folder: Path) -> tuple[Path, Path]:
-    """Write the table and the page; give their names."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerows([COLUMNS, *(_entries(row) for row in rows)])
-    files = files_of(folder)
-    write(files[0], text.getvalue())
-    write_page(files[1], TITLE, [LINKS, *proof_sections(rows, PAGE)])
-    return files
+def summary(rows: Sequence[ProofRow]) -> str:
+    """How many rows hold."""
+    return f"{sum(row.holds for row in rows)} of {len(rows)} numbers hold."
 
 
-def _entries(row: HeldNumber) -> list[str]:
+def write_proof(rows: Sequence[ProofRow], folder: Path) -> tuple[Path, Path]:
+    """Write the table and the page; their places."""
+    table_file, page = (folder / file for file in FILES)
+    write_csv(table_file, COLUMNS, map(_entries, rows))
+    sections = [f"{WORDS}<p>{summary(rows)}</p>"]
+    for part in (CLOSED_FORMS, PUBLISHED):
+        lines = list(_html_rows(row for row in rows if row.case.part == part))
+        if lines:
+            sections.append(f"<h2>{part}</h2>{table(HEADS, lines)}")
+    write_page(page, TITLE, sections)
+    return table_file, page
+
+
+def _verdict(row: ProofRow) -> str:
+    return HOLDS if row.holds else FAILS
+
+
+def _entries(row: ProofRow) -> list[str]:
     number, case = row.number, row.case
-    entries = [
-        repr(float(number.exact)),
-        repr(float(number.found)),
-        f"{number.deviation:.3g}",
-        f"{case.allowed:g}",
+    return [
+        *(_verdict(row), case.part, case.title, row.solver, number.quantity, number.unit),
+        *(repr(float(number.exact)), repr(float(number.found)), f"{number.deviation:.3g}"),
+        *(f"{case.allowed:g}", case.mesh, case.source, case.address),
     ]
-    words = [verdict(row), case.part.value, case.title, row.solver, number.quantity, number.unit]
-    return [*words, *entries, case.mesh, case.source, case.address]
+
+
+def _html_rows(rows: Iterable[ProofRow]) -> Iterator[str]:
+    """For each case what it is, and below it a line for each of its numbers."""
+    for case, own in groupby(rows, lambda row: row.case):
+        link = (
+            f'<a class="run" href="{escape(PAGE + case.address)}"><b>{escape(case.title)}</b></a>'
+        )
+        words = f"{link} · {escape(case.mesh)}<br><small>{escape(case.source)}</small>"
+        yield f'<td colspan="{len(HEADS)}" class="more">{words}</td>'
+        by_number: dict[str, list[ProofRow]] = {}
+        for row in own:
+            by_number.setdefault(row.number.quantity, []).append(row)
+        yield from map(_cells, by_number.values())
+
+
+def _cells(rows: Sequence[ProofRow]) -> str:
+    """The line of one number, by both solvers."""
+    first = rows[0]
+    word, kind = (HOLDS, "right") if all(row.holds for row in rows) else (FAILS, "wrong")
+    numbers = {row.solver: row.number for row in rows}
+    texts = [f"{first.number.exact:.6g}"]
+    for solver in (LATIN, INCREMENTAL):
+        number = numbers.get(solver)
+        texts += [f"{number.found:.6g}", f"{number.deviation:.1e}"] if number else ["", ""]
+    texts.append(f"{first.case.allowed:g}")
+    unit = "" if first.number.unit == "-" else first.number.unit
+    words = f"<td>{escape(first.number.quantity)}</td><td>{escape(unit)}</td>"
+    cells = "".join(f'<td class="number">{text}</td>' for text in texts)
+    return f'<td class="verdict {kind}">{word}</td>{words}{cells}'

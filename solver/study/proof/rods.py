@@ -13,7 +13,7 @@ from solver.reference.closed_forms.changing_friction_bar import pulled_changing_
 from solver.reference.closed_forms.compliant_bar import cycled_compliant_bar, pulled_compliant_bar
 from solver.scenes import structure_of
 from solver.scenes.constructions import mooring
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, of_scene
+from solver.study.proof.case import Answer, KnownCase, KnownNumber
 
 OWN = "solver/README.md, 6: equilibrium of the part that slips"
 PLAY = f"{OWN}; M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, Springer 1989"
@@ -33,7 +33,7 @@ STEPS = 60
 
 
 def _bar(settings: Any) -> tuple[float, float]:
-    """Give ES and mu p of a uniform bar."""
+    """ES and mu p of a uniform bar."""
     return settings.young * settings.section, settings.friction * settings.pressure
 
 
@@ -80,7 +80,7 @@ def _loosened(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
 
 
 def _sprung(settings: Any) -> tuple[float, float, float, float]:
-    """Give length, ES, bound and density of the springs, as the closed forms take them."""
+    """Length, ES, bound and density of the springs, as the closed forms take them."""
     stiffness, bound = _bar(settings)
     density = settings.contact_stiffness * stiffness / settings.length**2
     return settings.length, stiffness, bound, density
@@ -140,7 +140,7 @@ def _bent(share: float) -> KnownCase:
         yield KnownNumber("energy of a cycle, a metre", "J/m", strand.energy(peak), taken)
 
     title = f"strand of helical wires bent to {share:g} kappa_0"
-    return of_scene(title, PAPAILIOU, 0.01, "rope", changes, numbers)
+    return KnownCase(title, PAPAILIOU, 0.01, "rope", changes, numbers)
 
 
 def _pull(peak: float) -> dict[str, Any]:
@@ -148,25 +148,25 @@ def _pull(peak: float) -> dict[str, Any]:
 
 
 def rod_cases() -> Iterator[KnownCase]:
-    """Give the cases, none of them solved yet."""
-    yield of_scene("bar pulled", PLAY, 1e-4, "bar", _pull(PEAK), _pulled)
-    yield of_scene("bar pulled until all slides", PLAY, 1e-9, "bar", _pull(1800.0), _slid)
+    """Cases, none of them solved yet."""
+    yield KnownCase("bar pulled", PLAY, 1e-4, "bar", _pull(PEAK), _pulled)
+    yield KnownCase("bar pulled until all slides", PLAY, 1e-9, "bar", _pull(1800.0), _slid)
     cycle = {"load": CYCLE, "elements": 200, "instants": 101}
-    yield of_scene("bar pulled to and fro", PLAY, 2e-3, "bar", cycle, _cycled)
+    yield KnownCase("bar pulled to and fro", PLAY, 2e-3, "bar", cycle, _cycled)
     loosened = {
         "load": [[0.0, 0.0], [0.5, 610.0], [1.0, 610.0]],
         "pressure_load": [[0.0, 5000.0], [0.5, 5000.0], [1.0, 2500.0]],
         "elements": 200,
         "instants": 41,
     }
-    yield of_scene(
+    yield KnownCase(
         "bar whose pressure halves while the load stands", PLAY, 1e-4, "bar", loosened, _loosened
     )
     soft = {**_pull(1200.0), "friction_law": "compliant", "contact_stiffness": 100.0}
-    yield of_scene(
+    yield KnownCase(
         "bar on contact that gives way before it slips", JENKINS, 1e-4, "bar", soft, _gave_way
     )
-    yield of_scene(
+    yield KnownCase(
         "bar on contact that gives way, pulled to and fro",
         f"{JENKINS}; Masing's rule",
         2e-3,
@@ -176,7 +176,7 @@ def rod_cases() -> Iterator[KnownCase]:
     )
     for word, ratio in (("hardens", 1.5), ("softens", 0.5)):
         law = {"friction_law": "slip-dependent", "friction_ratio": ratio, "slip_length": 1e-3}
-        yield of_scene(
+        yield KnownCase(
             f"bar on friction that {word} with slip",
             CHANGING,
             1e-4,
@@ -185,6 +185,6 @@ def rod_cases() -> Iterator[KnownCase]:
             _changed,
         )
     broken = {"load": [[0.0, 0.0], [1.0, 610.0]], "elements": 200, "instants": 21}
-    yield of_scene("broken wire between two others", OWN, 2e-3, "strand", broken, _broke)
+    yield KnownCase("broken wire between two others", OWN, 2e-3, "strand", broken, _broke)
     for share in (1.2, 1.5, 6.0):
         yield _bent(share)

@@ -9,18 +9,17 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.problem import Problem
 from solver.latin import judged
 from solver.reference.choice import reference_of
-from solver.reference.distance import Distance, Fields, distance_to
+from solver.reference.distance import Distance, distance_to
 from solver.running.machine import machine
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
@@ -41,53 +40,8 @@ PLAIN: dict[str, Any] = {
     "k_update": "none",
     "finish": "none",
 }
-AUTO: dict[str, Any] = {**PLAIN, "search_direction": "auto"}
-NESTED: dict[str, Any] = {**AUTO, "start": "nested", "acceleration": "anderson"}
-FORMS: dict[str, dict[str, Any]] = {
-    "LATIN monoscale": {**PLAIN, "multiscale": False},
-    "LATIN multiscale": PLAIN,
-    "LATIN auto k, nested": {**AUTO, "start": "nested"},
-    "LATIN auto k, nested, Anderson": NESTED,
-    "LATIN auto k, nested, Anderson, k updated": {**NESTED, "k_update": "status"},
-    "LATIN fast": {**NESTED, "finish": "at-once"},
-    "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
-}
-"""Settings that make the forms of LATIN; all others are those of the run."""
-FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
-    "LATIN monoscale": {**PLAIN, "multiscale": False},
-    "LATIN multiscale": PLAIN,
-    "LATIN auto k": AUTO,
-    "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
-    "LATIN auto k, Anderson, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
-    "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "at-once"},
-    "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
-}
-"""The same of scenes where no run starts from a coarser mesh."""
+"""Settings that the forms of LATIN start from; all others are those of the run."""
 INCREMENTAL = "incremental solver"
-Kind = Literal["latin", "incremental", "peer"]
-
-
-class PeerError(RuntimeError):
-    """Another solver gave up, or took too long; the message says at which instant."""
-
-
-@dataclass(frozen=True)
-class Peer:
-    """Another solver that is set beside these.
-
-    Attributes
-    ----------
-    name
-        What it is called.
-    tolerances
-        Those at which it runs; one alone for a method that ends exactly, in finitely many steps.
-    solve
-        Solves a problem at a tolerance, set-up included, or raises `PeerError`.
-    """
-
-    name: str
-    tolerances: tuple[float, ...]
-    solve: Callable[[Problem, float], Fields]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,10 +50,10 @@ class ErrorCurve:
 
     Attributes
     ----------
-    method, kind
-        What it is.
+    method
+        What it is called.
     steps
-        Iterations done (latin), Newton steps (incremental) or tolerances asked for (peer), (n,).
+        Iterations done, or Newton steps of the incremental solver, shape (n,).
     seconds
         Time from settings to result, medians of the passes, shape (n,).
     error_displacement, error_force
@@ -107,11 +61,15 @@ class ErrorCurve:
     """
 
     method: str
-    kind: Kind
     steps: Array
     seconds: Array
     error_displacement: Array
     error_force: Array
+
+    @property
+    def kind(self) -> str:
+        """Whose it is: "latin" or "incremental"."""
+        return "incremental" if self.method == INCREMENTAL else "latin"
 
     @property
     def seconds_per_iteration(self) -> float | None:
@@ -121,7 +79,7 @@ class ErrorCurve:
         return float(np.median(np.diff(self.seconds)))
 
     def reached(self, level: float) -> tuple[float, float] | None:
-        """Give the least time at which the friction force is so near, and the step it was."""
+        """Least time at which the friction force is so near, and the step it was."""
         near = np.flatnonzero(self.error_force <= level)
         if not len(near):
             return None
@@ -131,27 +89,24 @@ class ErrorCurve:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """All courses of one scene, and under which conditions they were measured.
+    """Curves of all methods on one scene, and under which conditions they were measured.
 
     Attributes
     ----------
     settings
-        The scene; the forms of LATIN change what `FORMS` names.
+        The scene; the forms of LATIN change what `forms_of` says.
     repeats
         Timed passes.
     machine
         Processors, BLAS threads, versions.
-    courses
+    curves
         One per method that ran.
-    troubles
-        What another solver said where it gave up.
     """
 
     settings: Settings
     repeats: int
     machine: str
-    courses: tuple[ErrorCurve, ...]
-    troubles: tuple[str, ...]
+    curves: tuple[ErrorCurve, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,13 +114,12 @@ class _Entry:
     """A method's errors and steps, and how to time it again."""
 
     method: str
-    kind: Kind
     steps: list[float]
     errors: list[tuple[float, float]]
     timed: Callable[[], list[float]]
 
 
-def error_against_time(settings: Settings, repeats: int, peers: Sequence[Peer] = ()) -> Study:
+def error_against_time(settings: Settings, repeats: int) -> Study:
     """Run every method `repeats` times, in turns.
 
     Parameters
@@ -174,51 +128,42 @@ def error_against_time(settings: Settings, repeats: int, peers: Sequence[Peer] =
         Checked settings of a scene.
     repeats
         Timed passes, at least 1.
-    peers
-        Other solvers that are to be measured too.
     """
-    troubles: list[str] = []
-    entries = _entries(settings)
-    for peer in peers:
-        entries += _peer_entry(peer, settings, troubles)
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    distance = distance_to(reference, problem)
+    entries = [_latin_entry(method, form, distance) for method, form in forms_of(settings).items()]
+    steps = [float(reference.steps)]
+    entries.append(
+        _Entry(
+            INCREMENTAL, steps, [(0.0, 0.0)], lambda: [by_increments(settings, time.perf_counter)]
+        )
+    )
     samples: list[list[list[float]]] = [[] for _ in entries]
     for _ in range(repeats):
         for entry, times in zip(entries, samples, strict=True):
             with nothing_collected():
                 times.append(entry.timed())
-    courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
-    return Study(settings, repeats, machine(), tuple(courses), tuple(troubles))
-
-
-def _entries(settings: Settings) -> list[_Entry]:
-    """Find the errors of all methods, without the clock."""
-    problem = discretise(settings)
-    reference = reference_of(problem)
-    distance = distance_to(reference, problem)
-    entries = [_latin_entry(method, form, distance) for method, form in forms_of(settings).items()]
-    entries.append(
-        _Entry(
-            INCREMENTAL,
-            "incremental",
-            steps=[float(reference.steps)],
-            errors=[(0.0, 0.0)],
-            timed=lambda: [by_increments(settings, time.perf_counter)],
-        )
-    )
-    return entries
+    curves = [_curve(entry, times) for entry, times in zip(entries, samples, strict=True)]
+    return Study(settings, repeats, machine(), tuple(curves))
 
 
 def forms_of(settings: Settings) -> dict[str, Settings]:
-    """Give the settings of every form of LATIN that a scene has, by name."""
-    forms = FORMS if entry_of(settings).coarser is not None else FORMS_FROM_ZERO
-    return {method: settings.replace(**form) for method, form in forms.items()}
-
-
-def acting(settings: Settings) -> set[str]:
-    """Give the names of the settings that a study depends on: those that no form sets itself."""
-    forms = [settings.replace(**PLAIN), settings.replace(**FORMS["LATIN PGD"])]
-    names = settings.definitions().keys() - {"method", *PLAIN}
-    return {name for name in names if any(form.applies(name) for form in forms)}
+    """Settings of every form of LATIN that a scene has, by name; nested where it has a start so."""
+    is_nested = entry_of(settings).coarser is not None
+    auto = {"search_direction": "auto", **({"start": "nested"} if is_nested else {})}
+    anderson = {**auto, "acceleration": "anderson"}
+    name = "LATIN auto k, nested" if is_nested else "LATIN auto k"
+    forms: dict[str, dict[str, Any]] = {
+        "LATIN monoscale": {"multiscale": False},
+        "LATIN multiscale": {},
+        name: auto,
+        f"{name}, Anderson": anderson,
+        f"{name}, Anderson, k updated": {**anderson, "k_update": "status"},
+        "LATIN fast": {**anderson, "finish": "at-once"},
+        "LATIN PGD": {"linear_stage": "pgd", **({} if is_nested else auto)},
+    }
+    return {method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()}
 
 
 def _latin_entry(method: str, settings: Settings, distance: Distance) -> _Entry:
@@ -230,11 +175,11 @@ def _latin_entry(method: str, settings: Settings, distance: Distance) -> _Entry:
         if not math.isfinite(force) or (force <= GOAL and iterate.number > 1):
             break
     steps = [float(number) for number in range(1, len(errors) + 1)]
-    return _Entry(method, "latin", steps, errors, lambda: _by_iterations(settings, len(steps)))
+    return _Entry(method, steps, errors, lambda: _by_iterations(settings, len(steps)))
 
 
 def _by_iterations(settings: Settings, number: int) -> list[float]:
-    """Give the time after every iteration, with all that the run needs to end, and discretising."""
+    """Time after every iteration, with all that the run needs to end, and discretising."""
     start = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - start
@@ -244,40 +189,10 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
     ]
 
 
-def _peer_entry(peer: Peer, settings: Settings, troubles: list[str]) -> list[_Entry]:
-    """Find the errors of another solver at the tolerances that it manages, if any."""
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    done, errors = [], []
-    for tolerance in peer.tolerances:
-        try:
-            fields = peer.solve(problem, tolerance)
-        except PeerError as trouble:
-            troubles.append(f"{peer.name} at tolerance {tolerance:g} {trouble}.")
-            continue
-        done.append(tolerance)
-        errors.append((distance.of_displacement(fields), distance.of_friction_force(fields)))
-
-    def timed() -> list[float]:
-        return [_by_peer(peer, settings, tolerance) for tolerance in done]
-
-    return [_Entry(peer.name, "peer", done, errors, timed)] if done else []
-
-
-def _by_peer(peer: Peer, settings: Settings, tolerance: float) -> float:
-    start = time.perf_counter()
-    try:
-        peer.solve(discretise(settings), tolerance)
-    except PeerError:  # it did well before, so this is its time limit, on a busier machine
-        return math.inf
-    return time.perf_counter() - start
-
-
-def _course(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
+def _curve(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
     displacement, force = np.array(entry.errors).T
     return ErrorCurve(
         method=entry.method,
-        kind=entry.kind,
         steps=np.array(entry.steps),
         seconds=np.median(np.array(times), axis=0),
         error_displacement=displacement,

@@ -3,32 +3,31 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import statistics
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from solver.definitions import SettingError
-from solver.scenes import entry_of
+import numpy as np
+
+from solver.latin import solve
+from solver.reference.choice import reference_of
+from solver.reference.distance import distance_to
+from solver.refusal import RefusedError
+from solver.scenes import discretise, entry_of
+from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.exponent import Exponent, exponent_of
-from solver.study.quantities.finished import BROKEN, REFUSED
-from solver.study.quantities.quantities import reading
 from solver.study.speed.error_against_time import INCREMENTAL, forms_of
 from solver.study.speed.timed import by_increments, nothing_collected
-from solver.study.sweep.plan import Plan, Varied
-from solver.study.sweep.point import run_point
 
 MEASURED = (
     "LATIN multiscale",
     "LATIN auto k, nested, Anderson",
     "LATIN auto k, Anderson",
 )
-READINGS = tuple(
-    map(reading, ("seconds_per_iteration", "seconds_to_force@0.01", "iterations_to_force@0.01"))
-)
+GOAL = 0.01
+"""Error of the friction force to which iterations are counted."""
 LONG: dict[str, Any] = {"accuracy": 1e-3, "max_iterations": 300}
 """So that the friction force comes as near as that in all runs that can."""
 
@@ -67,40 +66,41 @@ class Growth:
 
 
 def growth(settings: Settings) -> list[Growth]:
-    """Measure all sizes, those of LATIN by a sweep; sizes that a scene cannot have are left out."""
-    sizes_of = entry_of(settings).sizes
-    forms = {name: form for name, form in forms_of(settings).items() if name in MEASURED}
-    every = [(setting, method) for setting in sizes_of for method in (INCREMENTAL, *forms)]
-    found = []
-    for setting, method in every:
-        if method in forms:
-            measured = _swept(forms[method], setting, sizes_of[setting])
-        else:
-            measured = _solved(settings, setting, sizes_of[setting])
-        if sizes := tuple(measured):
-            found.append(Growth(setting, method, sizes))
-    return found
+    """Measure all sizes; those that a scene cannot have are left out."""
+    methods = {INCREMENTAL: settings}
+    methods |= {name: form for name, form in forms_of(settings).items() if name in MEASURED}
+    curves = []
+    for setting, numbers in entry_of(settings).sizes.items():
+        for method, form in methods.items():
+            measure = _incremental if method == INCREMENTAL else _latin
+            sizes = []
+            for number in numbers:
+                with contextlib.suppress(RefusedError):
+                    sizes.append(measure(form.replace(**{setting: number}), number))
+            if sizes:
+                curves.append(Growth(setting, method, tuple(sizes)))
+    return curves
 
 
-def _swept(form: Settings, setting: str, sizes: tuple[int, ...]) -> Iterator[Size]:
-    """Measure a form of LATIN, one run after the other: others beside them would slow them down."""
-    plan = Plan(form.replace(**LONG), (Varied(setting, sizes, logarithmic=True),), READINGS)
-    for number, size in enumerate(sizes):
-        with nothing_collected():
-            row = run_point(plan, number)
-        if row.ending not in (REFUSED, BROKEN):
-            seconds, total, iterations = row.values
-            reached = math.isfinite(iterations)
-            yield Size(
-                size, seconds, int(iterations) if reached else None, total if reached else None
-            )
+def _latin(form: Settings, number: int) -> Size:
+    """Measure a form of LATIN; the reference that its errors need is not billed."""
+    form = form.replace(**LONG)
+    problem = discretise(form)
+    distance = distance_to(reference_of(problem), problem)
+    with nothing_collected():
+        start = time.perf_counter()
+        problem = discretise(form)
+        spent = time.perf_counter() - start
+        records = solve(problem, method_of(form), distance=distance, spent=spent).records
+    seconds = np.array([record.seconds for record in records])
+    each = float(np.median(np.diff(seconds))) if len(seconds) > 1 else float(seconds[0])
+    for record in records:
+        if record.error_force <= GOAL:
+            return Size(number, each, record.iteration, record.seconds)
+    return Size(number, each, None, None)
 
 
-def _solved(settings: Settings, setting: str, sizes: tuple[int, ...]) -> Iterator[Size]:
+def _incremental(settings: Settings, number: int) -> Size:
     """Measure the incremental solver, which has no iterations to count."""
-    for size in sizes:
-        with contextlib.suppress(SettingError):
-            changed = settings.replace(**{setting: size})
-            samples = (by_increments(changed, time.perf_counter) for _ in range(3))
-            seconds = statistics.median(samples)
-            yield Size(size, seconds, None, seconds)
+    seconds = statistics.median(by_increments(settings, time.perf_counter) for _ in range(3))
+    return Size(number, seconds, None, seconds)

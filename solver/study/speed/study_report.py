@@ -1,26 +1,42 @@
-"""The report of a study: who is first where, tables, and CSV files."""
+"""A study as tables, charts, CSV files and one HTML page: who is first where, and by how much."""
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import astuple
 from pathlib import Path
 
-from solver.disk import whole_file
-from solver.study.speed.crossover import Crossover
-from solver.study.speed.crossover_report import HEAD, crossover_rows
-from solver.study.speed.error_against_time import GOAL, INCREMENTAL, LEVELS, MOST_ITERATIONS, Study
-from solver.study.speed.growth import Growth
+import numpy as np
+
+from solver.arrays import Array
+from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
+from solver.study.speed.crossover import MAP, Crossover, crossover_map, notes, ratio_table
+from solver.study.speed.error_against_time import (
+    GOAL,
+    INCREMENTAL,
+    LEVELS,
+    MOST_ITERATIONS,
+    ErrorCurve,
+    Study,
+)
+from solver.study.speed.growth import MEASURED, Growth
 
 Row = list[str]
-TIMES = "Time to an error of the friction force"
-TIMES_NOTE = "In brackets: iterations of LATIN."
+TITLE = "Error against run time"
 WINNERS = "Who is first"
 WINNERS_NOTE = (
-    "The last columns are the time of the best form of LATIN over that of each other solver: below "
-    "1, LATIN is quicker."
+    "The last column is the time of the best form of LATIN over that of the incremental solver: "
+    "below 1, LATIN is quicker."
 )
+CURVES = "Error against run time, set-up included"
+CAPTION = (
+    "A line is a form of LATIN, iteration by iteration; the dashed line is when the incremental "
+    "solver is done. Errors below the lower edge are drawn on it."
+)
+TIMES = "Time to an error of the friction force"
+TIMES_NOTE = "In brackets: iterations of LATIN."
+GROWTH = "Growth with the size of the problem"
 GROWTH_NOTE = (
     "Time of one iteration of LATIN, and of the whole solution by increments. Twice the size takes "
     "2 to the power of the exponent as long (a least-squares fit over all sizes, with its margin "
@@ -35,87 +51,118 @@ BILLED = (
     "Errors are relative L2 distances over space and time to the result of the incremental solver "
     "on the same mesh and instants, whose own error is therefore 0.",
 )
+SPAN = (1e-9, 2.0)
+"""Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower edge."""
+SMALLEST = 2e-9
 
 
 def conditions(study: Study) -> list[str]:
-    """Give under which conditions the study was measured, in sentences."""
+    """Under which conditions the study was measured, in sentences."""
     changed = study.settings.changed()
     values = ", ".join(f"{name} = {value}" for name, value in changed.items()) or "defaults"
-    lines = [
+    return [
         f"Scene: {study.settings.scene} ({values}).",
         f"Machine: {study.machine}.",
         f"All methods in one process, in turns; medians of {study.repeats} passes.",
         *BILLED,
     ]
-    return [*lines, *study.troubles]
 
 
 def winners(study: Study) -> list[Row]:
-    """Say which method is first at each level, and how the best form of LATIN compares."""
-    others = [course.method for course in study.courses if course.kind != "latin"]
-    head = ["to an error of", "first", "ms", "best form of LATIN", "ms"]
-    rows = [[*head, *(f"LATIN / {method}" for method in others)]]
+    """Which method is first at each level, and how the best form of LATIN compares."""
+    head = ["to an error of", "first", "ms", "best form of LATIN", "ms", f"LATIN / {INCREMENTAL}"]
+    rows = [head]
     for name, level in LEVELS.items():
-        times = {
-            course.method: reached[0]
-            for course in study.courses
-            if (reached := course.reached(level)) is not None
-        }
+        reached = {curve.method: curve.reached(level) for curve in study.curves}
+        times = {method: point[0] for method, point in reached.items() if point is not None}
         first = min(times, key=times.__getitem__)
-        forms = {method: seconds for method, seconds in times.items() if method not in others}
-        rows.append([name, first, _ms(times[first]), *_best(forms, times, others)])
+        best = min(times.keys() - {INCREMENTAL}, key=times.__getitem__, default="")
+        cells = ["none gets there", "-", "-"]
+        if best:
+            cells = [best, _ms(times[best]), f"{times[best] / times[INCREMENTAL]:.2g}"]
+        rows.append([name, first, _ms(times[first]), *cells])
     return rows
-
-
-def _best(forms: Mapping[str, float], times: Mapping[str, float], others: Sequence[str]) -> Row:
-    """Give the quickest form of LATIN, its time, and that over the times of all others."""
-    if not forms:
-        return ["none gets there", *("-" for _ in ("ms", *others))]
-    best = min(forms, key=forms.__getitem__)
-    ratios = (f"{forms[best] / times[one]:.2g}" if one in times else "-" for one in others)
-    return [best, _ms(forms[best]), *ratios]
 
 
 def table(study: Study) -> list[Row]:
-    """Give the time to each level, with the iterations in brackets, and what an iteration costs."""
+    """Time to each level, with the iterations in brackets, and what an iteration costs."""
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
-    for course in study.courses:
+    for curve in study.curves:
         cells = []
         for level in LEVELS.values():
-            reached = course.reached(level)
-            number = f" ({reached[1]:.0f})" if reached and course.kind == "latin" else ""
+            reached = curve.reached(level)
+            number = f" ({reached[1]:.0f})" if reached and curve.kind == "latin" else ""
             cells.append(f"{_ms(reached[0])} ms{number}" if reached else "not reached")
-        each = course.seconds_per_iteration
+        each = curve.seconds_per_iteration
         cost = f"{1e3 * each:.3f}" if each is not None else "-"
-        rows.append([course.method, *cells, cost, f"{course.error_force.min():.1e}"])
+        rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
     return rows
 
 
-def growth_table(found: Sequence[Growth]) -> list[Row]:
-    """Give the fitted exponents, and the iterations to 1 %, with the sizes they come from."""
+def growth_table(growths: Sequence[Growth]) -> list[Row]:
+    """Fitted exponents, and the iterations to 1 %, with the sizes they come from."""
     rows = [["growth with", "method", "exponent", "sizes", "ms", "iterations to 1 %"]]
-    for one in found:
+    for one in growths:
         whole = one.method == INCREMENTAL
         iterations = (str(size.iterations or ">300") for size in one.sizes)
-        cells = [
-            one.setting,
-            f"{one.method} ({'whole' if whole else 'an iteration'})",
-            str(one.exponent or "-"),
-            " ".join(str(size.size) for size in one.sizes),
-            " ".join(f"{1e3 * size.seconds:.2g}" for size in one.sizes),
-            "-" if whole else " ".join(iterations),
-        ]
-        rows += [cells]
+        rows.append(
+            [
+                one.setting,
+                f"{one.method} ({'whole' if whole else 'an iteration'})",
+                str(one.exponent or "-"),
+                " ".join(str(size.size) for size in one.sizes),
+                " ".join(f"{1e3 * size.seconds:.2g}" for size in one.sizes),
+                "-" if whole else " ".join(iterations),
+            ]
+        )
     return rows
 
 
-def aligned(rows: Sequence[Row]) -> str:
-    """Set a table in columns for a console."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    )
+def error_panels(study: Study) -> list[Panel]:
+    """Errors of displacement and of friction force over time, a curve for each method."""
+    columns = {"error_displacement": "Displacement", "error_force": "Friction force"}
+    return [
+        Panel(
+            title,
+            PanelAxis("Time", "s", logarithmic=True),
+            PanelAxis("Relative error", logarithmic=True, limits=SPAN),
+            tuple(
+                _curve(curve, getattr(curve, name), n) for n, curve in enumerate(study.curves, 1)
+            ),
+        )
+        for name, title in columns.items()
+    ]
+
+
+def _curve(curve: ErrorCurve, errors: Array, hue: int) -> PanelCurve:
+    """A method's line: a vertical one where the solver itself is the reference."""
+    if curve.kind == "incremental":
+        return PanelCurve(curve.method, np.repeat(curve.seconds, 2), np.array(SPAN), 0, "dashed")
+    return PanelCurve(curve.method, curve.seconds, np.maximum(errors, SMALLEST), hue)
+
+
+def growth_panels(growths: Sequence[Growth]) -> list[Panel]:
+    """Times over sizes, a panel for each setting that changes."""
+    hues = {method: hue for hue, method in enumerate((INCREMENTAL, *MEASURED))}
+    return [
+        Panel(
+            setting.capitalize(),
+            PanelAxis(f"Number of {setting}", logarithmic=True, whole=True),
+            PanelAxis("Time", "s", logarithmic=True),
+            tuple(
+                PanelCurve(
+                    one.method,
+                    np.array([float(size.size) for size in one.sizes]),
+                    np.array([size.seconds for size in one.sizes]),
+                    hues[one.method],
+                    "points",
+                )
+                for one in growths
+                if one.setting == setting
+            ),
+        )
+        for setting in dict.fromkeys(one.setting for one in growths)
+    ]
 
 
 def write_curves(study: Study, folder: Path) -> list[Path]:
@@ -126,65 +173,90 @@ def write_curves(study: Study, folder: Path) -> list[Path]:
     OSError
         When a file cannot be written.
     """
+    columns = ("steps", "seconds", "error_displacement", "error_force")
+    curves = (
+        (curve.method, curve.kind, *map(float, point))
+        for curve in study.curves
+        for point in zip(*(getattr(curve, name) for name in columns), strict=True)
+    )
+    levels = (
+        (
+            *(curve.method, curve.kind, level),
+            *(curve.reached(level) or ("", "")),
+            curve.seconds_per_iteration,
+        )
+        for curve in study.curves
+        for level in LEVELS.values()
+    )
+    head = ["method", "kind", "step", *columns[1:]]
+    level_head = ["method", "kind", "level", "seconds", "step", "seconds_per_iteration"]
     return [
-        _write(
-            folder / "curves.csv",
-            ["method", "kind", "step", "seconds", "error_displacement", "error_force"],
-            (
-                (course.method, course.kind, *map(float, point))
-                for course in study.courses
-                for point in zip(
-                    course.steps,
-                    course.seconds,
-                    course.error_displacement,
-                    course.error_force,
-                    strict=True,
-                )
-            ),
-        ),
-        _write(
-            folder / "levels.csv",
-            ["method", "kind", "level", "seconds", "step", "seconds_per_iteration"],
-            (
-                (
-                    course.method,
-                    course.kind,
-                    level,
-                    *(course.reached(level) or ("", "")),
-                    course.seconds_per_iteration,
-                )
-                for course in study.courses
-                for level in LEVELS.values()
-            ),
-        ),
+        write_csv(folder / "curves.csv", head, curves),
+        write_csv(folder / "levels.csv", level_head, levels),
     ]
 
 
-def write_growth(found: Sequence[Growth], folder: Path) -> list[Path]:
+def write_growth(growths: Sequence[Growth], folder: Path) -> list[Path]:
     """Write `growth.csv`, if there is any; raises as `write_curves`."""
     head = ["setting", "exponent", "margin", "method", "size", "seconds"]
     head += ["iterations_to_1_percent", "seconds_to_1_percent"]
-    return [_write(folder / "growth.csv", head, _growth_rows(found))] if found else []
+    rows = (
+        (
+            one.setting,
+            *(astuple(one.exponent) if one.exponent else ("", "")),
+            one.method,
+            *astuple(size),
+        )
+        for one in growths
+        for size in one.sizes
+    )
+    return [write_csv(folder / "growth.csv", head, rows)] if growths else []
 
 
-def write_map(sizes: Crossover, folder: Path) -> Path:
-    """Write `map.csv`; raises as `write_curves`."""
-    return _write(folder / "map.csv", HEAD, crossover_rows(sizes))
+def write_study(
+    study: Study, growths: Sequence[Growth], crossover: Crossover, folder: Path
+) -> tuple[list[Path], str]:
+    """Write the tables and `study.html`.
 
+    Parameters
+    ----------
+    study, growths, crossover
+        Errors against run time; growth with the size, or nothing; who is first at which size.
+    folder
+        An existing folder; files of these names are replaced.
 
-def _growth_rows(found: Sequence[Growth]) -> Iterator[Sequence[object]]:
-    for one in found:
-        law = astuple(one.exponent) if one.exponent else ("", "")
-        for size in one.sizes:
-            yield one.setting, *law, one.method, *astuple(size)
+    Returns
+    -------
+    The files, and what whoever asked for them is to be told, if anything.
 
-
-def _write(file: Path, head: Row, rows: Iterable[Sequence[object]]) -> Path:
-    with whole_file(file) as open_file:
-        writer = csv.writer(open_file)
-        writer.writerow(head)
-        writer.writerows(rows)
-    return file
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
+    """
+    growth: list[Section] = [
+        f"<h2>{GROWTH}</h2>\n<p>{GROWTH_NOTE}</p>",
+        PlotSection(GROWTH, growth_panels(growths)),
+        plain_table(growth_table(growths)),
+    ]
+    sections = [
+        f"<h2>{WINNERS}</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
+        f"<h2>{CURVES}</h2>",
+        PlotSection(CURVES, error_panels(study)),
+        f"<p>{CAPTION}</p>\n<h2>{TIMES}</h2>\n<p>{TIMES_NOTE}</p>\n{plain_table(table(study))}",
+        *(growth if growths else []),
+        f"<h2>{MAP}</h2>",
+        PlotSection(MAP, [crossover_map(crossover)]),
+        f"{plain_table(ratio_table(crossover))}\n{bullets(notes(crossover))}",
+        f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
+    ]
+    page = folder / "study.html"
+    message = write_page(page, TITLE, sections)
+    head = ["setting", "size", "instants", "latin", "incremental", "said"]
+    rows = ((crossover.setting, *astuple(one)) for one in crossover.comparisons)
+    sizes = write_csv(folder / "map.csv", head, rows)
+    files = [*write_curves(study, folder), *write_growth(growths, folder), sizes, page]
+    return files, message
 
 
 def _ms(seconds: float) -> str:

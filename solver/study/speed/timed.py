@@ -1,4 +1,4 @@
-"""LATIN and the incremental solver, each from settings to result.
+"""Time of LATIN and of the incremental solver, each from settings to result.
 
 Nothing is kept of what was solved before, and no garbage is collected meanwhile, as with `timeit`:
 to collect it bills all that the process holds. On a machine that others use too, seconds of the
@@ -35,7 +35,7 @@ def nothing_collected() -> Iterator[None]:
 
 
 def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
-    """Give the time of some work, s; of the processor unless another clock is given."""
+    """Time of some work, s; of the processor unless another clock is given."""
     with nothing_collected():
         start = clock()
         work()
@@ -43,16 +43,16 @@ def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> 
 
 
 def by_latin(settings: Settings) -> float:
-    """Give the time of LATIN up to its stop rule, s."""
-    return seconds_of(lambda: latins(settings))
+    """Time of LATIN up to its stop rule, s."""
+    return seconds_of(lambda: latin(settings))
 
 
 def by_increments(settings: Settings, clock: Clock = time.process_time) -> float:
-    """Give the time of the incremental solver, s."""
+    """Time of the incremental solver, s."""
     return seconds_of(lambda: incremental(settings), clock)
 
 
-def latins(settings: Settings) -> Solution:
+def latin(settings: Settings) -> Solution:
     """Solve as the settings say, with nothing beside that the run does not need."""
     return solve(discretise(settings), method_of(settings), watch=False)
 

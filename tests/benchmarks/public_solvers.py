@@ -23,7 +23,6 @@ import importlib.util
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from importlib.metadata import version
 from typing import Any
 
@@ -35,13 +34,16 @@ from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.supports import points_dofs
-from solver.study.speed.error_against_time import Peer, PeerError
 
 Solve = Callable[[Array, Array], Array]
 """From the bounds of K w, each of shape (n,), to w, shape (n,)."""
 MOST_ITERATIONS = 200_000
 TIME_LIMIT = 60.0
 """Seconds after which a solver is stopped between two instants."""
+
+
+class PeerError(RuntimeError):
+    """A solver gave up, or took too long; the message says at which instant."""
 
 
 @dataclass(frozen=True)
@@ -245,10 +247,3 @@ PUBLIC = (
     Public("DAQP", "daqp", (1e-10,), _daqp),
     Public("Clarabel", "clarabel", (1e-2, 1e-5, 1e-8, 1e-12), _clarabel),
 )
-
-
-def peers() -> tuple[Peer, ...]:
-    """Give those that are installed."""
-    return tuple(
-        Peer(one.name, one.tolerances, partial(solve_by, one)) for one in PUBLIC if one.installed
-    )

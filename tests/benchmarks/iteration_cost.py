@@ -1,13 +1,18 @@
-"""What one iteration costs: by stage, and against the arithmetic that it cannot do without."""
+"""What one iteration costs: by stage, and against the arithmetic that it cannot do without.
+
+`python tests/benchmarks/iteration_cost.py`, `iteration_cost.py 3` with medians of three
+"""
 
 from __future__ import annotations
 
 import statistics
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
+from reduction_cost import medians_of, samples_of
 
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
@@ -21,7 +26,6 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.benchmarks.timing import medians_of, samples_of
 
 SIZES = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
 
@@ -208,3 +212,9 @@ def print_overheads(repeats: int) -> None:
             f"{scene:<8} {settings.method:<8} {1e3 * found.own:8.3f} "
             f"{100 * found.snapshot:7.0f} % {100 * found.stop:7.0f} %"
         )
+
+
+if __name__ == "__main__":
+    repeats = int(sys.argv[1]) if len(sys.argv) > 1 else 7
+    print_iteration_cost(repeats)
+    print_overheads(repeats)

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from solver.study.audit.cases import REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, cases_with, reversals
+from solver.study.stability.case import (
+    MUST_REFUSE,
+    RIGHT,
+    UNCLEAR,
+    UNSOLVED,
+    Case,
+    cases_with,
+    reversals,
+)
 
 BLOCK = {
     "elements": 16,
@@ -29,8 +37,14 @@ PRESSED = {
 }
 """Held by contact alone: pressed from above, then sheared by two thirds of what friction holds."""
 TILTED = {**PRESSED, "top_tangential_traction": 0.0, "top_normal_slope": 2.0}
-
-
+FAULT = {
+    "elements": 24,
+    "elements_up": 12,
+    "substructures": 4,
+    "substructures_up": 2,
+    "instants": 31,
+    "max_iterations": 1000,
+}
 INCLINE = {
     "elements": 16,
     "elements_up": 8,
@@ -40,8 +54,8 @@ INCLINE = {
 
 
 def plane_cases() -> tuple[Case, ...]:
-    """Give all cases of the block, of the layers and of the block on a slope."""
-    return (*_block(), *_layers(), *_incline())
+    """All cases of the fault, the block, the layers and the block on a slope."""
+    return (*_fault(), *_block(), *_layers(), *_incline())
 
 
 def _block() -> list[Case]:
@@ -84,9 +98,9 @@ def _block() -> list[Case]:
             {"top_tangential_load": reversals(21, 2e-5)},
         ),
         case("load", "one jump", {"top_normal_load": jump}),
-        case("refused", "pushed beyond friction", {**PRESSED, "friction": 0.1}, REFUSED, True),
-        case("refused", "lifted", {**PRESSED, "top_normal_traction": 1e8}, REFUSED),
-        case("refused", "tipped over", {**PRESSED, "top_normal_slope": 4.0}, REFUSED),
+        case("refused", "pushed beyond friction", {**PRESSED, "friction": 0.1}, MUST_REFUSE, True),
+        case("refused", "lifted", {**PRESSED, "top_normal_traction": 1e8}, MUST_REFUSE),
+        case("refused", "tipped over", {**PRESSED, "top_normal_slope": 4.0}, MUST_REFUSE),
     ]
 
 
@@ -125,5 +139,26 @@ def _incline() -> list[Case]:
         case("incline", "rises and falls twice", {"slope_load": "sine"}),
         case("incline", "instants 1", {"instants": 1, "slope_load": "ramp"}),
         case("incline", "weight 0", {"weight": 0.0}),
-        case("incline", "tips over", {"height": 0.15}, REFUSED, quick=True),
+        case("incline", "tips over", {"height": 0.15}, MUST_REFUSE, quick=True),
+    ]
+
+
+def _fault() -> list[Case]:
+    case = cases_with("fault", FAULT)
+    return [
+        case("fault and fluid", "as it is", {}, quick=True),
+        case("fault and fluid", "stopped", {"injection_load": "stopped"}, quick=True),
+        case("fault and fluid", "pulses", {"injection_load": "pulses"}),
+        case("fault and fluid", "all of the normal stress", {"overpressure": 1e7}),
+        case("fault and fluid", "none", {"overpressure": 0.0}),
+        case("diffusivity", "1e-15 m^2/s", {"diffusivity": 1e-15}),
+        case("diffusivity", "1e9 m^2/s", {"diffusivity": 1e9}),
+        case("shear stress", "0.999 of the strength", {"shear_stress": 5.994e6}),
+        case("shear stress", "twice the strength", {"shear_stress": 1.2e7}),
+        case("shear stress", "backward", {"shear_stress": -3.6e6}),
+        case("friction", "0", {"friction": 0.0}),
+        case("friction", "10", {"friction": 10.0, "shear_stress": 9e7}),
+        case("normal stress", "barriers", {"normal_profile": "barrier", "shear_stress": 5.9e6}),
+        case("Young's modulus", "1 Pa", {"young": 1.0, "overpressure": 0.0}),
+        case("instants", "1", {"instants": 1}),
     ]

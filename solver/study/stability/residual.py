@@ -22,7 +22,7 @@ rounding. In slender bodies they are 1e5 times what acts on them."""
 
 
 def kkt_residual(fields: Fields, problem: Problem) -> float:
-    """Give the largest violation of equilibrium and laws, as a share of the forces in play.
+    """Largest violation of equilibrium and laws, as a share of the forces in play.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
 
 
 def _broken_laws(problem: Problem, stiffness: sparse.csr_array, jump: Array, force: Array) -> Array:
-    """Give how far contacts are from their laws, as forces, shape (n_forces, n_instants).
+    """How far contacts are from their laws, as forces, shape (n_forces, n_instants).
 
     A pair of quantities of which one vanishes, such as pressing force and opening, is as wrong as
     the smaller one; lengths become forces by the stiffness of the jump's own degrees of freedom.

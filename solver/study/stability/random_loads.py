@@ -1,4 +1,4 @@
-"""Random loads for a survey, up to ten times what friction carries."""
+"""Random loads, up to ten times what friction carries."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def bar_loads(values: Values, generator: Generator) -> Sizes:
     length = values["length"]
     carried = values["friction"] * values["pressure"] * length
     peak = carried * _share(generator)
-    found = {"peak": peak, "load": peak}
+    loads = {"peak": peak, "load": peak}
     if generator.random() < 0.2:
-        found["body_force"] = carried / length * _share(generator)
+        loads["body_force"] = carried / length * _share(generator)
     if generator.random() < 0.2:
         stretched = carried * length / (values["young"] * values["section"])
-        found["support_displacement"] = stretched * _share(generator)
-    return found
+        loads["support_displacement"] = stretched * _share(generator)
+    return loads
 
 
 def strand_loads(values: Values, generator: Generator) -> Sizes:
@@ -51,7 +51,7 @@ def block_loads(values: Values, generator: Generator) -> Sizes:
     """
     strain = 10.0 ** generator.uniform(-6.0, -3.0)
     height, young = values["height"], values["young"]
-    found: Sizes = {}
+    loads: Sizes = {}
     for side in LOADED_SIDES:
         if values[side] in AT_REST:
             continue
@@ -62,17 +62,17 @@ def block_loads(values: Values, generator: Generator) -> Sizes:
                 share = -1.0 if generator.random() < 0.9 else 1.0
             depth = height if side == "top" else values["length"]
             kind, size = ("displacement", depth) if prescribed else ("traction", young)
-            found[f"{side}_{component}_{kind}"] = share * strain * size
-            found[f"{side}_{component}_load"] = share * strain * size
+            loads[f"{side}_{component}_{kind}"] = share * strain * size
+            loads[f"{side}_{component}_load"] = share * strain * size
     pressed_in = strain * height
-    found["radius"] = values["length"] ** 2 / (
+    loads["radius"] = values["length"] ** 2 / (
         8.0 * pressed_in * 10.0 ** generator.uniform(-1.5, 1.5)
     )
     if generator.random() < 0.1:
-        found["body_force_y"] = -strain * young / height
+        loads["body_force_y"] = -strain * young / height
     if generator.random() < 0.1:
-        found["body_force_x"] = values["friction"] * strain * young / height * _share(generator)
-    return found
+        loads["body_force_x"] = values["friction"] * strain * young / height * _share(generator)
+    return loads
 
 
 def layers_loads(values: Values, generator: Generator) -> Sizes:
@@ -84,16 +84,16 @@ def layers_loads(values: Values, generator: Generator) -> Sizes:
     # Shear in the middle of a cantilever, 3/2 of the mean, under a force at its end.
     bent = carried * length**3 / (0.375 * values["young"] * height**2)
     moment = carried * length * height / 3.0
-    found = {
+    loads = {
         "pressure": pressure,
         "pressure_load": pressure,
         "deflection": bent * _share(generator),
         "moment": moment * _share(generator),
     }
-    found["bend_load"] = found["deflection" if values["bending"] == "deflection" else "moment"]
+    loads["bend_load"] = loads["deflection" if values["bending"] == "deflection" else "moment"]
     if generator.random() < 0.3:
-        found["pull"] = carried * length / height * _share(generator)
-    return found
+        loads["pull"] = carried * length / height * _share(generator)
+    return loads
 
 
 def rope_loads(values: Values, generator: Generator) -> Sizes:

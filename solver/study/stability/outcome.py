@@ -8,10 +8,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
+from scipy.linalg import eigvalsh
 
+from solver.arrays import Array
 from solver.discrete import Problem
-from solver.latin import Latin, Solution, solve
+from solver.latin import Solution, solve
 from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.reference.assembly import assembled_stiffness
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
@@ -19,12 +23,13 @@ from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
-from solver.study.audit.residual import kkt_residual
 from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.study.stability.residual import kkt_residual
 
 AT_ROUNDING = 1e-8
 """Residual of a certified solution, at most, by the equations alone."""
+LARGEST = 2000
+"""Degrees of freedom up to which condition numbers are found."""
 
 
 @dataclass(frozen=True)
@@ -91,51 +96,50 @@ def run(scene: str, values: Mapping[str, object], *, conditions: bool = False) -
             settings = CATALOGUE[scene].settings.checked(values)
             problem, method = discretise(settings), method_of(settings)
             solution = solve(problem, method, watch=False)
-            return _measured(problem, solution, _conditions(problem, method) if conditions else ())
+            structure = substructures = math.nan
+            if conditions:
+                structure = condition_of_structure(problem)
+                substructures = condition_of_substructures(problem, method.direction.of(problem))
+            return _measured(problem, solution, structure, substructures)
         except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")
 
 
-def _conditions(problem: Problem, method: Latin) -> tuple[float, float]:
-    k = method.direction.of(problem)
-    return condition_of_structure(problem), condition_of_substructures(problem, k)
-
-
-def _measured(problem: Problem, solution: Solution, conditions: tuple[float, ...]) -> Outcome:
+def _measured(
+    problem: Problem, solution: Solution, structure: float, substructures: float
+) -> Outcome:
     """Compare a solution with the reference, and with the equations if it is certified."""
     iterate, status = solution.iterate, solution.status
     if not all(np.isfinite(one).all() for one in (iterate.displacement, iterate.contact_force)):
         return Outcome(status.ending, status.advice, iterations=iterate.number, finite=False)
     reference, doubt = _reference(problem)
-    errors = math.nan, math.nan
-    if reference is not None:
-        distance = distance_to(reference, problem)
-        errors = distance.of_displacement(iterate), distance.of_friction_force(iterate)
+    distance = None if reference is None else distance_to(reference, problem)
     residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
     floor = kkt_residual(reference, problem) if reference and residual > AT_ROUNDING else 0.0
     last = solution.records[-1] if solution.records else None
     return Outcome(
         status.ending,
         status.advice,
-        solution.is_certified,
-        iterate.number,
-        last.seconds if last else iterate.seconds,
-        last.estimated_error if last else math.nan,
-        latin_indicator(iterate),
-        behaviour_indicator(iterate),
-        *errors,
-        residual,
-        floor,
-        doubt,
-        True,
-        *conditions,
+        certified=solution.is_certified,
+        iterations=iterate.number,
+        seconds=last.seconds if last else iterate.seconds,
+        estimated_error=last.estimated_error if last else math.nan,
+        indicator=latin_indicator(iterate),
+        behaviour=behaviour_indicator(iterate),
+        error_displacement=distance.of_displacement(iterate) if distance else math.nan,
+        error_force=distance.of_friction_force(iterate) if distance else math.nan,
+        residual=residual,
+        floor=floor,
+        doubt=doubt,
+        condition_structure=structure,
+        condition_substructure=substructures,
     )
 
 
 def _reference(problem: Problem) -> tuple[Reference | None, str]:
-    """Give the reference, if there is one, and why it is not the one solution."""
+    """The reference, if there is one, and why it is not the one solution."""
     try:
         reference = reference_of(problem)
     except NoReferenceError as refusal:
@@ -147,3 +151,37 @@ def _reference(problem: Problem) -> tuple[Reference | None, str]:
         return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
     several = np.count_nonzero(reference.ambiguous)
     return reference, f"there are several solutions at {several} instants" if several else ""
+
+
+def condition_of_structure(problem: Problem) -> float:
+    """Condition number of the assembled stiffness without its held points."""
+    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
+    return _condition(assembled_stiffness(problem)[free][:, free])
+
+
+def condition_of_substructures(problem: Problem, k: Array) -> float:
+    """Largest condition number of K + B' k B over the substructures.
+
+    Parameters
+    ----------
+    problem, k
+        The structure, and the search direction, shape (n_rows,).
+    """
+    numbers = {}
+    for part in problem.substructures:
+        key = (id(part.elasticity), k[part.rows].tobytes())
+        if key not in numbers:
+            springs = np.zeros(len(part.dofs))
+            np.add.at(springs, part.elasticity.trace, k[part.rows])
+            stiffness = sparse.csr_array(part.elasticity.stiffness)
+            numbers[key] = _condition(sparse.csr_array(stiffness + sparse.diags_array(springs)))
+    return max(numbers.values())
+
+
+def _condition(matrix: sparse.csr_array) -> float:
+    """Largest over smallest eigenvalue of a symmetric matrix; infinite if that is zero."""
+    if matrix.shape[0] > LARGEST:
+        return math.nan
+    values = eigvalsh(matrix.toarray())
+    rounding = len(values) * np.finfo(float).eps * values[-1]
+    return float(values[-1] / values[0]) if values[0] > rounding else math.inf

@@ -1,4 +1,7 @@
-"""What whole runs take beside what `solver.latin.run_cost` expects of them."""
+"""What whole runs take beside what `solver.latin.run_cost` expects of them.
+
+`python tests/benchmarks/whole_cost.py`
+"""
 
 from __future__ import annotations
 
@@ -52,3 +55,7 @@ def measured(settings: Settings) -> tuple[float, float, float]:
     whole = time.process_time()
     reference_of(discretise(settings))
     return whole - began, memory_of(settings) / 1e6, time.process_time() - whole
+
+
+if __name__ == "__main__":
+    print_whole_cost()

@@ -1,26 +1,15 @@
-"""Runs that are audited: what each has to come to, and its verdict by one rule."""
+"""Runs that are judged by one rule."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from enum import StrEnum
 
 from solver.latin import Ending
-from solver.study.audit.outcome import AT_ROUNDING, Outcome, run
 from solver.study.quantities.finished import BROKEN, REFUSED
-
-
-class Verdict(StrEnum):
-    """What a run is worth."""
-
-    RIGHT = "right"
-    UNSOLVED = "unsolved"
-    REFUSED = "refused"
-    UNCLEAR = "unclear"
-    WRONG = "wrong"
-
+from solver.study.stability.case import PASSING, Case, Verdict
+from solver.study.stability.outcome import AT_ROUNDING, Outcome, run
 
 MEANING: dict[str, str] = {
     Verdict.RIGHT: "the errors are as small as they have to be; or certified, and the equations "
@@ -32,67 +21,38 @@ MEANING: dict[str, str] = {
     Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
     "not finite, or ended in a warning or an exception",
 }
-SOUND = frozenset(Verdict) - {Verdict.WRONG}
 
 
 @dataclass(frozen=True)
-class Trial:
-    """A run that is to be made, and what may come of it.
+class JudgedRun:
+    """A case, what it came to, and what that is worth."""
 
-    Attributes
-    ----------
-    scene, method
-        Of the run, as its tables name them.
-    title
-        What tells it from others.
-    values
-        Settings that differ from the scene's own.
-    error_force, error_displacement
-        Errors up to which its answer is right.
-    passing
-        Verdicts that it may have.
-    conditions
-        Whether its condition numbers are wanted.
-    labels
-        What stands in its table besides.
-    again
-        Commands that repeat it.
-    """
-
-    scene: str
-    method: str
-    title: str
-    values: Mapping[str, object]
-    error_force: float
-    error_displacement: float
-    passing: frozenset[Verdict]
-    conditions: bool
-    labels: Mapping[str, object]
-    again: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Audited:
-    """A trial, what it came to, and what that is worth."""
-
-    trial: Trial
+    case: Case
     outcome: Outcome
 
     @property
     def verdict(self) -> Verdict:
         """What it is worth."""
-        return judge(self.outcome, self.trial.error_force, self.trial.error_displacement)
+        return judge(self.outcome, self.case.error_force, self.case.error_displacement)
 
     @property
     def passed(self) -> bool:
         """Whether it came to what it has to."""
-        return self.verdict in self.trial.passing
+        return self.verdict in PASSING[self.case.expected]
 
 
-def audit(trials: Iterable[Trial]) -> Iterator[Audited]:
-    """Run trials, and yield each as soon as it is done."""
-    for trial in trials:
-        yield Audited(trial, run(trial.scene, trial.values, conditions=trial.conditions))
+def judged_runs(cases: Iterable[Case], *, conditions: bool) -> Iterator[JudgedRun]:
+    """Run cases, and yield each as soon as it is done.
+
+    Parameters
+    ----------
+    cases
+        What is to be run.
+    conditions
+        Whether condition numbers are wanted, which take their time.
+    """
+    for case in cases:
+        yield JudgedRun(case, run(case.scene, case.values, conditions=conditions))
 
 
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:

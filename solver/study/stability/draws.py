@@ -19,7 +19,7 @@ from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.audit.random_loads import LOADS
+from solver.study.stability.random_loads import LOADS
 
 LARGEST_FIELD = 12_000
 """Displacements times instants of a run, at most: a thousand iterations then stay within seconds;
@@ -51,14 +51,14 @@ TRIALS = 1000
 
 
 def draw(scene: str, seed: int, row: int) -> Settings:
-    """Draw the settings of one row of a survey; the same numbers give the same settings.
+    """Draw the settings of one random run; the same numbers give the same settings.
 
     Parameters
     ----------
     scene
         A name of the catalogue.
     seed, row
-        Of the survey, and the row's number in it.
+        Of all runs, and the number of this one.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def draw(scene: str, seed: int, row: int) -> Settings:
 
 
 def is_foolish(settings: Settings) -> bool:
-    """Tell whether a factor on k, or what they make together, is far from one."""
+    """Whether a factor on k, or what they make together, is far from one."""
     factors = [
         value
         for name, value in settings.values().items()
@@ -128,7 +128,7 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
 
 
 def _often(name: str, group: str, mixed: bool) -> float:
-    """Say how often a setting is drawn; those of the method seldom but in mixed ones."""
+    """How often a setting is drawn; those of the method seldom but in mixed ones."""
     if name in ("linear_stage", "accuracy", "tolerance"):
         return CHANGED
     if name.startswith("k_") and name.endswith("_scale"):
@@ -142,22 +142,22 @@ def _often(name: str, group: str, mixed: bool) -> float:
 
 def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:
     """Draw the mesh, its cuts, and as many instants as there is room for."""
-    found: dict[str, Any] = {}
+    mesh: dict[str, Any] = {}
     while True:
         usual = BODY if "elements_up" in definitions else ROD
         for name, (low, high) in MESHES.get(scene, usual).items():
-            found[name] = min(int(log_uniform(generator, low, high + 1)), high)
-        unknowns = math.prod(found.values()) * (2 if "elements_up" in found else 1)
+            mesh[name] = min(int(log_uniform(generator, low, high + 1)), high)
+        unknowns = math.prod(mesh.values()) * (2 if "elements_up" in mesh else 1)
         if unknowns <= LARGEST_FIELD // 3:
             break
     most = min(MOST_INSTANTS, LARGEST_FIELD // unknowns)
     fewest = max(1, most // 3) if generator.random() < 0.7 else 1
-    found["instants"] = int(log_uniform(generator, fewest, most + 1))
+    mesh["instants"] = int(log_uniform(generator, fewest, most + 1))
     for name, (elements, largest) in CUTS.items():
         if name in definitions:
-            most_cuts = min(found[elements], largest)
-            found[name] = min(int(log_uniform(generator, 1, most_cuts + 1)), most_cuts)
-    return found
+            most_cuts = min(mesh[elements], largest)
+            mesh[name] = min(int(log_uniform(generator, 1, most_cuts + 1)), most_cuts)
+    return mesh
 
 
 def _stretch(

@@ -1,4 +1,4 @@
-"""What a figure of the paper is here: charts, the claim that they test, the numbers that decide."""
+"""A figure of the paper, drawn again, with the claim that it tests and the numbers that decide."""
 
 from __future__ import annotations
 
@@ -6,6 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from solver.study.chart import Panel
+
+LOAD = (
+    "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of 900 N, "
+    "relaxation 0.8, all else as in Table 1."
+)
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,11 @@ class PaperFigure:
     claim: str
     findings: tuple[Finding, ...]
     caption: str
+
+    @property
+    def heading(self) -> str:
+        """Number and title."""
+        return f"Fig. {self.number}: {self.title}"
 
     @property
     def values(self) -> dict[str, float]:

@@ -1,0 +1,278 @@
+"""Figs. 5 to 8 of the paper, drawn again: how few modes in space and time hold which field."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.latin import Iterate
+from solver.reduction.svd import Decomposition, against_front, front_decay
+from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.figures.figure import LOAD, Finding, PaperFigure
+from solver.study.figures.paper_runs import PaperRuns
+
+ALIKE = 0.9
+"""Correlation from which two modes count as alike."""
+SHARES = (0.1, 0.01, 0.001)
+"""Errors for which modes are counted."""
+PLACE = PanelAxis("Position x", "m")
+MODE = PanelAxis("Space mode", "1/√m")
+
+
+def figure_5(runs: PaperRuns) -> PaperFigure:
+    """Draw the singular values of the friction force in every substructure."""
+    parts = runs.friction_forces
+    largest = max(part.values[0] for part in parts)
+    noise = runs.five.records[-1].error_force
+    orders = np.arange(1.0, len(parts[-1].values) + 1.0)
+    curves = [
+        PanelCurve(f"substructure {number}", orders, part.values / largest, number, "points")
+        for number, part in enumerate(parts, start=1)
+    ]
+    front = PanelCurve("1/(2n − 1)", orders, front_decay(len(orders)), 0, "dotted")
+    error = PanelCurve("error of the solution", orders, np.full(len(orders), noise), 0, "dashed")
+    panels = tuple(
+        Panel(
+            title,
+            PanelAxis("Mode n", whole=True),
+            PanelAxis("Singular value / largest", logarithmic=True, limits=limits),
+            (*shown, front, *below),
+        )
+        for title, limits, shown, below in (
+            ("All, numbered from the clamp", (1e-11, 3.0), curves, [error]),
+            ("Those that the front sweeps", (1e-2, 1.5), curves[2:], []),
+        )
+    )
+    return PaperFigure(
+        5,
+        "Singular values of the friction force, 5 substructures",
+        panels,
+        "In substructures 1 and 2, which mostly stick, the singular values fall very rapidly; in 3 "
+        "to 5, which a large sliding front sweeps, very slowly.",
+        (_mode_counts(parts, noise * largest), _decay(parts, largest), _as_a_front(parts[2:])),
+        "SVD of the converged friction force per length, weighted in space and time, relative to "
+        "the largest value of all substructures; dotted: a front of constant speed. Values below "
+        f"{noise:.0e} of the largest are below the solution's own error: at 900 N nothing slides "
+        "in substructure 1, and of substructure 2 only the end, so their fast decay is the load's "
+        f"doing. {LOAD}",
+    )
+
+
+def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
+    """Numbers of modes by substructure; a field below the solution's error counts as zero."""
+    counts = [
+        [part.modes_for(share) if part.values[0] > noise else 0 for share in SHARES]
+        for part in parts
+    ]
+    words = ", ".join(
+        f"{'/'.join(map(str, row))} in substructure {number}"
+        for number, row in enumerate(counts, start=1)
+    )
+    one_percent = [row[1] for row in counts]
+    return Finding(
+        f"Modes that leave at most 10/1/0.1 % of a substructure's friction force: {words}. All "
+        f"would be {len(parts[0].values)}.",
+        {
+            f"modes_{number}_{share:g}": count
+            for number, row in enumerate(counts, start=1)
+            for share, count in zip(SHARES, row, strict=True)
+        },
+        3 * max(one_percent[:2]) <= min(one_percent[2:]),
+    )
+
+
+def _decay(parts: Sequence[Decomposition], largest: float) -> Finding:
+    """The fifth singular value of every substructure beside the largest of all."""
+    shares = [float(part.values[4] / largest) for part in parts]
+    words = ", ".join(f"{share:.1g}" for share in shares)
+    return Finding(
+        f"Fifth singular value over the largest of all, substructures 1 to 5: {words}.",
+        {f"fifth_{number}": share for number, share in enumerate(shares, start=1)},
+        1000.0 * max(shares[:2]) <= min(shares[2:]),
+    )
+
+
+def _as_a_front(parts: Sequence[Decomposition]) -> Finding:
+    """The decay in the swept substructures beside that of a constant-speed front."""
+    ratios = np.array([against_front(part.values)[:5] for part in parts])
+    low, high = float(ratios.min()), float(ratios.max())
+    return Finding(
+        f"In substructures 3 to 5 the singular values 1 to 5, over the first, are {low:.2f} to "
+        f"{high:.2f} times 1/(2n − 1), that of a front of constant speed.",
+        {"front_low": low, "front_high": high},
+        low >= 0.5 and high <= 1.5,
+    )
+
+
+def figure_6(runs: PaperRuns) -> PaperFigure:
+    """Draw the friction force's space modes 1, 3 and 5 in substructures 4 and 5."""
+    fourth, fifth = runs.friction_forces[3:]
+    alike = fourth.correlations(fifth.space_modes)
+    turned = fifth.space_modes * np.sign(alike)
+    inside = fourth.positions - fourth.positions[0]
+    top = 1.1 * float(np.abs([fourth.space_modes[:, :5], turned[:, :5]]).max())
+    panels = tuple(
+        Panel(
+            f"Mode {order}",
+            PanelAxis("Position in the substructure", "m"),
+            PanelAxis(MODE.quantity, MODE.unit, limits=(-top, top)),
+            (
+                PanelCurve("substructure 4", inside, fourth.space_modes[:, order - 1], 4),
+                PanelCurve("substructure 5", inside, turned[:, order - 1], 5, "dashed"),
+            ),
+        )
+        for order in (1, 3, 5)
+    )
+    values = {order: float(np.abs(alike[order - 1])) for order in (1, 3, 5)}
+    words = ", ".join(f"{value:.3f}" for value in values.values())
+    likeness = Finding(
+        f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}.",
+        {f"likeness_4_5_{order}": value for order, value in values.items()},
+        min(values.values()) >= ALIKE,
+    )
+    return PaperFigure(
+        6,
+        "SVD modes of the friction force in substructures 4 and 5",
+        panels,
+        "Substructures 4 and 5 stick and slide alike, so their modes have similar shapes, global "
+        "in the first modes and local in the later ones.",
+        (likeness, _sign_changes(fourth, fifth)),
+        "5 substructures, converged; modes orthonormal in L2 over the substructure, the sign of "
+        f"those of 5 chosen to fit those of 4. {LOAD}",
+    )
+
+
+def _sign_changes(fourth: Decomposition, fifth: Decomposition) -> Finding:
+    """Numbers of sign changes along modes 1, 3, 5: how local they are."""
+    counts = [
+        [int(np.count_nonzero(np.diff(np.sign(part.space_modes[:, order])))) for order in (0, 2, 4)]
+        for part in (fourth, fifth)
+    ]
+    words = " and ".join(", ".join(map(str, row)) for row in counts)
+    return Finding(
+        f"Modes 1, 3, 5 change sign {words} times (substructures 4 and 5): later modes are more "
+        "local.",
+        {
+            f"sign_changes_{number}_{order}": count
+            for number, row in zip((4, 5), counts, strict=True)
+            for order, count in zip((1, 3, 5), row, strict=True)
+        },
+        all(row[0] < row[1] < row[2] for row in counts),
+    )
+
+
+def figure_7(runs: PaperRuns) -> PaperFigure:
+    """Draw the first three SVD modes of the displacement of substructure 5."""
+    displacement, force = runs.displacements[-1], runs.friction_forces[-1]
+    curves = tuple(
+        PanelCurve(
+            f"mode {order}", displacement.positions, displacement.space_modes[:, order - 1], order
+        )
+        for order in (1, 2, 3)
+    )
+    left = {rank: float(displacement.errors[rank]) for rank in (1, 2, 3)}
+    counts = displacement.modes_for(0.01), force.modes_for(0.01)
+    reducible = Finding(
+        f"The first 1, 2, 3 modes leave {left[1]:.1%}, {left[2]:.2%}, {left[3]:.2%} of the "
+        f"displacement; 1 % takes {counts[0]} modes, where the friction force takes {counts[1]} of "
+        f"its {len(force.values)}.",
+        {f"left_by_{rank}": share for rank, share in left.items()}
+        | {"modes_displacement": counts[0], "modes_force": counts[1]},
+        left[3] <= 0.01,
+    )
+    return PaperFigure(
+        7,
+        "SVD modes of the displacement of substructure 5",
+        (Panel("SVD of the converged displacement", PLACE, MODE, curves),),
+        "The first three SVD modes of the displacement of substructure 5 are what those of the PGD "
+        "(Fig. 8) are to be compared with.",
+        (reducible,),
+        f"5 substructures, converged; modes orthonormal in L2 over the substructure. {LOAD}",
+    )
+
+
+def figure_8(runs: PaperRuns) -> PaperFigure:
+    """Draw the first three displacement modes of the PGD in substructure 5."""
+    exact, last = runs.displacements[-1], runs.five_reduced.last
+    kept = _displacement_modes(last)[:, :3]
+    root = np.sqrt(exact.space_weights)[:, None]
+    sorted_ = np.linalg.qr(kept * root)[0] / root
+    panels = tuple(
+        Panel(title, PLACE, MODE, tuple(_beside_svd(exact, modes)))
+        for title, modes in (
+            ("PGD modes, orthonormalised in order", sorted_),
+            ("PGD modes as the iteration keeps them", kept),
+        )
+    )
+    return PaperFigure(
+        8,
+        "PGD modes of the displacement of substructure 5",
+        panels,
+        "With sorting and downsizing, the first three PGD modes of the displacement correlate well "
+        "with the first three SVD modes.",
+        (
+            _correlation(exact, sorted_, "sorted", "orthonormalised in order"),
+            _correlation(exact, kept, "kept", "as the iteration keeps them"),
+            _reduced_errors(runs),
+        ),
+        f"5 substructures, PGD at its default settings, iterate {last.number}; dotted: the SVD "
+        "modes of Fig. 7. The PGD keeps displacement and force in one basis, orthonormal and "
+        "sorted in the norm of the search direction, so the displacement parts of its modes "
+        "overlap. Left, they are made orthonormal in L2 one after the other, which leaves their "
+        f"span as it is. {LOAD}",
+    )
+
+
+def _displacement_modes(iterate: Iterate) -> Array:
+    """The PGD's displacement modes of the last substructure on its friction rows."""
+    part = iterate.problem.substructures[-1]
+    rubs = np.isin(part.rows, iterate.problem.friction.tangent.above)
+    modes: Array = iterate.bases[-1].displacement_modes[rubs]
+    return modes
+
+
+def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
+    """Modes at length one, turned to the side of the SVD modes that are dotted."""
+    turned = modes * np.sign(exact.correlations(modes)) / np.sqrt(exact.space_weights @ modes**2)
+    curves = []
+    for order, (pgd, svd) in enumerate(zip(turned.T, exact.space_modes.T, strict=False), start=1):
+        curves += [
+            PanelCurve(f"PGD {order}", exact.positions, pgd, order),
+            PanelCurve(f"SVD {order}", exact.positions, svd, order, "dotted"),
+        ]
+    return curves
+
+
+def _correlation(exact: Decomposition, modes: Array, name: str, words: str) -> Finding:
+    """Correlation of modes, shape (n_points, n), with the SVD modes of the same order."""
+    values = np.abs(exact.correlations(modes))
+    shown = ", ".join(f"{value:.3f}" for value in values)
+    return Finding(
+        f"Correlation of PGD with SVD modes 1, 2, 3, {words}: {shown}.",
+        {f"{name}_{order}": float(value) for order, value in enumerate(values, start=1)},
+        bool(values.min() >= ALIKE),
+    )
+
+
+def _reduced_errors(runs: PaperRuns) -> Finding:
+    """Size of the bases, and what they miss, at the end of the run with PGD."""
+    last = runs.five_reduced.records[-1]
+    modes = [basis.n_modes for basis in runs.five_reduced.last.bases]
+    best, best_force = (
+        "/".join(str(part.modes_for(share)) for share in SHARES)
+        for part in (runs.displacements[-1], runs.friction_forces[-1])
+    )
+    return Finding(
+        f"The PGD keeps {', '.join(map(str, modes))} modes in substructures 1 to {len(modes)}; the "
+        f"displacement is then {last.error_displacement:.1%} wrong, the friction force "
+        f"{last.error_force:.1%}. In substructure {len(modes)} an SVD takes {best} modes for "
+        f"10/1/0.1 % of the displacement alone, {best_force} for the friction force alone.",
+        {
+            "largest_basis": max(modes),
+            "error_displacement": last.error_displacement,
+            "error_force": last.error_force,
+        },
+        last.error_displacement <= 0.01,
+    )

@@ -1,0 +1,144 @@
+"""A case: a run that is to be made, and what may come of it; loads and sections that many share."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+
+from solver.definitions import Pairs
+
+
+class Verdict(StrEnum):
+    """What a run is worth."""
+
+    RIGHT = "right"
+    UNSOLVED = "unsolved"
+    REFUSED = "refused"
+    UNCLEAR = "unclear"
+    WRONG = "wrong"
+
+
+RIGHT = "right answer"
+UNSOLVED = "right answer, or said not to be"
+MUST_REFUSE = "refused in words"
+UNCLEAR = "right answer, or one that cannot be judged"
+NOT_WRONG = "anything but a wrong answer"
+PASSING = {
+    RIGHT: {Verdict.RIGHT},
+    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
+    MUST_REFUSE: {Verdict.REFUSED},
+    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    NOT_WRONG: set(Verdict) - {Verdict.WRONG},
+}
+"""Verdicts with which a run passes, by what is expected of it."""
+PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
+"""Tight, so that whoever is called converged has to be right; enough for most cases."""
+RIGHT_UP_TO = 1e-6
+"""Error of displacement and contact force up to which an answer is right."""
+METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run that is to be made, and what may come of it.
+
+    Attributes
+    ----------
+    group, name
+        What is extreme, and how much; or that it is random, and which one.
+    values
+        Settings that differ from the scene's own.
+    expected
+        A key of `PASSING`: `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its
+        digits; `MUST_REFUSE` where there is no solution; `UNCLEAR` where friction is so large that
+        there may be several.
+    quick
+        Whether it is one of the few for a short check.
+    scene, method
+        As tables name them.
+    error_force, error_displacement
+        Errors up to which the answer is right.
+    """
+
+    group: str
+    name: str
+    values: Mapping[str, object] = field(default_factory=dict)
+    expected: str = RIGHT
+    quick: bool = False
+    scene: str = "bar"
+    method: str = "fast"
+    error_force: float = RIGHT_UP_TO
+    error_displacement: float = RIGHT_UP_TO
+
+    def by(self, method: str) -> Case:
+        """The same by one of `METHODS`, precisely."""
+        return replace(self, method=method, values={**PRECISE, **METHODS[method], **self.values})
+
+    @property
+    def command(self) -> str:
+        """The command that makes the run."""
+        texts = {
+            name: value if isinstance(value, str) else json.dumps(value)
+            for name, value in self.values.items()
+        }
+        changes = (f"--set {shlex.quote(f'{name}={text}')}" for name, text in texts.items())
+        return " ".join([f"python -m solver run {self.scene}", *changes])
+
+
+def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
+    """A function that makes cases of a scene which have some settings in common."""
+
+    def case(
+        group: str,
+        name: str,
+        values: Mapping[str, object],
+        expected: str = RIGHT,
+        quick: bool = False,
+    ) -> Case:
+        return Case(group, name, {**usual, **values}, expected, quick, scene)
+
+    return case
+
+
+def reversals(instants: int, peak: float) -> Pairs:
+    """A load of full size that turns at every instant of a second, (s, N)."""
+    step = 1.0 / (instants - 1)
+    return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
+
+
+JUMP_WIDTH = 1e-9
+"""Share of an element beside its ends, within which a section changes to that of the next."""
+
+
+def graded(contrast: float, elements: int) -> Pairs:
+    """A section that grows by equal factors from element to element of a bar of 1 m.
+
+    Parameters
+    ----------
+    contrast
+        Last over first section; their geometric mean stays what it was.
+    elements
+        Number of elements.
+    """
+    factors = contrast ** np.linspace(-0.5, 0.5, elements)
+    return tuple(
+        ((i + end) / elements, float(factor))
+        for i, factor in enumerate(factors)
+        for end in (JUMP_WIDTH, 1.0 - JUMP_WIDTH)
+    )
+
+
+JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
+PLATEAUS: Pairs = (
+    (0.0, 0.0),
+    (0.2, 800.0),
+    (0.4, 800.0),
+    (0.6, -400.0),
+    (0.8, -400.0),
+    (1.0, 700.0),
+)

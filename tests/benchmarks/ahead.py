@@ -1,0 +1,162 @@
+"""LATIN beside the incremental solver on the same mesh: who is first, and how LATIN gets there.
+
+`python tests/benchmarks/ahead.py`, of one group `ahead.py strand`; `--large` for those of minutes
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import statistics
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from itertools import islice
+from multiprocessing import get_context
+from typing import Any
+
+from solver.latin import Ending, iterations, judged
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import distance_to
+from solver.running.machine import machine
+from solver.running.processes import ONE_THREAD
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.speed.timed import by_increments, by_latin, latin, seconds_of
+
+GOAL = 0.01
+"""Error of the contact force that LATIN's own way is to reach."""
+NEAR = 0.1
+"""Error of the iterate above which a solution that a status step finds is not LATIN's."""
+MOST = 300
+"""Iterations of LATIN's own way."""
+REPEATS = 3
+CELL = 24
+"""Elements along a substructure of a block, and up it."""
+WIDTHS = (44, 9, 9, 6, 11, 9, 15, 20)
+HEAD = (
+    *("problem", "LATIN, s", "incr., s", "ratio", "iterations", "found at"),
+    *("own way to 1 %", "and known there"),
+)
+NOTES = (
+    "Medians, in seconds of the processor from settings to result, in turns; every problem in a "
+    "process of its own. LATIN: `solve` with the scene's defaults. incr.: the incremental solver.",
+    "found at: error of the iterate from which a status step found the solution; with * above "
+    f"{NEAR:.0%}, so the incremental solver answered, from LATIN's statuses.",
+    f"own way: iterations and seconds until the contact force is within {GOAL:.0%}, without a "
+    f"status step at the end and without what judges iterates; - is more than {MOST}.",
+    "known: when such a run says itself that it has converged, all billed, and whether a status "
+    "step certifies that or it is an estimate.",
+)
+Problem = tuple[str, dict[str, Any]]
+"""A scene, and what differs from its settings."""
+
+
+def _block(elements: int) -> Problem:
+    sizes = {"elements": elements, "elements_up": elements // 2, "instants": 51}
+    cuts = {"substructures": elements // CELL, "substructures_up": elements // 2 // CELL}
+    return "block", {**sizes, **cuts}
+
+
+def _strand(wires: int) -> Problem:
+    return "strand", {"wires": wires, "elements": 100, "instants": 101}
+
+
+PROBLEMS: dict[str, list[Problem]] = {
+    "scenes": [(scene, {}) for scene in CATALOGUE],
+    "strand": [_strand(wires) for wires in (3, 10, 20)],
+    "block": [_block(elements) for elements in (48, 96, 192, 384)],
+    "layers": [("layers", {"layers": layers}) for layers in (4, 10, 20)],
+    "thin": [("layers", {"length": 0.01 * n, "thickness": 0.01}) for n in (200, 500, 1000)],
+}
+LARGE: dict[str, list[Problem]] = {
+    "scenes": [("bar", {"elements": 1600, "instants": 1600})],
+    "strand": [_strand(40)],
+    "block": [_block(768)],
+    "layers": [("layers", {"layers": 40}), ("layers", {"layers": 20, "elements": 96})],
+}
+
+
+def measure(scene: str, changes: dict[str, Any]) -> list[str]:
+    """Cells of a row: LATIN's time and the other's, and LATIN's own way."""
+    settings = CATALOGUE[scene].settings.checked(changes)
+    has_reference, own_at, known_at, known_by = _course(settings)
+    solution = latin(settings)
+    number, found_at = len(solution.records), "-"
+    if solution.is_certified and number > 1:
+        error = solution.records[-2].estimated_error
+        found_at = f"{100.0 * error:.2g} %{' *' if error > NEAR else ''}"
+    del solution
+    samples = [
+        (
+            by_latin(settings),
+            by_increments(settings) if has_reference else math.nan,
+            _seconds(settings, iterations, own_at),
+            _seconds(settings, judged, known_at),
+        )
+        for _ in range(REPEATS)
+    ]
+    mine, other, own, known = map(statistics.median, zip(*samples, strict=True))
+    return [
+        " ".join([scene, *(f"{name}={value:g}" for name, value in changes.items())]),
+        *(f"{mine:.2g}", f"{other:.2g}", f"{mine / other:.2g}", str(number), found_at),
+        f"{own_at} in {own:.2g}" if own_at else "-",
+        f"{known_at} in {known:.2g} {known_by}" if known_at else "-",
+    ]
+
+
+def _course(settings: Settings) -> tuple[bool, int, int, str]:
+    """When LATIN's own way is within the goal, and when and by what it is known; 0 for never."""
+    problem = discretise(settings)
+    try:
+        distance = distance_to(reference_of(problem), problem)
+    except NoReferenceError:
+        distance = None
+    own_at, known_at, known_by = 0, 0, ""
+    method = method_of(settings.replace(finish="none"))
+    for iterate, verdict in islice(judged(problem, method, resumable=False), MOST):
+        if not own_at and distance and distance.of_friction_force(iterate) <= GOAL:
+            own_at = iterate.number
+        if not known_at and verdict.status and verdict.status.ending is Ending.CONVERGED:
+            known_at = iterate.number
+            known_by = "estimate" if verdict.certificate is None else "certified"
+        if known_at and (own_at or distance is None):
+            break
+    return distance is not None, own_at, known_at, known_by
+
+
+def _seconds(settings: Settings, way: Callable[..., Iterator[object]], number: int) -> float:
+    """Seconds of so many iterations that no status step ends; NaN of none."""
+    own = settings.replace(finish="none")
+
+    def work() -> None:
+        for _ in islice(way(discretise(own), method_of(own), resumable=False), number):
+            pass
+
+    return seconds_of(work) if number else math.nan
+
+
+def main() -> None:
+    """Print a row of each problem as soon as it is there."""
+    parser = argparse.ArgumentParser(description="LATIN beside the incremental solver.")
+    parser.add_argument("group", nargs="?", choices=PROBLEMS, help="these problems alone")
+    parser.add_argument("--large", action="store_true", help="those of minutes too")
+    chosen = parser.parse_args()
+    groups = [chosen.group] if chosen.group else list(PROBLEMS)
+    problems = [one for group in groups for one in PROBLEMS[group]]
+    if chosen.large:
+        problems += [one for group in groups for one in LARGE.get(group, [])]
+    os.environ.update(ONE_THREAD)
+    print(machine())
+    options: dict[str, Any] = {"max_tasks_per_child": 1, "mp_context": get_context("spawn")}
+    with ProcessPoolExecutor(1, **options) as pool:
+        for row in (HEAD, *pool.map(measure, *zip(*problems, strict=True))):
+            cells = zip(row, WIDTHS, strict=True)
+            print("  ".join(cell.ljust(width) for cell, width in cells).rstrip(), flush=True)
+    print(*NOTES, sep="\n")
+
+
+if __name__ == "__main__":
+    main()
