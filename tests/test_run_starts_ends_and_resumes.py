@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options, sample
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from solver.latin import (
     PGD,
@@ -30,6 +31,7 @@ from solver.latin import (
     solve,
 )
 from solver.latin.blocks import Blocks
+from solver.latin.iteration import Iteration
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.refusal import RefusedError
@@ -167,6 +169,20 @@ def test_iterates_are_the_same_to_the_bit_whatever_the_threads(scene):
     )
     assert np.array_equal(one.outgoing, several.outgoing)
     assert np.array_equal(one.local_displacement, several.local_displacement)
+
+
+def test_blas_has_one_thread_while_an_iteration_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+    def threads() -> set[int]:
+        return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
+
+    seen: list[set[int]] = []
+    stage = Iteration.linear_stage
+    monkeypatch.setattr(Iteration, "linear_stage", lambda at: (seen.append(threads()), stage(at)))
+    settings = BarSettings.checked(SMALL_BAR)
+    with threadpool_limits(2, user_api="blas"):
+        for _ in islice(iterations(discretise(settings), method_of(settings)), 2):
+            assert threads() == {2}
+    assert seen == [{1}, {1}]
 
 
 SMALL_BAR = {"elements": 20, "instants": 11, "substructures": 4, "search_direction": "paper"}

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager
+from functools import cache
 from itertools import accumulate, pairwise
+
+import scipy.linalg  # noqa: F401  # brings its own BLAS, which is looked for below
+from threadpoolctl import ThreadpoolController
 
 VALUES = 100_000
 """Least numbers of a boundary field in a block: of less, handing it to a thread costs a share of
@@ -43,6 +48,17 @@ class Blocks:
         # Read to the end, so that an error in a thread is raised here.
         for _ in self._pool.map(work, self.slices):
             pass
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    return ThreadpoolController()
+
+
+def one_blas_thread() -> AbstractContextManager[object]:
+    """Have BLAS work on one thread meanwhile: products of few rows take longer on several."""
+    limit: AbstractContextManager[object] = _libraries().limit(limits=1, user_api="blas")
+    return limit
 
 
 def at_once(n_instants: int) -> Blocks:

@@ -13,7 +13,7 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks
+from solver.latin.blocks import Blocks, one_blas_thread
 from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.local_stage import LocalStage
 from solver.latin.method import Latin
@@ -48,11 +48,13 @@ def iterations(
     Snapshots, one per iteration; their seconds stand still while the consumer has one.
     """
     began, seconds = time.perf_counter(), start.seconds if start else 0.0
-    iteration = Iteration(problem, latin, start)
+    with one_blas_thread():
+        iteration = Iteration(problem, latin, start)
     for number in count(start.number + 1 if start else 1):
-        iteration.choose_direction()
-        iteration.local_stage()
-        iteration.linear_stage()
+        with one_blas_thread():
+            iteration.choose_direction()
+            iteration.local_stage()
+            iteration.linear_stage()
         seconds += time.perf_counter() - began
         yield iteration.snapshot(number, seconds, resumable=resumable)
         began = time.perf_counter()

@@ -41,7 +41,8 @@ class Latin:
     stop
         When a run ends: `Stop`.
     threads
-        That share an iteration on a large structure; the results are the same to the bit.
+        That share an iteration on a large structure, in each of which BLAS has one; the results
+        are the same to the bit.
 
     Raises
     ------

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
+from solver.latin.blocks import one_blas_thread
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
@@ -119,7 +120,8 @@ def judged(
     """
     rules = StopState(latin, spent)
     for iterate in iterations(problem, latin, start, resumable=resumable):
-        verdict = rules.judge(iterate)
+        with one_blas_thread():
+            verdict = rules.judge(iterate)
         yield iterate, verdict
         if verdict.finished is not None:
             yield verdict.finished, rules.close(verdict.finished)
