@@ -106,7 +106,7 @@ class Display:
         self._is_due = False
         if frame is None:
             return
-        began = time.monotonic()
+        began = time.thread_time()
         with pn.io.hold():
             for view in self.views:
                 try:
@@ -117,7 +117,7 @@ class Display:
             self._also()
             is_seen = self.pulse.painted == self.pulse.sent
             self._count()
-        self._took = time.monotonic() - began
+        self._took = time.thread_time() - began
         if is_seen:
             # The next frame is made while the browser paints this one.
             state.send(Ready())

@@ -23,7 +23,7 @@ def _serve(chosen: argparse.Namespace) -> int:
     from panel.command import main
 
     # A page that is older than Bokeh's five minutes may come back after its network was gone.
-    patient = ["--session-token-expiration", "86400"]
+    patient = ["--session-token-expiration", "86400", "--unused-session-lifetime", "120000"]
     sys.argv = ["panel", "serve", str(APP), *patient, *chosen.passed_on]
     main()
     return 0

@@ -7,6 +7,7 @@ from collections import deque
 from typing import Any
 
 from app.messages import Alive, Order, Report, Start
+from app.server import PAGES
 from app.state import PageState
 from app.worker.process import Worker
 
@@ -37,7 +38,7 @@ class Supervisor:
     def begin(self) -> None:
         """Start the worker."""
         self._state.send = self._send
-        self._worker = Worker(self._on_report)
+        self._worker = Worker(self._on_report, others=max(PAGES.count - 1, 0))
         self._state.send_needs()
 
     def open(self) -> None:

@@ -27,7 +27,7 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 PACES = {"20 a second": ENDLESS, "whole in 3 s": ENDLESS.rpartition("&pace")[0]}
 SECONDS = 20.0
 PATIENT = {"connect_timeout": 600.0, "request_timeout": 600.0}
-LEAVING = 30.0
+LEAVING = 50.0
 """Seconds in which the server ends what belongs to closed pages."""
 READY = {
     "kind": "MessageSent",
@@ -143,6 +143,6 @@ def memory(server: Server) -> float:
 
 
 if __name__ == "__main__":
-    quick = ("--unused-session-lifetime", "6000", "--check-unused-sessions", "1000")
+    quick = ("--unused-session-lifetime", "30000", "--check-unused-sessions", "1000")
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder) / "log", 0, *quick) as made:
         asyncio.run(measure(made, int(sys.argv[1]) if len(sys.argv) > 1 else 30))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -76,7 +76,8 @@ def test_of_many_pages_each_leaves_the_others_time(
     later: list[tuple[Callable[[], None], int]] = []
     document = SimpleNamespace(add_timeout_callback=lambda *call: later.append(call))
     state = PageState(answer.run.settings)
-    display = Display(state, document, lambda: time.sleep(0.02))
+    display = Display(state, document, lambda: None)
+    monkeypatch.setattr("app.browser.time.thread_time", itertools.count().__next__)
     monkeypatch.setattr(app.browser.PAGES, "count", 31)
     state.frame = answer
     state.frame = replace(answer)

@@ -43,7 +43,7 @@ class Process:
 def test_a_worker_is_stuck_only_once_its_page_has_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[Process] = []
 
-    def worker(hear: Callable[[Any, Any], None]) -> Process:
+    def worker(hear: Callable[[Any, Any], None], others: int) -> Process:
         made.append(Process(hear))
         return made[-1]
 

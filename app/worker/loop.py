@@ -18,17 +18,18 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
 
-NICENESS = 5
-"""Below the server, so that pages stay alive; at 10 the first picture of a run waits 0.1 s."""
+NICENESS, NICEST = 5, 15
+"""Of a worker that is alone, so that pages stay alive (at 10 its first picture waits 0.1 s), and
+beside ten others or more: thirty at 5 would leave the server a fifth of a processor."""
 UNSEEN = 30.0
 """Seconds without a picture on the screen after which a run waits: nobody sees it."""
 HEARTBEAT = 2.0
 """Seconds between two signs of life."""
 
 
-def main(connection: Connection) -> None:
+def main(connection: Connection, others: int) -> None:
     """Take orders until the server, or the page, is gone."""
-    os.nice(NICENESS)
+    os.nice(min(NICENESS + others, NICEST))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # A run that diverges is told by its status.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")

@@ -27,13 +27,13 @@ class Worker:
     """A process that runs what it is told.
 
     `hear` is called with this and each report, and with None once the process has ended, on a
-    thread of its own.
+    thread of its own. The more others there are, the nicer it is: the server goes before all.
     """
 
-    def __init__(self, hear: Callable[[Worker, Report | None], None]) -> None:
+    def __init__(self, hear: Callable[[Worker, Report | None], None], others: int = 0) -> None:
         self._hear: Callable[[Worker, Report | None], None] | None = hear
         self._connection, theirs = PROCESSES.Pipe()
-        self._process: Any = PROCESSES.Process(target=main, args=(theirs,), daemon=True)
+        self._process: Any = PROCESSES.Process(target=main, args=(theirs, others), daemon=True)
         self._process.start()
         theirs.close()
         self._heard = time.monotonic()
