@@ -90,12 +90,12 @@ class Question:
 
 
 def question_of(text: str, settings: Settings) -> Question:
-    """The question that a text asks, or the bathtub where settings do not have it."""
+    """The question that a text asks, or iterations over k where settings do not have it."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     names = {setting.partition("=")[0] for setting in vary}
     is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
-    return question if is_known and not question.refusal(settings) else bathtub(settings)
+    return question if is_known and not question.refusal(settings) else iterations_over_k(settings)
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -136,7 +136,7 @@ def proposed(settings: Settings, name: str) -> str:
     return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_log}"
 
 
-def bathtub(settings: Settings, name: str = "acceleration") -> Question:
+def iterations_over_k(settings: Settings, name: str = "acceleration") -> Question:
     """Iterations over the search direction, for the values of another setting."""
     vary = [proposed(settings, "k_scale")]
     if name == "substructures":
@@ -187,25 +187,25 @@ def _map(settings: Settings, across: str | None, up: str | None, of: str) -> Que
 
 
 READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
-    "The bathtub": (
+    "Iterations over k": (
         "Iterations over the factor on k, with and without acceleration. It is steepest with the "
         "paper's method.",
-        bathtub,
+        iterations_over_k,
     ),
-    "The bathtub over substructures": (
+    "Iterations over k and substructures": (
         "Iterations over the factor on k, for several numbers of substructures.",
-        partial(bathtub, name="substructures"),
+        partial(iterations_over_k, name="substructures"),
     ),
-    "The design chart": (
+    "Energy over friction and load": (
         "Energy dissipated over friction and load.",
         lambda settings: _map(settings, "friction", _load(settings), "dissipation"),
     ),
-    "The fretting map": (
+    "Fretting map": (
         "Share of the contact that slips at once in the last cycle, over the load and what "
         "presses: 0 is stick, 1 gross slip.",
         _fretting,
     ),
-    "The shakedown limit": (
+    "Shakedown limit": (
         "How many times as far the load may swing to and fro until slip goes on for ever, over "
         "friction. Below 1 it does so now. Pressed twice as hard, it is twice as much.",
         _shakedown,

@@ -13,7 +13,7 @@ from sweeps import TINY, Here
 
 from app import jobs, reports
 from app.jobs import Job, Sweep, share_of
-from app.questions import READY, Question, bathtub, question_of
+from app.questions import READY, Question, iterations_over_k, question_of
 from app.state import PageState, default_settings
 from app.whatif import WhatIf, nearest
 from solver.scenes import CATALOGUE
@@ -122,7 +122,7 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
 def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
     made = asked(LOADS)
     assert made.mesh.visible
-    made.state.question = str(bathtub(made.state.settings))
+    made.state.question = str(iterations_over_k(made.state.settings))
     assert not made.mesh.visible
 
 
@@ -130,7 +130,7 @@ def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_the_bathtu
     settings = tiny()
     assert question_of(str(LOADS), settings) == LOADS
     for text in ("", "friction=0:1:3", "no=1,2 dissipation", "friction=0.1 none", "friction=a of"):
-        assert question_of(text, settings) == bathtub(settings)
+        assert question_of(text, settings) == iterations_over_k(settings)
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
@@ -145,7 +145,7 @@ def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
 
 def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answer() -> None:
     settings = tiny()
-    assert bathtub(settings).asked(settings).finish == "accuracy"
+    assert iterations_over_k(settings).asked(settings).finish == "accuracy"
     assert LOADS.asked(settings).finish == "at-once"
 
 
