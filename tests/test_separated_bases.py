@@ -7,8 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from solver.latin import Ending, Solution, iterations, solve
+from solver.reduction.basis import SeparatedBasis
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -71,6 +74,63 @@ def test_the_force_follows_the_number_of_modes(scene, size):
         iterate = next(islice(iterations(problem, latin), 39, None))
         errors.append(distance.of_friction_force(iterate))
     assert errors[0] > 1.5 * errors[1] > 3.0 * errors[2]
+
+
+def test_every_mode_is_admissible():
+    """The force of a mode is what its displacement needs inside the substructure (eq. 3)."""
+    chosen = options(substructures=5)
+    problem = discretise(chosen)
+    iterate = sample(chosen, 30)
+    for part, shown in zip(problem.substructures, iterate.bases, strict=True):
+        elasticity = part.elasticity
+        trace = np.zeros((len(elasticity.trace), elasticity.stiffness.shape[0]))
+        trace[np.arange(len(elasticity.trace)), elasticity.trace] = 1.0
+        inside = np.linalg.lstsq(trace, shown.displacement_modes, rcond=None)[0]
+        assert np.allclose(trace @ inside, shown.displacement_modes, atol=1e-12)
+        residual = elasticity.stiffness @ inside - trace.T @ shown.force_modes
+        assert np.abs(residual).max() < 1e-10 * np.abs(shown.force_modes).max()
+
+
+fields = st.tuples(
+    st.integers(1, 9), st.integers(1, 12), st.integers(0, 2**32 - 1), st.floats(-9.0, 0.0)
+)
+
+
+def random_basis(rows: int, columns: int, seed: int) -> tuple[SeparatedBasis, np.ndarray]:
+    generator = np.random.default_rng(seed)
+    k, weights = 10.0 ** generator.uniform(-2, 2, rows), generator.uniform(0.1, 1.0, columns)
+    sizes = 10.0 ** -np.arange(min(rows, columns), dtype=float)
+    field = (
+        generator.normal(size=(rows, len(sizes)))
+        * sizes
+        @ generator.normal(size=(len(sizes), columns))
+    )
+    return SeparatedBasis.of_field(field, k, weights, 0.0, 100), field
+
+
+@given(fields)
+def test_downsizing_drops_no_more_than_its_tolerance(drawn):
+    rows, columns, seed, power = drawn
+    basis, field = random_basis(rows, columns, seed)
+    tolerance = 10.0**power
+    dropped = basis.downsize(tolerance, 100)
+    scratch = np.empty_like(field)
+    lost = basis.squared(field - basis.field(), scratch)
+    change = np.sqrt(lost / basis.squared(field, scratch))
+    assert dropped <= tolerance
+    assert change == pytest.approx(dropped, abs=1e-7)
+    kept = np.sqrt(np.sum(basis.time_functions**2 * basis.weights, axis=1))
+    assert np.all(np.diff(kept) <= 0.0)
+
+
+@given(fields)
+def test_the_modes_of_a_field_are_orthonormal_and_hold_it(drawn):
+    rows, columns, seed, _ = drawn
+    basis, field = random_basis(rows, columns, seed)
+    gram = basis.modes.T @ (basis.k[:, None] * basis.modes)
+    assert np.allclose(gram, np.eye(basis.n_modes), atol=1e-12)
+    assert np.allclose(basis.field(), field, atol=1e-10 * np.abs(field).max())
+    assert basis.outside(basis) < 1e-6
 
 
 @pytest.mark.parametrize("change", [{}, {"pgd_sharing": 0.5}], ids=str)
