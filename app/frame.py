@@ -24,7 +24,7 @@ OPEN = 2
 
 
 @dataclass(frozen=True, eq=False)
-class Interface:
+class FrictionInterface:
     """What an interface is in every iterate."""
 
     positions: Floats
@@ -39,7 +39,7 @@ class Interface:
 
 
 @dataclass(frozen=True, eq=False)
-class ContactFields:
+class InterfaceFields:
     """Contact at one interface."""
 
     friction: Floats
@@ -96,7 +96,7 @@ class Run:
     """What the scene is and what acts on it."""
     instants: Floats
     """Shape (n_instants,), s."""
-    interfaces: Mapping[str, Interface]
+    interfaces: Mapping[str, FrictionInterface]
     """All interfaces with friction, by name."""
     geometry: Geometry
     across: tuple[str, str]
@@ -104,7 +104,7 @@ class Run:
     """Title and SI unit of the loop's displacement and force."""
     exact: tuple[ExactCurve, ...] = ()
     """Closed forms of the scene, at the same instants."""
-    reference: Mapping[str, ContactFields] = field(default_factory=dict)
+    reference: Mapping[str, InterfaceFields] = field(default_factory=dict)
     """Contact of the incremental solver, by interface; empty while there is none."""
     reference_loop: Floats | None = None
     """Its displacement and force, shape (2, n_instants)."""
@@ -132,7 +132,7 @@ class Frame:
     """Its number, from 1."""
     is_answer: bool
     """Whether it is the certified solution, which is no iteration of the search."""
-    contact: Mapping[str, ContactFields]
+    contact: Mapping[str, InterfaceFields]
     """Contact fields by interface: the selected one, and all others where they are small."""
     deformed: DeformedGeometry
     """How the bodies have moved."""

@@ -67,7 +67,7 @@ def test_a_picture_whose_answer_got_lost_is_asked_for_again(
     display.catch_up()
     assert display.pulse.sent == sent + 1
     display.pulse.painted = display.pulse.sent
-    assert Ready() in orders
+    assert orders == [Ready(), Ready()]
 
 
 def test_of_many_pages_each_leaves_the_others_time(

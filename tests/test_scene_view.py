@@ -10,7 +10,7 @@ from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.picture import bands
-from app.views.rope import CrossSection, StressRanges, Unrolled
+from app.views.rope import StressRanges, Unrolled, WireSection
 from app.views.scene import HEIGHT, WIDTH, Scene, Stress
 from app.views.timeline import Timeline, paths_of
 from app.worker.extras import EXTRAS, OF_ROPE
@@ -146,7 +146,7 @@ def test_bands_end_where_a_wire_goes_behind() -> None:
 
 def test_other_views_show_every_instant(frame: Frame) -> None:
     state = PageState(frame.run.settings)
-    for kind in (Stress, Timeline, CrossSection, Unrolled, StressRanges):
+    for kind in (Stress, Timeline, WireSection, Unrolled, StressRanges):
         if kind.applies(frame.run.settings):
             view = kind(state)
             _ = view.figure

@@ -109,7 +109,7 @@ class TimeFunctions(ModePlot):
         self._draw(run.instants, values, titles)
 
 
-class Clips(ExtraView):
+class ClipErrors(ExtraView):
     """Error of this iterate's friction over the numbers that are kept of it."""
 
     name = "Clips"

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from app.views.bases import Clips, SpaceModes, Spectra, TimeFunctions
+from app.views.bases import ClipErrors, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
 from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
-from app.views.rope import AxialForce, CrossSection, StressRanges, Unrolled
+from app.views.rope import StressRanges, Unrolled, WireForces, WireSection
 from app.views.scene import Stress
 from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap
 from app.views.view import View
 
 CARDS: tuple[tuple[type[View], ...], ...] = (
-    (ContactForce, AxialForce, HysteresisLoop, Stress),
-    (StatusMap, Unrolled, CrossSection, SlipPlane, Cycles, CycleEnergy, Fretting),
+    (ContactForce, WireForces, HysteresisLoop, Stress),
+    (StatusMap, Unrolled, WireSection, SlipPlane, Cycles, CycleEnergy, Fretting),
     (Convergence, ErrorTime),
-    (Spectra, SpaceModes, TimeFunctions, StressRanges, Clips),
+    (Spectra, SpaceModes, TimeFunctions, StressRanges, ClipErrors),
 )
 """The views of each card; the first that applies is shown first."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.frame import ContactFields, Floats, Frame, Run, Selection
+from app.frame import Floats, Frame, InterfaceFields, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
 from app.views.view import View, extent, hover, joined, key_of, source
 from solver.scenes import kind_of
@@ -87,7 +87,7 @@ class ContactForce(View):
         self.draw("ghost", *_curves(places, past, column), self.ghost_name)
         self._show_beside(frame, float(run.instants[run.column(selection.phase)]))
 
-    def _scale(self, run: Run, name: str, fields: ContactFields, exact: list[Floats]) -> None:
+    def _scale(self, run: Run, name: str, fields: InterfaceFields, exact: list[Floats]) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
         key = (*key_of(run), name)
         if key != self._scaled_for:
@@ -116,7 +116,7 @@ class ContactForce(View):
         self.draw("beside", beside["x"][rows][order], beside["values"][rows][order], title)
 
 
-def _curves(places: Floats, fields: ContactFields | None, column: int) -> Floats:
+def _curves(places: Floats, fields: InterfaceFields | None, column: int) -> Floats:
     """Friction, and pressure where it is not given, as one curve, shape (2, n)."""
     both = [] if fields is None else [fields.friction, fields.pressure]
     return joined([(places, field[:, column]) for field in both if field is not None])

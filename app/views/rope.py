@@ -33,7 +33,7 @@ class RopePlot(ExtraView):
             self.state.select(interface=list(frame.run.interfaces)[number])
 
 
-class CrossSection(RopePlot):
+class WireSection(RopePlot):
     """All wires where the strand is cut, coloured by stress and ringed where they slip."""
 
     name = "Cross-section"
@@ -141,7 +141,7 @@ class StressRanges(RopePlot):
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
 
 
-class AxialForce(ExtraView):
+class WireForces(ExtraView):
     """Force along each wire; a broken one regains it from its break on."""
 
     name = "Force in the wires"

@@ -34,10 +34,10 @@ def main(connection: Connection, others: int) -> None:
     # A run that diverges is told by its status.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
     with contextlib.suppress(OSError, EOFError):
-        Loop(connection).serve()
+        WorkerLoop(connection).serve()
 
 
-class Loop:
+class WorkerLoop:
     """Orders from the server in, reports to it out; one run at a time."""
 
     def __init__(self, connection: Connection) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import ContactFields, Floats, Frame, Interface, Run
+from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
 from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
@@ -127,7 +127,7 @@ class Sampler:
             return tuple(self.rows)
         return (needs.interface if needs.interface in self.rows else next(iter(self.rows)),)
 
-    def _interface(self, name: str) -> Interface:
+    def _interface(self, name: str) -> FrictionInterface:
         law, rows = self.problem.rubbing[name], self.rows[name]
         bound = coefficient = None
         if law.opens:
@@ -137,7 +137,7 @@ class Sampler:
             highest = highest[:, self.columns] if highest.shape[1] > 1 else highest
             bound = floats(highest * self.problem.scales.force / self.lengths(name)[:, None])
         cuts = law.positions[np.bincount(law.points) > 1]
-        return Interface(floats(law.positions[rows]), floats(cuts), bound, coefficient)
+        return FrictionInterface(floats(law.positions[rows]), floats(cuts), bound, coefficient)
 
     def lengths(self, name: str) -> Array:
         """Length or area that each shown point of an interface stands for."""
@@ -146,12 +146,12 @@ class Sampler:
 
     def _contact(
         self, shown: Iterate | Reference, names: Iterable[str]
-    ) -> Mapping[str, ContactFields]:
+    ) -> Mapping[str, InterfaceFields]:
         contact = {}
         for name in names:
             nodal, lengths = shown.contact(name), self.lengths(name)[:, None]
             kept, pressure = np.ix_(self.rows[name], self.columns), nodal.normal_force
-            contact[name] = ContactFields(
+            contact[name] = InterfaceFields(
                 floats(nodal.tangential_force[kept] / lengths),
                 None if pressure is None else floats(pressure[kept] / lengths),
                 np.ascontiguousarray(nodal.status[kept]),
