@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import time
 from contextlib import suppress
 from threading import Thread
 
@@ -16,12 +17,15 @@ class Proxy:
         Its own.
     target
         That of the server, once there is one.
+    heard_at
+        When something was passed on last, s.
     """
 
     def __init__(self) -> None:
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.port: int = self._listener.getsockname()[1]
         self.target = 0
+        self.heard_at = 0.0
         self._is_cut = False
         self._sockets: list[socket.socket] = []
         Thread(target=self._accept, daemon=True).start()
@@ -54,14 +58,14 @@ class Proxy:
                 far = socket.create_connection(("127.0.0.1", self.target))
                 self._sockets += [near, far]
                 for ends in ((near, far), (far, near)):
-                    Thread(target=_pass_on, args=ends, daemon=True).start()
+                    Thread(target=self._pass_on, args=ends, daemon=True).start()
 
-
-def _pass_on(source: socket.socket, sink: socket.socket) -> None:
-    with suppress(OSError):
-        while data := source.recv(1 << 16):
-            sink.sendall(data)
-    for each in (source, sink):
+    def _pass_on(self, source: socket.socket, sink: socket.socket) -> None:
         with suppress(OSError):
-            each.shutdown(socket.SHUT_RDWR)
-        each.close()
+            while data := source.recv(1 << 16):
+                self.heard_at = time.monotonic()
+                sink.sendall(data)
+        for each in (source, sink):
+            with suppress(OSError):
+                each.shutdown(socket.SHUT_RDWR)
+            each.close()
