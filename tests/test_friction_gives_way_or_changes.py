@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_scenes import SMALL
 
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Compliant, Contact
 from solver.laws.slip_dependent import SlipDependent

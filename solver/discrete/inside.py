@@ -30,7 +30,7 @@ class Inside(Protocol):
     components: Indices
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
-        """Give the displacement of all nodes, shape (n_nodes, 2, n), m.
+        """Displacement of all nodes, shape (n_nodes, 2, n), m.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class Inside(Protocol):
         """
 
     def stress(self, displacement: Array) -> Array:
-        """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
 
         `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
         """

@@ -20,7 +20,7 @@ in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25 (measur
 
 
 def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> Array:
-    """Give polynomials over a side of a substructure, shape (n_points, n_macro).
+    """Polynomials over a side of a substructure, shape (n_points, n_macro).
 
     What balances only point by point may bend the side, which resists with E d^3 q^4 / 24 per area
     at the wavenumber q, where d is the depth behind it. Bending waves that are long beside d are so

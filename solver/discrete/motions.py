@@ -13,7 +13,7 @@ HELD = 1e-9
 def rigid_motions(
     positions: Array, components: Indices, bodies: Indices, fixed: Indices
 ) -> Array | None:
-    """Give independent rigid motions that move nothing prescribed, or None if there are none.
+    """Independent rigid motions that move nothing prescribed, or None if there are none.
 
     Parameters
     ----------

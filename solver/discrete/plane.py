@@ -88,7 +88,7 @@ class Rectangle:
         return sparse.csc_array((values, (rows.ravel(), columns.ravel())), shape=(size, size))
 
     def edge(self, side: str) -> Indices:
-        """Give the nodes of a side in ascending order of their coordinate."""
+        """Nodes of a side in ascending order of their coordinate."""
         nodes = self.nodes
         sides: dict[str, Indices] = {
             "left": nodes[:, 0],
@@ -99,7 +99,7 @@ class Rectangle:
         return sides[side]
 
     def edge_weights(self, side: str) -> Array:
-        """Give the length of a side that belongs to each of its nodes, scaled."""
+        """Length of a side that belongs to each of its nodes, scaled."""
         upright = side in ("left", "right")
         count, step = (self.rows, self.height) if upright else (self.columns, self.width)
         found = np.zeros(self.order * count + 1)
@@ -108,7 +108,7 @@ class Rectangle:
         return found
 
     def stress(self, displacement: Array) -> Array:
-        """Give stresses (xx, yy, xy) at the centres of the cells.
+        """Stresses (xx, yy, xy) at the centres of the cells.
 
         Parameters
         ----------
@@ -131,7 +131,7 @@ class Rectangle:
 
 
 def both(nodes: Indices) -> Indices:
-    """Give the two degrees of freedom of nodes, side by side in the last axis."""
+    """Two degrees of freedom of nodes, side by side in the last axis."""
     return np.stack([2 * nodes, 2 * nodes + 1], axis=-1).reshape(*nodes.shape[:-1], -1)
 
 
@@ -169,7 +169,7 @@ class Condensed:
         return np.asarray(force[self.dofs] - self._inside.T @ force[self._inner])
 
     def recover(self, outline: Array, force: Array | None) -> Array:
-        """Give the displacement of all nodes from that of the outline.
+        """Displacement of all nodes from that of the outline.
 
         Parameters
         ----------
@@ -232,7 +232,7 @@ class Kept:
         return np.asarray(outline[self._own] - self._inside.T @ outline[self._left])
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Give the displacement of all nodes, shape (n_nodes, 2, n), from what is kept.
+        """Displacement of all nodes, shape (n_nodes, 2, n), from what is kept.
 
         Parameters
         ----------

@@ -11,7 +11,7 @@ from solver.laws import Contact, Interface
 
 
 def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = None) -> Problem:
-    """Give a problem at some instants.
+    """A problem at some instants.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.laws.compliant import Compliant
 from solver.laws.slip_dependent import SlipDependent
 from solver.reference.closed_forms.broken_wire import broken_wire

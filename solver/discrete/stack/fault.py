@@ -14,12 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.loops import Loop
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Given, Side
 from solver.discrete.stack.stack import Stack
-from solver.discrete.structure import OUTWARD, Act, Description, Hold
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop
 
 
 @dataclass(frozen=True, eq=False)

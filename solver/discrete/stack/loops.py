@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array, without_residue
-from solver.discrete.loops import Loop, LoopFields
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Side, StackData
+from solver.discrete.structure import Loop, LoopFields
 
 DRIVEN = "top", "left", "right"
 """Sides of a body on a support, in the order in which one looks for what drives it."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.discrete.cut_rods import substructure_sizes
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane import Condensed, Kept, Rectangle, both
-from solver.discrete.rod import substructure_sizes
 from solver.discrete.stack.data import StackData
 from solver.discrete.stack.sides import Corner, Place, neighbour, nodal_force
 

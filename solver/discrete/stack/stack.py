@@ -6,12 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Given, Side, StackData
 from solver.discrete.stack.loops import loop_of_stack
 from solver.discrete.stack.problem import discretise_stack
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, ends_of
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, ends_of
 
 
 class Stack(StackData):
