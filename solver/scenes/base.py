@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
+import param
 
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, quantity
+from solver.discrete.problem import Problem
+from solver.discrete.structure import LoopFields, Structure
 from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning_knots
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
 from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -85,6 +89,9 @@ class SceneSettings(Settings):
         applies=lambda settings: settings.is_repeatable,
     )
 
+    seed: param.Integer[int]
+    """Every scene defines it, where it shows it."""
+
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
     MESH: ClassVar[Sequence[str]] = ("elements",)
@@ -106,6 +113,30 @@ class SceneSettings(Settings):
         kind: Any = FRICTION_LAWS[str(self.friction_law)]
         found: FrictionLaw = kind(**{one.name: getattr(self, one.name) for one in fields(kind)})
         return found
+
+    def structure(self) -> Structure:
+        """Bodies, with all that acts on them."""
+        raise NotImplementedError
+
+    def sentence(self) -> str:
+        """What there is, what acts on it, and what rubs, for whoever sees it for the first time."""
+        raise NotImplementedError
+
+    def coarser(self) -> Iterator[Structure]:
+        """Yield the same scene, uncut, on ever coarser meshes; nothing where no run starts so."""
+        yield from ()
+
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterable[ExactCurve]:
+        """What is known of the scene without a mesh.
+
+        Parameters
+        ----------
+        problem
+            Its discrete problem.
+        solution
+            What an incremental solver found, if it did: closed forms of contact are for its forces.
+        """
+        return ()
 
     @property
     def n_nodes(self) -> int:
@@ -168,29 +199,25 @@ class SceneSettings(Settings):
 
     def _instants(self, tables: Mapping[str, Pairs]) -> Array:
         """Instants for these tables and all presets; a single one has those where paths turn."""
-        own: Any = self  # every scene defines these, where it shows them
         acting = [name for name in self.paths if name in tables or self.size_of(name)]
         knots = {name: self._knots(tables.get(name, getattr(self, name))) for name in acting}
-        if own.instants == 1:
+        if self.instants == 1:
             knots = {name: self._turning(name, times) for name, times in knots.items()}
         given = [knots[name] for name in tables]
         corners = [times for name, times in knots.items() if name not in tables]
         joined = (np.concatenate([NO_KNOTS, *times]) for times in (given, corners))
-        return instants_of(own.duration, own.instants, *joined)
+        return instants_of(self.duration, self.instants, *joined)
 
     def _knots(self, path: str | Pairs) -> Array:
-        own: Any = self
-        return knots_of(path, own.duration, own.seed, self._shapes, self.cycles)
+        return knots_of(path, self.duration, self.seed, self._shapes, self.cycles)
 
     def _turning(self, name: str, knots: Array) -> Array:
-        own: Any = self
-        inside = knots[(knots > 0.0) & (knots < own.duration)]
-        every = np.concatenate([[0.0], inside, [own.duration]])
+        inside = knots[(knots > 0.0) & (knots < self.duration)]
+        every = np.concatenate([[0.0], inside, [self.duration]])
         return turning_knots(every, self._along(name, every))
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables: paths of too many points are thinned."""
-        own: Any = self
         times = self.times()
         for name in self._tables:
             when, values = np.array(getattr(self, name)).T
@@ -198,8 +225,8 @@ class SceneSettings(Settings):
             seen = interpolate(np.column_stack([times, self.path(name)]), when[inside])
             lost = float(np.abs(values[inside] - seen).max(initial=0.0))
             span = float(np.ptp(values))
-            count = len(apart(when[inside], times, SAME * own.duration))
-            if own.instants > 1 and count and lost > STRAIGHT * span:
+            count = len(apart(when[inside], times, SAME * self.duration))
+            if self.instants > 1 and count and lost > STRAIGHT * span:
                 yield (
                     f"{name}: {count} of {len(values)} points are left out; they differ from the "
                     f"path that is solved by at most {100.0 * lost / span:.2g} % of their range"
@@ -211,22 +238,20 @@ class SceneSettings(Settings):
 
     def points(self, name: str) -> Pairs:
         """Return the points of a curve setting, or those that stand for its preset."""
-        own: Any = self
         if not isinstance(getattr(self, name), str):
             table: Pairs = getattr(self, name)
             return table
-        even = np.linspace(0.0, own.duration, (POINTS - 1) * self.cycles + 1)
-        times = instants_of(own.duration, 2, NO_KNOTS, self._knots(getattr(self, name)))
-        times = instants_of(own.duration, 2, times, even)
+        even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
+        times = instants_of(self.duration, 2, NO_KNOTS, self._knots(getattr(self, name)))
+        times = instants_of(self.duration, 2, times, even)
         values = self._along(name, times)
         kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
         return as_points(times[kept], values[kept])
 
     def _along(self, name: str, instants: Array) -> Array:
-        own: Any = self
         curve: str | Pairs = getattr(self, name)
         size = self.size_of(name) if isinstance(curve, str) else 0.0
-        return load_path(curve, instants, own.duration, size, own.seed, self._shapes, self.cycles)
+        return load_path(curve, instants, self.duration, size, self.seed, self._shapes, self.cycles)
 
     @property
     def _shapes(self) -> Mapping[str, Preset]:
@@ -247,7 +272,6 @@ class SceneSettings(Settings):
 
     def check_together(self) -> None:
         """Refuse more parts than there is to deal out, and fields beyond memory."""
-        own: Any = self
         for part, whole in self.PARTS.items():
             value, most = getattr(self, part), getattr(self, whole)
             if value > most:
@@ -264,7 +288,7 @@ class SceneSettings(Settings):
                 self.n_instants,
                 f"at most {most} with {self.n_nodes} nodes",
                 "give fewer instants, or a coarser mesh"
-                if self.n_instants == own.instants
+                if self.n_instants == self.instants
                 else "give paths with fewer points or cycles, or a coarser mesh",
             )
 

@@ -7,6 +7,7 @@ it by diffusion (solver/README.md, 17).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +18,7 @@ from solver.definitions import Pairs, SettingError, curve, quantity, redefined
 from solver.discrete.fault import Fault, sheared
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Support
+from solver.discrete.structure import LoopFields
 from solver.instants import instants_of
 from solver.laws import Coulomb
 from solver.loads import INJECTIONS, interpolate
@@ -202,14 +204,7 @@ class FaultSettings(PlaneSettings):
         self._check_work()
         place = self._places
         pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
-        table = self.normal_profile
-        if not isinstance(table, str) and min(factor for _, factor in table) < 0.0:
-            raise SettingError(
-                "normal_profile",
-                self.normal_profile,
-                "factors of at least 0",
-                "raise the negative factor",
-            )
+        shared.refuse_negative(self, "normal_profile", "factor")
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
@@ -232,57 +227,56 @@ class FaultSettings(PlaneSettings):
                 "give fewer points, or fewer elements along",
             )
 
+    def structure(self) -> Fault:
+        """Make the quarter of the body; one metre thick."""
+        modulus = 0.5 * self.young / (1.0 + self.poisson)
+        stress, height = self.shear_stress, self.height
+        strength = self.strength_at_nodes()
+        body = replace(
+            self.stack(),
+            support=Support(np.zeros(len(strength)), self.friction, strength),
+            sides=sheared(stress, modulus, height, self.n_instants),
+        )
+        return Fault(body, stress, self.path("injection_load"))
 
-def fault(settings: FaultSettings) -> Fault:
-    """Make the quarter of the body that the settings describe; one metre thick."""
-    modulus = 0.5 * settings.young / (1.0 + settings.poisson)
-    stress, height = settings.shear_stress, settings.height
-    strength = settings.strength_at_nodes()
-    body = settings.stack(
-        support=Support(np.zeros(len(strength)), settings.friction, strength),
-        sides=sheared(stress, modulus, height, settings.n_instants),
-    )
-    return Fault(body, stress, settings.path("injection_load"))
+    def sentence(self) -> str:
+        """The fault in a sentence."""
+        path = self.path("injection_load")
+        if not path.any():
+            return "A fault is sheared; a quarter of it is seen."
+        moves = acting(path, "let in", "sucked out", back="{} and stopped")
+        return (
+            f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
+            "a quarter is seen."
+        )
 
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Give the front of slip and the friction, as long as slip spreads in an infinite body.
 
-def _words(settings: FaultSettings) -> str:
-    path = settings.path("injection_load")
-    if not path.any():
-        return "A fault is sheared; a quarter of it is seen."
-    moves = acting(path, "let in", "sucked out", back="{} and stopped")
-    return (
-        f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
-        "a quarter is seen."
-    )
-
-
-def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:
-    """Give the front of slip and the friction, as long as slip spreads in an infinite body.
-
-    It does where strength falls with time, everywhere, and grows away from the well.
-    """
-    stress = settings.shear_stress
-    if np.any(np.diff(settings.path("injection_load")) < 0.0):
-        return
-    place = np.linspace(0.0, settings.length, FINE + 1)
-    lack = settings.strength(place) - stress
-    small = ROUND * float(np.abs(lack).max())
-    spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
-    if settings.law() != Coulomb() or not spreads or stress <= 0.0:
-        return
-    front = fronts(place, lack)
-    if not front.any() or front.max() > INFINITE * min(settings.length, settings.height):
-        return
-    yield ExactCurve("front", front, settings.times())
-    nodes = problem.rubbing["support"].positions
-    friction = np.full((len(nodes), settings.n_instants), stress)
-    strength = settings.strength_at_nodes()
-    for instant in np.flatnonzero(front):
-        ahead = nodes > front[instant]
-        added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))
-        friction[ahead, instant] += added
-        friction[~ahead, instant] = strength[~ahead, instant]
-    yield ExactCurve("friction", nodes, -friction)
+        It does where strength falls with time, everywhere, and grows away from the well.
+        """
+        stress = self.shear_stress
+        if np.any(np.diff(self.path("injection_load")) < 0.0):
+            return
+        place = np.linspace(0.0, self.length, FINE + 1)
+        lack = self.strength(place) - stress
+        small = ROUND * float(np.abs(lack).max())
+        spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
+        if self.law() != Coulomb() or not spreads or stress <= 0.0:
+            return
+        front = fronts(place, lack)
+        if not front.any() or front.max() > INFINITE * min(self.length, self.height):
+            return
+        yield ExactCurve("front", front, self.times())
+        nodes = problem.rubbing["support"].positions
+        friction = np.full((len(nodes), self.n_instants), stress)
+        strength = self.strength_at_nodes()
+        for instant in np.flatnonzero(front):
+            ahead = nodes > front[instant]
+            added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))
+            friction[ahead, instant] += added
+            friction[~ahead, instant] = strength[~ahead, instant]
+        yield ExactCurve("friction", nodes, -friction)
 
 
 FAULT = Entry(
@@ -295,9 +289,6 @@ FAULT = Entry(
     ),
     settings=FaultSettings,
     kind="plane",
-    structure=fault,
-    words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
-    exact=lambda settings, problem, found: _exact(settings, problem),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import param
 
@@ -160,17 +160,10 @@ class PlaneSettings(SceneSettings):
         """Whether any load path is random."""
         return any(getattr(self, name) == "random" for name in self.paths)
 
-    def stack(self, **others: Any) -> Stack:
-        """Make the bodies.
-
-        Parameters
-        ----------
-        others
-            Attributes of the stack that scenes do not have alike.
-        """
-        own: Any = self  # every scene defines the sizes, where it shows them
+    def stack(self) -> Stack:
+        """Make the bodies, free on all sides and without loads."""
         return Stack(
-            length=own.length,
+            length=self.length,
             height=getattr(self, self.across),
             bodies=self.n_bodies,
             elements=(self.elements, self.elements_up),
@@ -184,7 +177,6 @@ class PlaneSettings(SceneSettings):
             friction_law=self.law(),
             instants=self.times(),
             duration=self.duration,
-            **others,
         )
 
     def _check_shape(self) -> None:
