@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, count, curve, quantity
+from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
@@ -41,6 +41,19 @@ class BarSettings(SceneSettings):
 
     scene = "bar"
     LOADS: ClassVar = ("peak",)
+    PEAKS: ClassVar = {
+        "load": "peak",
+        "support_load": "support_displacement",
+        "body_load": "body_force",
+        "pressure_load": "pressure",
+    }
+    BEHIND: ClassVar = {
+        "right x": "peak",
+        "top y": "pressure",
+        "left x": "support_displacement",
+        "body": "body_force",
+    }
+    PROFILES: ClassVar = PROFILES
 
     load = curve(
         "sine",
@@ -149,27 +162,6 @@ class BarSettings(SceneSettings):
     def n_nodes(self) -> int:
         """Number of nodes."""
         return self.elements + 1
-
-    def _candidates(self) -> Mapping[str, str]:
-        own = {"left x": "support_displacement", "body": "body_force"}
-        return {"right x": "peak", "top y": "pressure", **own}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        sizes = {
-            "load": self.peak,
-            "support_load": self.support_displacement,
-            "body_load": self.body_force,
-            "pressure_load": self.pressure,
-        }
-        return sizes[path]
-
-    def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
-        own: str | Pairs = getattr(self, name)
-        if not name.endswith("_profile") or not isinstance(own, str):
-            return super().points(name)
-        return tuple((x * self.length, factor) for x, factor in PROFILES[own])
 
     def check_together(self) -> None:
         """Refuse negative factors too."""

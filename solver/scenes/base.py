@@ -102,14 +102,20 @@ class SceneSettings(Settings):
     """Setting that says how that goes on over time."""
     SHAPES: ClassVar[Mapping[str, Preset]] = PRESETS
     """What the presets of paths over time stand for."""
+    PEAKS: ClassVar[Mapping[str, str]] = {}
+    """Setting of the largest value that the preset of each path reaches."""
+    BEHIND: ClassVar[Mapping[str, str]] = {}
+    """Settings that place or scale what acts, whether it does or not."""
+    PROFILES: ClassVar[Mapping[str, Pairs]] = {}
+    """Presets of factors along the body, over shares of its length."""
 
     @classmethod
     def chief(cls) -> tuple[str, ...]:
-        """Name what a scene is about: the path and size of its load, friction, cuts, and k."""
+        """Settings that a scene is about: the path and size of its load, friction, cuts, and k."""
         return (cls.PATH, "seed", *cls.LOADS, "friction", "substructures", "k_scale")
 
     def law(self) -> FrictionLaw:
-        """Give the law of friction; its attributes are named like settings."""
+        """Law of friction; its attributes are named like settings."""
         kind: Any = FRICTION_LAWS[str(self.friction_law)]
         found: FrictionLaw = kind(**{one.name: getattr(self, one.name) for one in fields(kind)})
         return found
@@ -144,20 +150,22 @@ class SceneSettings(Settings):
         raise NotImplementedError
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        raise NotImplementedError
+        """Largest value that a preset of a path over time reaches."""
+        return float(getattr(self, self.PEAKS[path]))
+
+    def peak_or_table(self, path: str) -> str:
+        """Name of the setting by which a path becomes smaller: of its peak, or its table."""
+        return self.PEAKS[path] if isinstance(getattr(self, path), str) else path
 
     def behind(self) -> Mapping[str, str]:
-        """Name the settings that place or scale what acts on the scene, where any does.
+        """Settings that place or scale what acts on the scene, where any does.
 
         By what they are behind: "right x" along a side, "body" throughout, "gap", "break".
         """
-        found = self._candidates()
-        return {what: name for what, name in found.items() if self.applies(name)}
+        return {what: name for what, name in self._behind().items() if self.applies(name)}
 
-    def _candidates(self) -> Mapping[str, str]:
-        """Name what may be behind something; `behind` leaves out what does not apply."""
-        return {}
+    def _behind(self) -> Mapping[str, str]:
+        return self.BEHIND
 
     @property
     def is_repeatable(self) -> bool:
@@ -233,16 +241,18 @@ class SceneSettings(Settings):
                 )
 
     def path(self, name: str) -> Array:
-        """Give a quantity over time from the setting of its path; a table has its own size."""
+        """A quantity over time from the setting of its path; a table has its own size."""
         return self._along(name, self.times())
 
     def points(self, name: str) -> Pairs:
-        """Return the points of a curve setting, or those that stand for its preset."""
-        if not isinstance(getattr(self, name), str):
-            table: Pairs = getattr(self, name)
-            return table
+        """Points of a curve setting, or those that stand for its preset."""
+        own: str | Pairs = getattr(self, name)
+        if not isinstance(own, str):
+            return own
+        if name.endswith("_profile"):
+            return tuple((x * self.length, factor) for x, factor in self.PROFILES[own])
         even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
-        times = instants_of(self.duration, 2, NO_KNOTS, self._knots(getattr(self, name)))
+        times = instants_of(self.duration, 2, NO_KNOTS, self._knots(own))
         times = instants_of(self.duration, 2, times, even)
         values = self._along(name, times)
         kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
@@ -294,5 +304,5 @@ class SceneSettings(Settings):
 
 
 def as_points(where: Array, values: Array) -> Pairs:
-    """Give points with as many digits as one likes to read."""
+    """Points with as many digits as one likes to read."""
     return tuple((float(f"{a:.6g}"), float(f"{b:.6g}")) for a, b in zip(where, values, strict=True))

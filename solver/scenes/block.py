@@ -119,17 +119,17 @@ class BlockSettings(SideSettings):
         """Whether a spring holds the block."""
         return bool(self.spring) and self.applies("spring")
 
-    def _candidates(self) -> Mapping[str, str]:
+    def _behind(self) -> Mapping[str, str]:
         # Where both forces act, the larger stands for their sum.
         force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
-        return {**super()._candidates(), "body": force, "gap": "radius"}
+        return {**super()._behind(), "body": force, "gap": "radius"}
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset reaches; that of the body force is a factor."""
+        """Largest value that a preset reaches; that of the body force is a factor."""
         return 1.0 if path == "body_load" else super().size_of(path)
 
     def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
+        """Points of the preset that a curve setting has at present."""
         if name != "gap" or not isinstance(self.gap, str):
             return super().points(name)
         x = np.linspace(0.0, self.length, POINTS)
@@ -203,7 +203,7 @@ class BlockSettings(SideSettings):
         return exact_parabola(body, self.radius, problem, solution)
 
     def _gap(self, x: Array) -> Array:
-        """Return the gap of a preset at places along the lowest side, m."""
+        """Gap of a preset at places along the lowest side, m."""
         if self.gap == "flat":
             return np.zeros_like(x)
         return np.asarray((x - 0.5 * self.length) ** 2 / (2.0 * self.radius))

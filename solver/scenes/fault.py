@@ -6,7 +6,7 @@ it by diffusion (solver/README.md, 17).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import ClassVar
 
@@ -14,7 +14,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, curve, quantity, redefined
+from solver.definitions import SettingError, curve, quantity, redefined
 from solver.discrete.fault import Fault, sheared
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Support
@@ -53,6 +53,9 @@ class FaultSettings(PlaneSettings):
 
     scene = "fault"
     LOADS: ClassVar = ("overpressure", "shear_stress")
+    PEAKS: ClassVar = {"injection_load": "overpressure"}
+    BEHIND: ClassVar = {"left x": "overpressure", "top x": "shear_stress"}
+    PROFILES: ClassVar = PROFILES
     PATH = "injection_load"
     SHAPES: ClassVar = INJECTIONS
 
@@ -152,26 +155,12 @@ class FaultSettings(PlaneSettings):
         """Whether the loop is that of what drives: the fluid does."""
         return False
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"left x": "overpressure", "top x": "shear_stress"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest pressure of the fluid that a preset reaches."""
-        return float(self.overpressure)
-
-    def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
-        own = self.normal_profile
-        if name != "normal_profile" or not isinstance(own, str):
-            return super().points(name)
-        return tuple((x * self.length, factor) for x, factor in PROFILES[own])
-
     def pressing(self, place: Array) -> Array:
-        """Give the normal stress before any fluid is let in, shape (n_places,), Pa."""
+        """Normal stress before any fluid is let in, shape (n_places,), Pa."""
         return np.asarray(self.normal_stress * interpolate(self.points("normal_profile"), place))
 
     def fluid(self, place: Array) -> Array:
-        """Give the pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
+        """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
         if self.instants == 1:  # a fluid needs all of the time before
             start = instants_of(self.duration, 2, self._knots(self.injection_load), times)
@@ -179,18 +168,18 @@ class FaultSettings(PlaneSettings):
         return found if start is times else found[:, np.searchsorted(start, times)]
 
     def strength(self, place: Array) -> Array:
-        """Give the largest friction per area, shape (n_places, n_instants), Pa."""
+        """Largest friction per area, shape (n_places, n_instants), Pa."""
         return np.asarray(self.friction * (self.pressing(place)[:, None] - self.fluid(place)))
 
     def pressing_at_nodes(self) -> Array:
-        """Return the normal stress of the nodes: of a table, its mean over the share of each."""
+        """Normal stress of the nodes: of a table, its mean over the share of each."""
         if isinstance(self.normal_profile, str):
             return self.pressing(self._places)
         shares = shares_of(self._places, self.order)
         return np.asarray(self.normal_stress * means([self.normal_profile], shares))
 
     def strength_at_nodes(self) -> Array:
-        """Return the largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
+        """Largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
         pressing = self.pressing_at_nodes()
         return np.asarray(self.friction * (pressing[:, None] - self.fluid(self._places)))
 
@@ -208,7 +197,7 @@ class FaultSettings(PlaneSettings):
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
-            name = "overpressure" if isinstance(self.injection_load, str) else "injection_load"
+            name = self.peak_or_table("injection_load")
             raise SettingError(
                 name,
                 getattr(self, name),
@@ -251,7 +240,7 @@ class FaultSettings(PlaneSettings):
         )
 
     def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
-        """Give the front of slip and the friction, as long as slip spreads in an infinite body.
+        """Front of slip and the friction, as long as slip spreads in an infinite body.
 
         It does where strength falls with time, everywhere, and grows away from the well.
         """

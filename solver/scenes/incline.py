@@ -6,7 +6,7 @@ pulls at the foot of the uphill side once it has slid down by the slack.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import ClassVar
 
@@ -32,6 +32,8 @@ class InclineSettings(PlaneSettings):
 
     scene = "incline"
     LOADS: ClassVar = ("slope",)
+    PEAKS: ClassVar = {"slope_load": "slope"}
+    BEHIND: ClassVar = {"body": "weight"}
     PATH = "slope_load"
     SHAPES: ClassVar = PULLS
 
@@ -101,20 +103,13 @@ class InclineSettings(PlaneSettings):
         """Whether the loop is over a displacement: it is over the angle of the slope."""
         return False
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"body": "weight"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest angle of the slope that a preset reaches."""
-        return float(self.slope)
-
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""
         super().check_together()
         loss = loss_of_equilibrium(self.structure())
         if loss is None:
             return
-        name = "slope" if isinstance(self.slope_load, str) else "slope_load"
+        name = self.peak_or_table("slope_load")
         angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
         raise SettingError(
             name,

@@ -26,6 +26,7 @@ class LayersSettings(PlaneSettings):
 
     scene = "layers"
     LOADS: ClassVar = ("deflection", "moment")
+    PEAKS: ClassVar = {"pressure_load": "pressure", "pull_load": "pull"}
     PATH = "bend_load"
     across = "thickness"
 
@@ -143,10 +144,10 @@ class LayersSettings(PlaneSettings):
         return bool(self.bending != "moment")
 
     def bends_by(self, kind: str) -> bool:
-        """Tell whether the end is bent so, as far as a preset and not a table says."""
+        """Whether the end is bent so, as far as a preset and not a table says."""
         return self.bending == kind and isinstance(self.bend_load, str)
 
-    def _candidates(self) -> Mapping[str, str]:
+    def _behind(self) -> Mapping[str, str]:
         end = "moment" if self.bending == "moment" and self.moment else "pull"
         own = {"right x": end, "right y": "deflection"}
         return {"top y": "pressure", "bottom y": "pressure", **own}
@@ -158,9 +159,10 @@ class LayersSettings(PlaneSettings):
         return "s", "m" if self.bending == "deflection" else "N·m/m"
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        sizes = {"pressure_load": "pressure", "pull_load": "pull", "bend_load": self.bending}
-        return float(getattr(self, sizes[path]))
+        """Largest value that a preset of a path over time reaches."""
+        if path == "bend_load":
+            return float(self.moment if self.bending == "moment" else self.deflection)
+        return super().size_of(path)
 
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""

@@ -117,7 +117,7 @@ class PlaneSettings(SceneSettings):
 
     @property
     def k_factors(self) -> tuple[float, float]:
-        """Give further factors on k of contacts, along and across them."""
+        """Further factors on k of contacts, along and across them."""
         return self.k_friction_scale, self.k_normal_scale
 
     @property

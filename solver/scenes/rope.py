@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cached_property
 from typing import ClassVar
 
@@ -28,6 +28,8 @@ class RopeSettings(SceneSettings):
 
     scene = "rope"
     LOADS: ClassVar = ("curvature",)
+    PEAKS: ClassVar = {"load": "curvature", "tension_load": "tension"}
+    BEHIND: ClassVar = {"right y": "curvature", "right x": "tension"}
 
     construction = choice(
         "mooring",
@@ -148,7 +150,7 @@ class RopeSettings(SceneSettings):
 
     @classmethod
     def chief(cls) -> tuple[str, ...]:
-        """Name what it is about: what is bent, how far, how taut, and how rough."""
+        """Settings that it is about: what is bent, how far, how taut, and how rough."""
         own = "construction", "layers", "bending", "load", "curvature", "tension", "friction"
         return (*own, "k_scale")
 
@@ -183,13 +185,6 @@ class RopeSettings(SceneSettings):
         """Whether the loop is over a displacement: it is over the curvature."""
         return False
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"right y": "curvature", "right x": "tension"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        return float(self.tension if path == "tension_load" else self.curvature)
-
     def check_together(self) -> None:
         """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
         super().check_together()
@@ -203,7 +198,7 @@ class RopeSettings(SceneSettings):
             )
 
     def falls_off(self) -> float:
-        """Give the distance over which the curvature falls to exp(-1), m."""
+        """Distance over which the curvature falls to exp(-1), m."""
         if self.fall_off:
             return float(self.fall_off)
         return float(np.sqrt(self.section.stuck_bending / self.path("tension_load").max()))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import ClassVar
 
 import numpy as np
@@ -31,6 +31,8 @@ class StrandSettings(SceneSettings):
 
     scene = "strand"
     LOADS: ClassVar = ("peak",)
+    PEAKS: ClassVar = {"load": "peak", "pressure_load": "pressure"}
+    BEHIND: ClassVar = {"right x": "peak", "top y": "pressure", "break": "break_position"}
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
     SHAPES: ClassVar = PULLS
 
@@ -134,13 +136,6 @@ class StrandSettings(SceneSettings):
         """Number of nodes of all wires."""
         return self.wires * (self.elements + 1)
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"right x": "peak", "top y": "pressure", "break": "break_position"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        return float(self.pressure if path == "pressure_load" else self.peak)
-
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
@@ -222,7 +217,7 @@ class StrandSettings(SceneSettings):
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
         if largest > capacity or largest == capacity > 0.0:
-            name = "peak" if isinstance(self.load, str) else "load"
+            name = self.peak_or_table("load")
             allowed = "no tension where no friction can hold the broken wire beyond its break"
             if capacity > 0.0:
                 allowed = (
