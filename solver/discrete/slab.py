@@ -21,7 +21,7 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         Instants that follow each other.
     start
         Where the sliders of every interface with friction stand before the first of them, as
-        `Tangential.slider` gives it, shape (n_pairs,) each, scaled; None at zero.
+        `Friction.slider` gives it, shape (n_pairs,) each, scaled; None at zero.
 
     Raises
     ------

@@ -212,9 +212,10 @@ def bar(settings: BarSettings) -> Rods:
     nodes = np.linspace(0.0, settings.length, settings.elements + 1)
     density = settings.friction * _density(settings, nodes)
     mean, section = _section(settings)
+    stiffness = settings.young * settings.section * mean
     return Rods(
         length=settings.length,
-        stiffness=settings.young * settings.section * mean,
+        stiffness=stiffness,
         elements=settings.elements,
         substructures=settings.substructures,
         bound=shared.bound_of(settings, density),
@@ -225,7 +226,7 @@ def bar(settings: BarSettings) -> Rods:
         support=settings.path("support_load") if settings.support_displacement else None,
         body_force=settings.path("body_load") if settings.body_force else None,
         section=section,
-        friction_law=settings.law(),
+        friction_law=settings.law(stiffness / settings.length**2),
     )
 
 

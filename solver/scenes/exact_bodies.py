@@ -12,7 +12,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack.equilibrium import wrench
 from solver.discrete.stack.rest import rigid_slide
 from solver.discrete.stack.stack import Stack
-from solver.laws import Coulomb
+from solver.laws import FrictionLaw
 from solver.reference.closed_forms.cantilever import cantilever
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.reference.closed_forms.half_plane import HalfPlane
@@ -38,7 +38,7 @@ def exact_parabola(
     total = contact.normal_force.sum(axis=0)
     most = float(total.max())
     friction = body.support.friction
-    if most <= 0.0 or (friction and body.poisson < UNCOUPLED) or body.friction_law != Coulomb():
+    if most <= 0.0 or (friction and body.poisson < UNCOUPLED) or body.friction_law != FrictionLaw():
         return
     wide = body.poisson**2 if body.state == "strain" else 0.0
     modulus = body.young / (1.0 - wide)
@@ -79,7 +79,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     It does where it slides much farther than it is deformed, and no side holds it.
     """
     held = any(one.prescribed for side in body.sides.values() for one in (side.x, side.y))
-    if held or body.spring is None or body.friction_law != Coulomb():
+    if held or body.spring is None or body.friction_law != FrictionLaw():
         return
     slide = rigid_slide(body, body.spring)
     pushed, pressed, _ = wrench(body)
@@ -94,7 +94,7 @@ def exact_slope(body: Stack) -> Iterator[ExactCurve]:
     """Give the force of the spring over the angle: what friction leaves to it, up and down."""
     assert body.tilt is not None
     assert body.support is not None
-    if body.body_force is None or body.friction_law != Coulomb():
+    if body.body_force is None or body.friction_law != FrictionLaw():
         return
     weight = np.hypot(*body.body_force) * body.length * body.height
     down = weight * np.sin(body.tilt)

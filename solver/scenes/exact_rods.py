@@ -8,8 +8,7 @@ import numpy as np
 
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.laws.compliant import Compliant
-from solver.laws.slip_dependent import SlipDependent
+from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
 from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
@@ -22,35 +21,36 @@ def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     """Give friction along the bar, and the loop of its end."""
     closed = closed_form(bar)
     if closed is not None:
-        law = problem.friction
-        yield ExactCurve(
-            "friction", bar.nodes, closed.friction_force / law.by_point(law.weights)[:, None]
-        )
+        friction = problem.friction
+        density = closed.friction_force / friction.by_point(friction.weights)[:, None]
+        yield ExactCurve("friction", bar.nodes, density)
         yield ExactCurve("loop", closed.end_displacement, bar.load)
-    elif isinstance(bar.friction_law, Compliant) and _is_even(bar):
-        density = bar.friction_law.contact_stiffness * bar.stiffness / bar.length**2
-        given = bar.length, bar.stiffness, float(bar.bound[0]), density
-        yield _loop(bar, lambda force: pulled_compliant_bar(force, *given)[0])
-    elif isinstance(bar.friction_law, SlipDependent) and _is_even(bar):
-        yield from _grown(bar, bar.friction_law)
+    elif _is_even(bar):
+        law = bar.friction_law
+        if law == FrictionLaw(stiffness=law.stiffness):
+            given = bar.length, bar.stiffness, float(bar.bound[0]), law.stiffness
+            yield _loop(bar, lambda force: pulled_compliant_bar(force, *given)[0])
+        elif law.strength is not None and law == FrictionLaw(strength=law.strength):
+            yield from _grown(bar, law.strength)
 
 
-def _grown(bar: Rods, law: SlipDependent) -> Iterator[ExactCurve]:
+def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
     """Give the loop under a load that grows, as long as friction changes at every slipping point.
 
     Where friction softens that ends where the load would be more than the bar can take.
     """
-    bound, slope = float(bar.bound[0]), abs(law.friction_ratio - 1.0) / law.slip_length
+    (_, slip_length, *_), (_, ratio, *_) = strength.slips, strength.factors
+    bound, slope = float(bar.bound[0]), abs(ratio - 1.0) / slip_length
     if not slope or np.any(np.diff(bar.load, prepend=0.0) < 0.0):
         return
     gamma = np.sqrt(bound * slope / bar.stiffness)
     share = float(bar.load[-1]) * gamma / bound
-    zone = np.arcsinh(share) if law.friction_ratio > 1.0 else np.arcsin(min(share, 1.0))
-    if (share >= 1.0 and law.friction_ratio < 1.0) or zone > gamma * bar.length:
+    zone = np.arcsinh(share) if ratio > 1.0 else np.arcsin(min(share, 1.0))
+    if (share >= 1.0 and ratio < 1.0) or zone > gamma * bar.length:
         return
-    given = bar.stiffness, bound, law.friction_ratio, law.slip_length
+    given = bar.stiffness, bound, ratio, slip_length
     end = np.array([pulled_changing_bar(force, *given) for force in bar.load.tolist()])
-    if end[-1] <= law.slip_length:
+    if end[-1] <= slip_length:
         yield ExactCurve("loop", end, bar.load)
 
 

@@ -18,7 +18,6 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Support
 from solver.discrete.stack.fault import Fault, sheared
 from solver.instants import instants_of
-from solver.laws import Coulomb
 from solver.loads import INJECTIONS, interpolate
 from solver.profiles import means, shares_of
 from solver.reference.closed_forms.diffusion import spread
@@ -268,7 +267,7 @@ def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:
     lack = settings.strength(place) - stress
     small = ROUND * float(np.abs(lack).max())
     spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
-    if settings.law() != Coulomb() or not spreads or stress <= 0.0:
+    if settings.friction_law != "coulomb" or not spreads or stress <= 0.0:
         return
     front = fronts(place, lack)
     if not front.any() or front.max() > INFINITE * min(settings.length, settings.height):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,7 +37,7 @@ def rope(settings: RopeSettings) -> Rope:
         for layer, own in enumerate(section.layers)
         for number in range(own.wires if settings.is_clamped else 1)
     ]
-    return Rope(
+    made = Rope(
         wires=wires,
         substructures=settings.substructures,
         tension=tension,
@@ -45,8 +46,9 @@ def rope(settings: RopeSettings) -> Rope:
         section=section,
         instants=settings.times(),
         duration=settings.duration,
-        friction_law=settings.law(),
     )
+    law = settings.law(made.stiffness / made.length**2)
+    return replace(made, friction_law=law)
 
 
 def _wire(

@@ -172,9 +172,10 @@ def strand(settings: StrandSettings) -> Rods:
 
     The wires are at rest and free of stress before the first instant.
     """
+    stiffness = settings.young * settings.section
     return Rods(
         length=settings.length,
-        stiffness=settings.young * settings.section,
+        stiffness=stiffness,
         elements=settings.elements,
         substructures=settings.substructures,
         bound=shared.bound_of(settings, np.full(settings.elements + 1, settings.friction)),
@@ -185,7 +186,7 @@ def strand(settings: StrandSettings) -> Rods:
         wires=settings.wires,
         broken=(settings.broken, _break_node(settings)) if settings.broken else None,
         rigid_grip=settings.grip == "displacement",
-        friction_law=settings.law(),
+        friction_law=settings.law(stiffness / settings.length**2),
     )
 
 

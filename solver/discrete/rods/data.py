@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws import Coulomb, FrictionLaw
+from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
 COARSEST = 6
@@ -77,7 +77,7 @@ class RodsData:
     body_force: Array | None = None
     section: Array | None = None
     pressure: Array | None = None
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         nodes, instants = self.elements + 1, len(self.instants)

@@ -11,7 +11,7 @@ from solver.discrete.rod import rod_stiffness, tributary
 from solver.discrete.rods.data import RodsData
 from solver.discrete.rods.pieces import NO_ROW, Pieces
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod, Sliders
+from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod
 
 MACRO_DEGREE = 1
 """Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
@@ -129,10 +129,10 @@ def _friction(scene: RodsData, pieces: Pieces, number: int) -> Contact:
     positions = np.zeros(points[-1] + 1)
     positions[points] = scene.nodes[node]
     below = pieces.below(number)
-    bound = scene.bounds[node] * weights[:, None] / scene.stiffness
-    sliders = Sliders.of_known_bound(Component(pieces.above(number), below), bound)
+    component, scales = Component(pieces.above(number), below), (scene.length, scene.stiffness)
+    known = scene.bounds[node] * weights[:, None] / scene.stiffness
     return Contact(
-        tangential=scene.friction_law.on(sliders, weights, scene.length),
+        tangential=scene.friction_law.at(component, weights, scales, known=known),
         points=points,
         positions=positions,
         weights=weights,

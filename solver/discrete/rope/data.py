@@ -11,7 +11,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.rope.cross_section import CrossSection
 from solver.discrete.rope.helical_wire import HelicalWire
-from solver.laws import Coulomb, FrictionLaw
+from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
 COARSEST = 6
@@ -118,7 +118,7 @@ class RopeData:
     section: CrossSection
     instants: Array
     duration: float
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         shapes = {wire.curvature.shape for wire in self.wires}

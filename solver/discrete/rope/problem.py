@@ -15,7 +15,7 @@ from solver.discrete.problem import Problem, Scales
 from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
 from solver.discrete.rope.data import RopeData, RopeWire
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import Component, Contact, Dirichlet, Interface, Perfect, Rod, Sliders
+from solver.laws import Component, Contact, Dirichlet, Interface, Perfect, Rod
 
 
 class _Cuts:
@@ -134,10 +134,10 @@ def _friction(scene: RopeData, cuts: _Cuts, place: int) -> Contact:
     weights = np.concatenate(
         [tributary(size, element)[own] for size, own in zip(cuts.sizes, cuts.rubbing, strict=True)]
     )
-    bound = np.outer(weights, np.atleast_1d(wire.bound)) / scene.stiffness
-    sliders = Sliders.of_known_bound(Component(cuts.rubs(place)), bound)
+    known = np.outer(weights, np.atleast_1d(wire.bound)) / scene.stiffness
+    component, scales = Component(cuts.rubs(place)), (scene.length, scene.stiffness)
     return Contact(
-        tangential=scene.friction_law.on(sliders, weights, scene.length),
+        tangential=scene.friction_law.at(component, weights, scales, known=known),
         points=nodes - 1,
         positions=wire.along[1:-1],
         weights=weights,

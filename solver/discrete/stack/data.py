@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws import Coulomb, FrictionLaw
+from solver.laws import FrictionLaw
 
 SIDES = "left", "right", "top", "bottom"
 
@@ -137,7 +137,7 @@ class StackData:
     body_force: Array | None = None
     spring: Spring | None = None
     tilt: Array | None = None
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         """Leave free what is not given."""

@@ -17,12 +17,10 @@ from solver.laws import (
     Component,
     Contact,
     Dirichlet,
-    Frictionless,
+    FrictionLaw,
     Interface,
     Perfect,
     PointOfBody,
-    SlackSpring,
-    Sliders,
     Unilateral,
 )
 
@@ -62,6 +60,7 @@ def _macro_basis(scene: StackData, part: Part, side: str) -> Array:
 def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str, Contact]]:
     columns, rows = scene.substructures
     x = np.linspace(0.0, scene.length, scene.order * scene.elements[0] + 1)
+    law, scales = scene.friction_law, (scene.length, scene.young * scene.length)
     for body in range(scene.bodies):
         if body == 0 and scene.support is None:
             continue
@@ -87,16 +86,20 @@ def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str,
             [own[span] for own, span in zip(weights, spans, strict=True)]
         )
         if support is not None and support.bound is not None:
-            scaled = support.bound[node] / (scene.young * scene.length)
-            sliders = Sliders.of_known_bound(along, scaled * areas[:, None])
+            known = support.bound[node] / (scene.young * scene.length) * areas[:, None]
+            tangential = law.at(along, areas, scales, known=known)
         else:
             friction = scene.friction if support is None else support.friction
-            sliders = Sliders.of_contact(along, np.full(len(node), friction))
+            tangential = law.at(along, areas, scales, friction=np.full(len(node), friction))
+        normal = None
+        if across:
+            softness = law.softness_across(areas, scales)
+            normal = Unilateral(component=across[0], gap=gap, softness=softness)
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
             Contact(
-                normal=Unilateral(component=across[0], gap=gap) if across else None,
-                tangential=scene.friction_law.on(sliders, areas, scene.length),
+                normal=normal,
+                tangential=tangential,
                 points=points,
                 positions=x[found],
                 weights=areas,
@@ -110,12 +113,12 @@ def _spring(scene: StackData, spring: Spring, part: Part) -> Contact:
     """Give the law of a spring: it pushes to the right, as if from the left."""
     rows = part.rows["right"]
     return Contact(
-        normal=SlackSpring(
+        normal=Unilateral(
             component=Component(rows[:, 0]),
             gap=np.array([spring.slack / scene.length]),
             softness=np.array([scene.young / spring.stiffness]),
         ),
-        tangential=Frictionless(component=Component(rows[:, 1])),
+        tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([scene.length]),
         weights=scene.length * part.rectangle.edge_weights("right")[:1],
