@@ -19,7 +19,7 @@ import numpy as np
 from solver.compare_command import add_compare
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
-from solver.discrete.idle import nothing_acts
+from solver.discrete.problem import nothing_acts
 from solver.disk import check_place, why
 from solver.files import (
     remarks,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.discrete.rigid_stack import is_upright
 from solver.discrete.small_strain import beyond_small_strain
-from solver.discrete.stack.data import StackData
-from solver.discrete.stack.equilibrium import is_upright
+from solver.discrete.stack import Stack
 from solver.latin import Iterate
 from solver.laws import OPEN
 from solver.scenes import left_out, structure_of
@@ -63,7 +63,7 @@ def contact_growth(iterate: Iterate) -> int:
 def _standing_on_an_end(settings: Settings, iterate: Iterate) -> NDArray[np.bool_]:
     """Instants at which a body that is free to turn touches its support at one end alone."""
     structure = structure_of(settings)
-    if not isinstance(structure, StackData) or structure.support is None or is_upright(structure):
+    if not isinstance(structure, Stack) or structure.support is None or is_upright(structure):
         return np.zeros(iterate.problem.n_instants, dtype=bool)
     closed = iterate.contact("support").status != OPEN
     return np.asarray((closed.sum(axis=0) == 1) & (closed[0] | closed[-1]))

@@ -3,8 +3,7 @@
 import numpy as np
 
 from solver.discrete.problem import Problem, Scales
-from solver.discrete.stack.data import Given, Side, Support
-from solver.discrete.stack.stack import Stack
+from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import Bodies, Component, Contact, Dirichlet, Friction, Unilateral
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from solver.arrays import Array
-from solver.discrete.rope.rope import Rope
+from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.incremental import incremental
 from solver.reference.solution import Reference

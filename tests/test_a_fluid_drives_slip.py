@@ -14,8 +14,7 @@ from scipy.special import erfc
 from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
-from solver.discrete.stack.data import Given, Side, Support
-from solver.discrete.stack.stack import Stack
+from solver.discrete.stack import Given, Side, Stack, Support
 from solver.latin import Auto, Ending, Latin, Stop, solve
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.diffusion import spread

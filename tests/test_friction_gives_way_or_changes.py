@@ -13,7 +13,7 @@ from small_scenes import SMALL
 
 from solver import Stack
 from solver.discrete import Given, Side, Support
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Contact, FrictionLaw, Strength
 from solver.reference.choice import reference_of

@@ -8,7 +8,7 @@ from plane import solved as driven
 from scipy.sparse.linalg import spsolve
 
 from solver.discrete.elements import edge_mass, elastic_matrix
-from solver.discrete.plane import Condensed, Kept, Rectangle, both
+from solver.discrete.plane import Condensed, Rectangle, dofs_of
 
 STATES = ["strain", "stress"]
 
@@ -59,7 +59,7 @@ def test_one_thin_row_of_elements_bends_as_a_beam(state, factor, order):
     moment = 1e-3
     stress = np.linspace(6.0, -6.0, order + 1) * moment / height**2
     force[right, 0] = height * edge_mass(order) @ stress
-    found = solved(mesh, both(left), np.zeros(2 * len(left)), force.ravel()).reshape(-1, 2)
+    found = solved(mesh, dofs_of(left), np.zeros(2 * len(left)), force.ravel()).reshape(-1, 2)
     inertia = height**3 / 12.0
     assert found[right, 1].mean() == pytest.approx(
         moment * length**2 / (2.0 * factor * inertia), rel=2e-3
@@ -74,7 +74,7 @@ def test_a_nearly_incompressible_bent_beam_does_not_lock(order):
         left, right = mesh.edge("left"), mesh.edge("right")
         force = np.zeros((mesh.n_nodes, 2))
         force[right[[0, -1]], 0] = [1.0, -1.0]
-        held = both(left)
+        held = dofs_of(left)
         found = solved(mesh, held, np.zeros(len(held)), force.ravel()).reshape(-1, 2)
         ends.append(found[right, 1].mean() / (1.0 - poisson**2))
     # The clamp holds the width, which stiffens a little; locking would cost more than half.
@@ -101,7 +101,7 @@ def test_what_is_condensed_comes_back(sides, order):
     random = np.random.default_rng(7)
     force = random.normal(size=(2 * mesh.n_nodes, 3))
     nodes = np.unique(np.concatenate([mesh.edge(side) for side in sides]))
-    kept = Kept(Condensed(mesh), both(nodes))
+    kept = Condensed(mesh).keep(dofs_of(nodes))
     values = random.normal(size=(len(kept.dofs), 3))
     found = kept.recover(values, force).reshape(-1, 3)
     for column in range(3):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved, stress
 
-from solver.discrete.stack.rest import rigid_rest
+from solver.discrete.rigid_stack import rigid_rest
 from solver.latin import Ending, solve
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings, block

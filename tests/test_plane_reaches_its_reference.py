@@ -10,7 +10,7 @@ import pytest
 from contact_problems import block
 from plane import whole_force_error
 
-from solver.discrete.stack.data import Given, Side
+from solver.discrete.stack import Given, Side
 from solver.latin import iterations
 from solver.laws import OPEN
 from solver.reference.choice import reference_of

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver import Latin, solve
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.latin import Paper, Stop
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.reference import search as module
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.incremental import Interrupted, Reference, incremental

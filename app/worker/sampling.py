@@ -15,9 +15,9 @@ from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
 from solver.discrete import Problem
-from solver.discrete.idle import nothing_acts
-from solver.discrete.loops import LoopFields
-from solver.discrete.rope.rope import Rope
+from solver.discrete.problem import nothing_acts
+from solver.discrete.rope import Rope
+from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.status import CANCELLED
 from solver.reference.solution import Reference

@@ -18,8 +18,8 @@ from app.messages import Needs
 from app.worker.geometry import StressField, floats, thinned
 from app.worker.outlines import Indices, outlines_of
 from solver.arrays import Array
-from solver.discrete.rope.forces import WireForces, cut_at, stress_ranges
-from solver.discrete.rope.rope import Rope
+from solver.discrete.rope import Rope
+from solver.discrete.wire_forces import WireForces, cut_at, stress_ranges
 from solver.latin import Iterate
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of

@@ -1,9 +1,8 @@
 """From a structure as plain data to a discrete problem."""
 
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
-from solver.discrete.stack.data import Given, Side, Spring, Support
-from solver.discrete.stack.stack import Stack
+from solver.discrete.rods import Rods
+from solver.discrete.stack import Given, Side, Spring, Stack, Support
 from solver.discrete.structure import Structure
 
 __all__ = ["Given", "Problem", "Rods", "Side", "Spring", "Stack", "Structure", "Support"]

@@ -15,7 +15,7 @@ from solver.arrays import Array
 
 
 def elastic_matrix(young: float, poisson: float, state: str) -> Array:
-    """Give the matrix from strains (xx, yy, 2 xy) to stresses, shape (3, 3).
+    """Matrix from strains (xx, yy, 2 xy) to stresses, shape (3, 3).
 
     `state` is "strain" or "stress" (Timoshenko and Goodier, Theory of Elasticity, 1970, ch. 2).
     """
@@ -27,7 +27,7 @@ def elastic_matrix(young: float, poisson: float, state: str) -> Array:
 
 
 def von_mises(stress: Array, poisson: float, state: str) -> Array:
-    """Give von Mises' equivalent of stresses (xx, yy, xy), shape (n, 3), as shape (n,).
+    """Von Mises' equivalent of stresses (xx, yy, xy), shape (n, 3), as shape (n,).
 
     In plane strain the stress across the plane is Poisson's ratio times the sum of the other two.
     """
@@ -38,7 +38,7 @@ def von_mises(stress: Array, poisson: float, state: str) -> Array:
 
 
 def shares(order: int) -> Array:
-    """Give each node's share of an edge's length, shape (order + 1,): trapezium or Simpson's rule.
+    """Each node's share of an edge's length, shape (order + 1,): trapezium or Simpson's rule.
 
     They are what a force of constant density puts on the nodes.
     """
@@ -47,7 +47,7 @@ def shares(order: int) -> Array:
 
 @cache
 def edge_mass(order: int) -> Array:
-    """Give the matrix from a traction at an edge's nodes to their forces, for an edge of length 1.
+    """Matrix from a traction at an edge's nodes to their forces, for an edge of length 1.
 
     Shape (order + 1, order + 1), read-only; exact where the traction varies like the shape
     functions.
@@ -60,7 +60,7 @@ def edge_mass(order: int) -> Array:
 
 
 def strain_matrix(order: int, xi: float, eta: float, width: float, height: float) -> Array:
-    """Give the matrix from nodal displacements to strains at a point, (3, 2 (order + 1)^2).
+    """Matrix from nodal displacements to strains at a point, (3, 2 (order + 1)^2).
 
     `xi` and `eta` run from -1 to 1 over an element of the given width and height.
     """
@@ -74,7 +74,7 @@ def strain_matrix(order: int, xi: float, eta: float, width: float, height: float
 
 
 def element_stiffness(order: int, width: float, height: float, elastic: Array) -> Array:
-    """Give the stiffness of an element per unit thickness, shape (n, n), n = 2 (order + 1)^2.
+    """Stiffness of an element per unit thickness, shape (n, n), n = 2 (order + 1)^2.
 
     Neither kind locks where thin layers bend or bodies are nearly incompressible; both pass the
     patch test on rectangles.
@@ -105,7 +105,7 @@ def element_stiffness(order: int, width: float, height: float, elastic: Array) -
 
 
 def projected_strain_matrix(xi: float, eta: float, width: float, height: float) -> Array:
-    """Give the strains of a biquadratic element, its dilatation projected, shape (3, 18)."""
+    """Strains of a biquadratic element, its dilatation projected, shape (3, 18)."""
     matrix = strain_matrix(2, xi, eta, width, height)
     projected = np.zeros(18)
     for right, up, share in _gauss_points(3):
@@ -117,7 +117,7 @@ def projected_strain_matrix(xi: float, eta: float, width: float, height: float) 
 
 
 def _gauss_points(count: int) -> list[tuple[float, float, float]]:
-    """Give the places, and shares of the area, of count x count points."""
+    """Places, and shares of the area, of count x count points."""
     places, weights = (found.tolist() for found in leggauss(count))
     along = list(zip(places, weights, strict=True))
     return [(xi, eta, 0.25 * one * other) for eta, one in along for xi, other in along]
@@ -128,7 +128,7 @@ def _dilatation(strain: Array) -> Array:
 
 
 def _bending(xi: float, eta: float, width: float, height: float) -> Array:
-    """Give the strains of 1 - xi^2 and 1 - eta^2 of both components, shape (3, 4)."""
+    """Strains of 1 - xi^2 and 1 - eta^2 of both components, shape (3, 4)."""
     found = np.zeros((3, 4))
     found[0, 0] = found[2, 1] = -2.0 * xi * 2.0 / width
     found[2, 2] = found[1, 3] = -2.0 * eta * 2.0 / height

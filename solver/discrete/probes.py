@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.problem import Problem
 
 AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
@@ -42,12 +42,12 @@ class Probe:
 
 
 def constant(values: Array) -> Probe:
-    """Give what is known beforehand, shape (n_instants,), as if it were found."""
+    """What is known beforehand, shape (n_instants,), as if it were found."""
     return Probe(np.zeros(0, dtype=np.intp), np.zeros(0), values)
 
 
 def side_mean(problem: Problem, side: str, component: int) -> Probe:
-    """Give the mean displacement along a whole outer side of the stack, m.
+    """Mean displacement along a whole outer side of the stack, m.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
 
 
 def end_rotation(problem: Problem, side: str = "right") -> Probe:
-    """Give the rotation of the ends of all bodies, counter-clockwise, their mean.
+    """Rotation of the ends of all bodies, counter-clockwise, their mean.
 
     It is what a moment that all bodies share works on, spread over each of them as a linear
     traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height t.
@@ -92,7 +92,7 @@ def end_rotation(problem: Problem, side: str = "right") -> Probe:
 
 
 def reaction(problem: Problem, name: str) -> Probe:
-    """Give the sum of the forces that hold an interface of prescribed displacements, N."""
+    """Sum of the forces that hold an interface of prescribed displacements, N."""
     law = problem.interfaces[name]
     held = np.zeros(problem.n_dofs)
     held[problem.row_dofs[law.rows]] = 1.0
@@ -138,7 +138,7 @@ class AxialForce:
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
 
     def __call__(self, displacement: Array) -> Array:
-        """Give the forces, shape (n_elements,), N, for displacements of one instant (n_dofs,)."""
+        """Forces, shape (n_elements,), N, for displacements of one instant (n_dofs,)."""
         return np.asarray(
             self._stiffness * (displacement[self._second] - displacement[self._first])
         )
@@ -150,7 +150,7 @@ def _inside(problem: Problem) -> Inside:
 
 
 def _edges(inside: Inside, side: str) -> tuple[Indices, Indices, Indices]:
-    """Give both ends of all element edges along an outer side, and their bodies."""
+    """Both ends of all element edges along an outer side, and their bodies."""
     places = inside.nodes[:, AXES[side]]
     outermost = places.min() if side in ("left", "bottom") else places.max()
     first, second = inside.elements, np.roll(inside.elements, -1, axis=1)

@@ -9,7 +9,7 @@ memory (Fortran order), because the friction law walks through time.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, RowValues
 
@@ -275,3 +275,50 @@ class Problem:
         rows = np.concatenate([none[0], *(law.rows for law in parts)])
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
         return dofs, np.concatenate([none[1], *(law.values for law in parts)])[first]
+
+
+def nothing_acts(problem: Problem) -> bool:
+    """Whether all that is given is zero: loads, displacements, overlaps; so is the answer."""
+    if any(law.acts for law in problem.interfaces.values()):
+        return False
+    forces = (part.body_force for part in problem.substructures if part.body_force is not None)
+    return not any(force.any() for force in forces)
+
+
+def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = None) -> Problem:
+    """A problem at some instants.
+
+    Parameters
+    ----------
+    problem
+        Of the whole interval.
+    some
+        Instants that follow each other.
+    start
+        Where the sliders of every interface with friction stand before the first of them, as
+        `Tangential.slider` gives it, shape (n_pairs,) each, scaled; None at zero.
+
+    Raises
+    ------
+    RefusedError
+        If a law remembers more than that.
+    """
+    parts = tuple(
+        part if part.body_force is None else replace(part, body_force=part.body_force[:, some])
+        for part in problem.substructures
+    )
+    interfaces = {
+        name: _begun(law.during(some), start.get(name) if start else None)
+        for name, law in problem.interfaces.items()
+    }
+    return replace(
+        problem,
+        substructures=parts,
+        interfaces=interfaces,
+        instants=problem.instants[some],
+        rest=None if problem.rest is None else problem.rest[:, some],
+    )
+
+
+def _begun(law: Interface, start: Array | None) -> Interface:
+    return law.begun(start) if isinstance(law, Contact) and start is not None else law

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.problem import Problem
-from solver.discrete.rope.data import RopeData
-from solver.discrete.rope.forces import WireForces
+from solver.discrete.rope import Rope
 from solver.discrete.structure import Structure
+from solver.discrete.wire_forces import WireForces
 
 SMALL = 0.05
 """Largest strain, or slope of a body, for which small strains hold."""
@@ -32,7 +32,7 @@ def largest_strain(structure: Structure, problem: Problem, displacement: Array) 
     displacement
         Of its degrees of freedom, shape (n_dofs, n_instants), m.
     """
-    if isinstance(structure, RopeData):
+    if isinstance(structure, Rope):
         return _of_wires(structure, displacement)
     if problem.inside is None:
         return _of_rods(problem.positions, displacement)
@@ -40,7 +40,7 @@ def largest_strain(structure: Structure, problem: Problem, displacement: Array) 
 
 
 def beyond_small_strain(structure: Structure, problem: Problem, displacement: Array) -> str | None:
-    """Say that an answer is outside of what is modelled, or return None where it is not."""
+    """That an answer is outside of what is modelled, or return None where it is not."""
     strain = largest_strain(structure, problem, displacement)
     if strain <= SMALL:
         return None
@@ -57,7 +57,7 @@ def _of_rods(positions: Array, displacement: Array) -> float:
     return float(np.abs(steps / lengths[inside, None]).max(initial=0.0))
 
 
-def _of_wires(rope: RopeData, displacement: Array) -> float:
+def _of_wires(rope: Rope, displacement: Array) -> float:
     forces = WireForces(rope)(displacement, slice(None))
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):

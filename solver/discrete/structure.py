@@ -1,15 +1,16 @@
-"""What a scene, or a script, gives to be solved: a structure, and its words for who draws it."""
+"""Structures: what they are to be solved and drawn, and the hysteresis loop that they show."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.loops import Loop
+from solver.discrete.contact_fields import ContactFields
+from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 
 OUTWARD = {
@@ -23,7 +24,7 @@ Way = tuple[float, float]
 
 
 def ends_of(side: str) -> Array:
-    """Give both ends of a side, the lower or the left one first, as shares of length and height."""
+    """Both ends of a side, the lower or the left one first, as shares of length and height."""
     x = {"left": (0.0, 0.0), "right": (1.0, 1.0)}.get(side, (0.0, 1.0))
     y = {"bottom": (0.0, 0.0), "top": (1.0, 1.0)}.get(side, (0.0, 1.0))
     return np.array([x, y]).T
@@ -118,14 +119,47 @@ class Description:
     broken: tuple[int, float] | None = None
 
 
+class LoopFields(Protocol):
+    """What a loop is taken from: an iterate, or a reference; SI, shape (n, n_instants)."""
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement of the problem's degrees of freedom, m."""
+
+    def contact(self, name: str) -> ContactFields:
+        """Fields of one interface with friction."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A force over the displacement that it works on; what is inside the loop is dissipated.
+
+    Or over whatever drives it: then the loop shows how it lags behind.
+
+    Attributes
+    ----------
+    across, up
+        Title and unit of both.
+    displacement
+        Of m, or 1 for a rotation; or what drives.
+    force
+        Over time, N, shape (n_instants,), where it is given; else what finds it.
+    """
+
+    across: tuple[str, str]
+    up: tuple[str, str]
+    displacement: Probe
+    force: Array | Callable[[LoopFields], Array]
+
+
 class Structure(Protocol):
-    """Bodies, how they are held and what acts on them, as plain data: `Rods`, `Stack`."""
+    """Bodies, how they are held and what acts on them, as plain data: `Rods`, `Rope`, `Stack`."""
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
 
     def loop(self, problem: Problem) -> Loop:
-        """Give the hysteresis loop that it shows; forces in the plane for a metre of thickness."""
+        """The hysteresis loop that it shows; forces in the plane for a metre of thickness."""
 
     def described(self) -> Description:
-        """Say what there is, for whoever draws it."""
+        """The structure in words, for whoever draws it."""

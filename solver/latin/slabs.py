@@ -17,8 +17,7 @@ from functools import partial
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.problem import Problem
-from solver.discrete.slab import slab_of
+from solver.discrete.problem import Problem, slab_of
 from solver.latin.directions import FromStatus, SearchDirection
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate, read_only

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from solver.definitions import Pairs
-from solver.discrete.loops import Loop, LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Structure
+from solver.discrete.structure import Loop, LoopFields, Structure
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings

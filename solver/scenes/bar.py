@@ -11,7 +11,7 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, curve, quantity
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.loads import PRESETS, interpolate
 from solver.profiles import harmonic_means, means, shares_of
 from solver.refusal import plain

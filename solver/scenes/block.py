@@ -10,11 +10,10 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, curve, quantity, redefined
-from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.stack.data import Spring, Support
-from solver.discrete.stack.equilibrium import loss_of_equilibrium
-from solver.discrete.stack.stack import Stack
+from solver.discrete.rigid_stack import loss_of_equilibrium
+from solver.discrete.stack import Spring, Stack, Support
+from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import gap_at, unseen
 from solver.reference.closed_forms.exact_curve import ExactCurve

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from solver.discrete.rope.cross_section import CrossSection, WireLayer
+from solver.discrete.cross_section import CrossSection, WireLayer
 
 STEEL, ALUMINIUM = 200e9, 69e9
 """Young's moduli of wires, Pa."""

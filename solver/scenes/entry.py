@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeVar
 
-from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Structure
+from solver.discrete.structure import LoopFields, Structure
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import SceneSettings
 

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.stack.equilibrium import wrench
-from solver.discrete.stack.rest import rigid_slide
-from solver.discrete.stack.stack import Stack
+from solver.discrete.rigid_stack import rigid_slide, wrench
+from solver.discrete.stack import Stack
+from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
 from solver.reference.closed_forms.cantilever import cantilever
 from solver.reference.closed_forms.exact_curve import ExactCurve

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from solver.discrete.problem import Problem
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods
 from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar

@@ -14,9 +14,9 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, curve, quantity, redefined
+from solver.discrete.fault import Fault, sheared
 from solver.discrete.problem import Problem
-from solver.discrete.stack.data import Support
-from solver.discrete.stack.fault import Fault, sheared
+from solver.discrete.stack import Support
 from solver.instants import instants_of
 from solver.loads import INJECTIONS, interpolate
 from solver.profiles import means, shares_of

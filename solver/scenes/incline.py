@@ -13,9 +13,8 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, curve, quantity, redefined
-from solver.discrete.stack.data import Spring, Support
-from solver.discrete.stack.equilibrium import loss_of_equilibrium
-from solver.discrete.stack.stack import Stack
+from solver.discrete.rigid_stack import loss_of_equilibrium
+from solver.discrete.stack import Spring, Stack, Support
 from solver.loads import PULLS
 from solver.refusal import plain
 from solver.scenes.entry import Emblem, Entry

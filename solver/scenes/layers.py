@@ -9,8 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import choice, count, curve, quantity, redefined
-from solver.discrete.stack.data import Given, Side
-from solver.discrete.stack.stack import Stack
+from solver.discrete.stack import Given, Side, Stack
 from solver.loads import PRESETS
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_bodies import exact_layers

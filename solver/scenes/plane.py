@@ -9,7 +9,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, quantity, redefined
-from solver.discrete.stack.stack import Stack
+from solver.discrete.stack import Stack
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.settings import Settings

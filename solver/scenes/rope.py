@@ -9,10 +9,9 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.rope.data import RopeWire
-from solver.discrete.rope.rope import Rope
+from solver.discrete.rope import Rope, RopeWire
+from solver.discrete.structure import LoopFields
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.entry import Emblem, Entry

@@ -10,7 +10,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.discrete.rope.cross_section import CrossSection
+from solver.discrete.cross_section import CrossSection
 from solver.loads import PRESETS, PRESSURES
 from solver.scenes.base import SceneSettings
 from solver.scenes.constructions import CONSTRUCTIONS, MOST_LAYERS

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from solver.definitions import Parameter, choice, curve, quantity
-from solver.discrete.stack.data import Given, Side
+from solver.discrete.stack import Given, Side
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
 

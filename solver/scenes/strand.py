@@ -10,9 +10,9 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
+from solver.discrete.cut_rods import COARSEST
 from solver.discrete.problem import Problem
-from solver.discrete.rods.data import COARSEST, neighbours
-from solver.discrete.rods.rods import Rods
+from solver.discrete.rods import Rods, neighbours
 from solver.loads import PULLS
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rope.cross_section import CrossSection
+from solver.discrete.cross_section import CrossSection
 from solver.reference.closed_forms.bent_wire import BentWire
 
 

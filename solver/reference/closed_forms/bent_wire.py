@@ -16,7 +16,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from solver.arrays import Array
-from solver.discrete.rope.helical_wire import HelicalWire
+from solver.discrete.helical_wire import HelicalWire
 
 
 @dataclass(frozen=True)

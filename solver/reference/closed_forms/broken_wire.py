@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rods.data import RodsData
+from solver.discrete.rods import Rods
 from solver.laws import FrictionLaw
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 
@@ -49,7 +49,7 @@ class BrokenWire:
     slip: Array
 
 
-def broken_wire(scene: RodsData) -> BrokenWire | None:
+def broken_wire(scene: Rods) -> BrokenWire | None:
     """Solve a strand with a broken wire in closed form.
 
     Returns
@@ -79,13 +79,13 @@ def broken_wire(scene: RodsData) -> BrokenWire | None:
     )
 
 
-def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
+def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
     """Give the bars left and right of the break, from their far ends to the break, if they can."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
     found = []
     for elements in (node, scene.elements - node):
-        side = RodsData(
+        side = Rods(
             length=scene.length * elements / scene.elements,
             stiffness=scene.stiffness * sides / (sides + 1),
             elements=elements,
@@ -100,7 +100,7 @@ def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | N
     return None if left is None or right is None else (left, right)
 
 
-def _tension(scene: RodsData) -> Array:
+def _tension(scene: Rods) -> Array:
     """Find T under a rigid grip: a neighbour's elongation is given.
 
     It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.rods.data import RodsData
+from solver.discrete.rods import Rods
 from solver.laws import FrictionLaw
 from solver.laws.play import play
 
@@ -59,7 +59,7 @@ class ClosedForm:
         return found
 
 
-def closed_form(scene: RodsData) -> ClosedForm | None:
+def closed_form(scene: Rods) -> ClosedForm | None:
     """Solve the friction bar in closed form (solver/README.md, 6).
 
     Parameters
@@ -90,7 +90,7 @@ def closed_form(scene: RodsData) -> ClosedForm | None:
     return ClosedForm(nodal, friction, displacement)
 
 
-def _grip_beyond(scene: RodsData, share: float | Array) -> Array:
+def _grip_beyond(scene: Rods, share: float | Array) -> Array:
     """Give R at a share of every element's length, shape (n_elements, n_instants or 1), N.
 
     Of shares of shape (n_shares, 1, 1) it gives (n_shares, ...).
@@ -103,11 +103,11 @@ def _grip_beyond(scene: RodsData, share: float | Array) -> Array:
     return np.asarray(beyond + 0.5 * size * rest * (rest * left + (1.0 + share) * right))
 
 
-def _normal_force(scene: RodsData, reach: Array) -> Array:
+def _normal_force(scene: Rods, reach: Array) -> Array:
     return play(np.broadcast_to(scene.load, (len(reach), len(scene.load))), reach)
 
 
-def _mean_normal_force(scene: RodsData, nodal: Array) -> Array:
+def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
     """Average over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])

@@ -10,8 +10,8 @@ from urllib.parse import urlencode
 
 import numpy as np
 
-from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
+from solver.discrete.structure import LoopFields
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.discrete.rope.rope import Rope
+from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
 from solver.reference.closed_forms.compliant_bar import cycled_compliant_bar, pulled_compliant_bar

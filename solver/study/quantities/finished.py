@@ -11,8 +11,8 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
+from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.certified import finished
 from solver.latin.status import certified

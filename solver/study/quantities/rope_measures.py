@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from solver.discrete.rope.forces import stress_ranges
-from solver.discrete.rope.rope import Rope
+from solver.discrete.rope import Rope
+from solver.discrete.wire_forces import stress_ranges
 from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of

@@ -14,12 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.loops import Loop
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
-from solver.discrete.stack.data import Given, Side
-from solver.discrete.stack.stack import Stack
-from solver.discrete.structure import OUTWARD, Act, Description, Hold
+from solver.discrete.stack import Given, Side, Stack
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +44,7 @@ class Fault:
         return self.body.discretise()
 
     def loop(self, problem: Problem) -> Loop:
-        """Give the friction of the quarter over how far it has moved at the middle."""
+        """Friction of the quarter over how far it has moved at the middle."""
         law = problem.rubbing["support"]
         return Loop(
             ("Displacement at the well", "m"),
@@ -56,7 +54,7 @@ class Fault:
         )
 
     def described(self) -> Description:
-        """Say what there is, for whoever draws it."""
+        """What there is, for whoever draws it."""
         body = self.body
         return Description(
             bodies=1,
@@ -75,7 +73,7 @@ class Fault:
 
 
 def sheared(stress: float, modulus: float, height: float, count: int) -> dict[str, Side]:
-    """Give what is prescribed along the sides of the quarter, over so many instants.
+    """What is prescribed along the sides of the quarter, over so many instants.
 
     The top is moved as far as the stress takes, and holds the body where all of the fault slips.
 

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rope.helical_wire import HelicalWire
+from solver.discrete.helical_wire import HelicalWire
 from solver.refusal import RefusedError
 
 
@@ -136,7 +136,7 @@ class CrossSection:
         return self.slipping_bending + float(sum(together))
 
     def helix(self, layer: int, wire: int = 0) -> HelicalWire:
-        """Give a wire; the first of each layer begins at the outermost fibre.
+        """A wire; the first of each layer begins at the outermost fibre.
 
         Parameters
         ----------
@@ -148,12 +148,12 @@ class CrossSection:
         return HelicalWire(one.stiffness, self.radii[layer], one.lay, start)
 
     def wire_tension(self, layer: int, tension: Array) -> Array:
-        """Give the force in a wire of a layer under a tension of the strand, of its shape, N."""
+        """Force in a wire of a layer under a tension of the strand, of its shape, N."""
         one = self.layers[layer]
         return np.asarray(one.stiffness * np.cos(one.lay) ** 2 / self.stiffness * tension)
 
     def line_pressures(self, tension: Array) -> tuple[Array, Array]:
-        """Give what presses the wires of every layer on what is below, and on it from above.
+        """What presses the wires of every layer on what is below, and on it from above.
 
         A wire presses with N sin^2(alpha) / R per length. What a layer and all outside it press is
         spread over the wires below; each layer passes it on.

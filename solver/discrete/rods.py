@@ -1,22 +1,29 @@
-"""Elastic rods that rub, as plain data."""
+"""Elastic rods that rub on a support, or on each other."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.cut_rods import COARSEST, discretise_rods
+from solver.discrete.probes import Probe, reaction
+from solver.discrete.problem import Problem
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
-COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
+SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+"""Where a body force that changes along the rods is shown, and the pressure where anything rubs."""
+SEVERAL = 8
+"""Wires up to which the load of each is shown."""
 
 
 @dataclass(frozen=True, eq=False)
-class RodsData:
+class Rods:
     """One rod on a rigid rough support, or equal parallel rods that rub on each other.
 
     Their left ends are held; absent parts are None.
@@ -119,7 +126,7 @@ class RodsData:
         return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
 
     def coarser(self) -> Self | None:
-        """Give the same uncut rods on half the elements, or None where no front would be seen.
+        """Return the same uncut rods on half the elements; None where no front would be seen.
 
         They must be whole: a break stands at a node.
         """
@@ -127,31 +134,93 @@ class RodsData:
         if elements < COARSEST:
             return None
         nodes = np.linspace(0.0, self.length, elements + 1)
-        body_force = self.body_force
+        body_force, section = self.body_force, self.section
         if body_force is not None and body_force.ndim == 2:
             body_force = self._at(nodes, body_force)
+        if section is not None:  # in series what the elements have between the new nodes
+            compliance = np.concatenate([[0.0], np.cumsum(1.0 / section)])
+            soft = np.diff(np.interp(nodes, self.nodes, compliance))
+            section = np.mean(soft) / soft
         return replace(
             self,
             elements=elements,
             substructures=1,
             bound=self._at(nodes, self.bound),
             body_force=body_force,
-            section=self._section_between(nodes),
+            section=section,
         )
 
-    def _at(self, nodes: Array, field: Array) -> Array:
-        """Give a field at other nodes, linear between its own."""
-        return np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, field)
+    def _at(self, nodes: Array, values: Array) -> Array:
+        """Values at other nodes, linear between those of the rod."""
+        return np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, values)
 
-    def _section_between(self, nodes: Array) -> Array | None:
-        """Give the stiffness between other nodes, in series what the elements have there."""
-        if self.section is None:
-            return None
-        compliance = np.concatenate([[0.0], np.cumsum(1.0 / self.section)])
-        own = np.diff(np.interp(nodes, self.nodes, compliance))
-        return np.asarray(np.mean(own) / own)
+    def discretise(self) -> Problem:
+        """Make the discrete problem."""
+        return discretise_rods(self)
+
+    def loop(self, problem: Problem) -> Loop:
+        """Mean force on the loaded ends over their mean displacement."""
+        rows, given = problem.interfaces["load"].rows, problem.interfaces["load"].given_force
+        weights = np.full(len(rows), 1.0 / len(rows))
+        force: Array | Callable[[LoopFields], Array]
+        if given is not None:
+            force = weights @ given.values * problem.scales.force
+        else:
+            held = reaction(problem, "load")
+            force = lambda fields: held(fields.displacement) / len(rows)  # noqa: E731
+        across, up = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
+        ends = Probe(problem.row_dofs[rows], weights)
+        return Loop((f"{across} displacement", "m"), (up, "N"), ends, force)
+
+    def described(self) -> Description:
+        """The rods in words, for whoever draws them."""
+        broken = self.broken and (self.broken[0] - 1, float(self.nodes[self.broken[1]]))
+        return Description(
+            bodies=self.wires,
+            length=self.length,
+            height=None,
+            instants=self.instants,
+            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            holds=tuple(self._holds()),
+            broken=broken,
+        )
+
+    def _acts(self) -> Iterator[Act]:
+        start, pulled = np.array([[0.0, 0.5]]), self.wires if self.wires <= SEVERAL else 1
+        heights = (np.arange(pulled) + 0.5) / pulled
+        end = np.stack([np.ones(pulled), heights], axis=1)
+        right = OUTWARD["right"]
+        if self.rigid_grip:
+            moved = self.load * self.length / self.stiffness
+            yield Act("right x", "u", end, right, right, moved, "m")
+        else:
+            yield Act("right x", "F", end, right, right, self.load, "N")
+        if self.support is not None:
+            yield Act("left x", "u", start, right, OUTWARD["left"], self.support, "m")
+        if self.body_force is not None:
+            x = np.array([0.5]) if self.body_force.ndim == 1 else SHOWN
+            middle = np.stack([x, np.full(len(x), 0.5)], axis=1)
+            nearest = np.rint(x * self.elements).astype(np.intp)
+            values = self.body_force if self.body_force.ndim == 1 else self.body_force[nearest]
+            yield Act("body", "b", middle, right, right, values, "N/m")
+        most = self.bounds.max(axis=1)
+        x = SHOWN[np.interp(SHOWN, self.nodes / self.length, most) > 0.0]
+        if self.pressure is not None and len(x):
+            places = np.stack([x, np.ones_like(x)], axis=1)
+            ways = OUTWARD["bottom"], OUTWARD["top"]
+            yield Act("top y", "p", places, *ways, self.pressure, "N/m")
+
+    def _holds(self) -> Iterator[Hold]:
+        yield Hold("clamp", "left", moved=self.support)
+        if self.wires > 1:
+            return
+        rubs = np.flatnonzero(self.bounds.any(axis=1))
+        for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
+            if len(run) > 1:
+                first, last = run[[0, -1]] / self.elements
+                yield Hold("support", "bottom", (float(first), float(last)))
 
 
 def neighbours(wire: int, wires: int) -> int:
-    """Give how many neighbours a rod of several has, numbered from 1."""
+    """Number of neighbours that a rod of several has, numbered from 1."""
     return (wire > 1) + (wire < wires)

@@ -45,11 +45,11 @@ class HelicalWire:
         return float(np.pi * self.radius / abs(np.sin(self.lay)))
 
     def angle(self, arc: Array) -> Array:
-        """Give theta along the wire, rad, at arc lengths, m."""
+        """Theta along the wire, rad, at arc lengths, m."""
         return np.asarray(self.start + arc * np.sin(self.lay) / self.radius)
 
     def body_force(self, arc: Array, curvature: Array) -> Array:
-        """Give the force per length that stands for the stretch of what the wire lies on.
+        """Force per length that stands for the stretch of what the wire lies on.
 
         It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the wire
         included, in differences of the elements' forces: equilibrium holds exactly on the mesh.
@@ -72,31 +72,13 @@ class HelicalWire:
         return np.asarray(np.diff(middles, axis=0) / np.diff(length)[:, None])
 
     def stuck_force(self, arc: Array, curvature: Array) -> Array:
-        """Give the change of the wire's force while all sticks, (n_nodes, n_instants), N."""
+        """Change of the wire's force while all sticks, (n_nodes, n_instants), N."""
         stretch = self.stiffness * self.radius * np.cos(self.lay) ** 2
         along = stretch * np.cos(self.angle(arc))
         return np.asarray(along[:, None] * np.atleast_2d(curvature))
 
-    def force(self, arc: Array, slip: Array, curvature: Array) -> Array:
-        """Give the change of the wire's force as it is bent, in its elements.
-
-        Parameters
-        ----------
-        arc, curvature
-            As in `body_force`.
-        slip
-            Displacement of the wire on its support, shape (n_nodes, n_instants), m.
-
-        Returns
-        -------
-        Shape (n_elements, n_instants), N.
-        """
-        stuck = self.stuck_force(arc, curvature)
-        strain = np.diff(slip, axis=0) / np.diff(arc)[:, None]
-        return np.asarray(self.stiffness * strain + 0.5 * (stuck[1:] + stuck[:-1]))
-
     def mean_levers(self, arc: Array) -> Array:
-        """Give what a newton in each element adds to the mean moment of the strand, N m.
+        """What a newton in each element adds to the mean moment of the strand, N m.
 
         As many wires, evenly laid, have that moment together at every section. `arc` as in
         `body_force`; shape (n_elements,), m.
@@ -105,7 +87,7 @@ class HelicalWire:
         return np.asarray(self.radius * np.cos(self.lay) * around / (arc[-1] - arc[0]))
 
     def levers_at_beginning(self, arc: Array) -> Array:
-        """Give what a newton in each element adds to the moment at the wire's beginning, N m.
+        """What a newton in each element adds to the moment at the wire's beginning, N m.
 
         The force there follows from the first two elements, in whose middles it is known. `arc` as
         in `body_force`; shape (n_elements,), m.
@@ -115,10 +97,3 @@ class HelicalWire:
         arm = self.radius * np.cos(self.lay) * np.cos(self.start)
         found[:2] = arm * shares / shares.sum()
         return found
-
-    def moment(self, arc: Array, slip: Array, curvature: Array) -> Array:
-        """Give what the wire adds to the strand's moment, its mean along the wire.
-
-        Parameters as in `force`; shape (n_instants,), N m.
-        """
-        return np.asarray(self.mean_levers(arc) @ self.force(arc, slip, curvature))

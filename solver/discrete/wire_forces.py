@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.rope.data import RopeData
+from solver.discrete.rope import Rope
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +17,7 @@ class CutWires:
     Attributes
     ----------
     layer, wire
-        The layer of each, and the place in `RopeData.wires` of the one that stands for it.
+        The layer of each, and the place in `Rope.wires` of the one that stands for it.
     centres
         Sideways and towards the outermost fibre, shape (n_cut, 2), m.
     arc
@@ -33,7 +33,7 @@ class CutWires:
     side: Array
 
 
-def cut_at(rope: RopeData, place: float) -> CutWires:
+def cut_at(rope: Rope, place: float) -> CutWires:
     """Cut all wires at a place along the strand, m.
 
     Under a uniform curvature the one wire of a layer passes half a turn, from the outermost fibre
@@ -69,7 +69,7 @@ class WireForces:
         The strand.
     """
 
-    def __init__(self, rope: RopeData) -> None:
+    def __init__(self, rope: Rope) -> None:
         self._rope = rope
         helices = [wire.helix for wire in rope.wires]
         self._arc = np.stack([wire.arc for wire in rope.wires])
@@ -78,10 +78,10 @@ class WireForces:
         self._around = np.array(stretch)[:, None] * np.cos(angles)
         stiffness = np.array([one.stiffness for one in helices])
         self._spring = stiffness[:, None] / np.diff(self._arc, axis=1)
-        self.areas: Array = np.array([0.25 * np.pi * wire.diameter**2 for wire in rope.wires])
+        self.areas: Array = np.array([wire.area for wire in rope.wires])
 
     def __call__(self, displacement: Array, columns: slice | Indices) -> Array:
-        """Give the forces in the elements at some instants.
+        """Forces in the elements at some instants.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class WireForces:
         return np.asarray(tension[:, None, :] + change)
 
     def stress_at(self, cut: CutWires, force: Array) -> Array:
-        """Give the mean stress of every wire that is cut, from forces as `__call__` gives them.
+        """Mean stress of every wire that is cut, from forces as `__call__` gives them.
 
         It is linear between the middles of elements, and beyond the first and the last of them.
 
@@ -122,8 +122,8 @@ class WireForces:
         return np.asarray(((1.0 - share) * low + share * high) / self.areas[cut.wire, None])
 
 
-def stress_ranges(rope: RopeData, displacement: Array, some: slice) -> Array:
-    """Give how far the stress of every wire swings where it swings most, shape (n_wires,), Pa.
+def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
+    """How far the stress of every wire swings where it swings most, shape (n_wires,), Pa.
 
     At the fibre of the wire where its bending about its own axis adds to it; over some instants.
     """

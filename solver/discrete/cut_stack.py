@@ -1,0 +1,163 @@
+"""Stacked bodies that are cut into rectangles: what lies beyond their sides, and acts on them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.cut_rods import substructure_sizes
+from solver.discrete.elements import edge_mass, elastic_matrix
+from solver.discrete.plane import Condensed, Rectangle
+from solver.discrete.plane_parts import Part, Trace, keep
+
+if TYPE_CHECKING:
+    from solver.discrete.stack import Given, Stack
+
+SIDES = "left", "right", "bottom", "top"
+Place = tuple[int, int, int]
+"""Column and row of a substructure in its body, and the body."""
+
+
+class CutStack:
+    """The bodies of a stack, cut into substructures.
+
+    Attributes
+    ----------
+    stack
+        The bodies.
+    nodes
+        Number of every node, shape (bodies, nodes up, nodes along).
+    positions
+        Of all nodes, shape (n_nodes, 2), in lengths of a body.
+    parts
+        All substructures by their place, body by body and row by row. Equal ones share what is
+        condensed; their rows are still to be numbered.
+    """
+
+    def __init__(self, stack: Stack) -> None:
+        self.stack = stack
+        columns, rows = (stack.order * number for number in stack.elements)
+        shape = stack.bodies, rows + 1, columns + 1
+        self.nodes = np.arange(np.prod(shape)).reshape(shape)
+        height = stack.height / stack.length
+        x = np.linspace(0.0, 1.0, columns + 1)
+        y = np.arange(stack.bodies)[:, None] * height + np.linspace(0.0, height, rows + 1)
+        everywhere = np.broadcast_arrays(x, y[:, :, None])
+        self.positions = np.stack(everywhere, axis=-1).reshape(-1, 2)
+        self._across, self._up = (
+            stack.order * np.concatenate([[0], np.cumsum(substructure_sizes(number, cuts))])
+            for number, cuts in zip(stack.elements, stack.substructures, strict=True)
+        )
+        self._outlines: dict[tuple[int, int, float], Condensed] = {}
+        self._kept: dict[tuple[object, ...], Condensed] = {}
+        self.parts = {
+            (column, row, body): self._part((column, row, body))
+            for body in range(stack.bodies)
+            for row in range(stack.substructures[1])
+            for column in range(stack.substructures[0])
+        }
+
+    def neighbour(self, place: Place, side: str) -> str | Place:
+        """What lies beyond a side: a substructure, "support", or the name of an outer side."""
+        column, row, body = place
+        columns, rows = self.stack.substructures
+        if side in ("left", "right"):
+            beyond = column + (1 if side == "right" else -1)
+            return (beyond, row, body) if 0 <= beyond < columns else side
+        step = 1 if side == "top" else -1
+        if 0 <= row + step < rows:
+            return column, row + step, body
+        if 0 <= body + step < self.stack.bodies:
+            return column, 0 if step > 0 else rows - 1, body + step
+        return "support" if side == "bottom" and self.stack.support is not None else side
+
+    def along(self, place: Place, side: str, given: Given) -> Array:
+        """2 s / length - 1 at the nodes of a substructure on an outer side, (n_nodes, 1)."""
+        column, row, body = place
+        if side in ("left", "right"):
+            body, bodies = (0, 1) if given.each_body else (body, self.stack.bodies)
+            height = self.stack.order * self.stack.elements[1]
+            whole, first, last = bodies * height, self._up[row], self._up[row + 1]
+            first, last = body * height + first, body * height + last
+        else:
+            whole = self.stack.order * self.stack.elements[0]
+            first, last = self._across[column], self._across[column + 1]
+        return np.asarray(2.0 * np.arange(first, last + 1)[:, None] / whole - 1.0)
+
+    def _part(self, place: Place) -> Part:
+        stack, (column, row, body) = self.stack, place
+        x, right = self._across[column : column + 2]
+        y, top = self._up[row : row + 2]
+        shape = int(right - x), int(top - y), stack.modulus(body)
+        if shape not in self._outlines:
+            elastic = elastic_matrix(shape[2], stack.poisson, stack.state)
+            size = shape[0] // stack.order, shape[1] // stack.order
+            width = 1.0 / stack.elements[0]
+            height = stack.height / stack.length / stack.elements[1]
+            mesh = Rectangle(*size, width, height, elastic, stack.order)
+            self._outlines[shape] = Condensed(mesh)
+        traces = {side: found for side in SIDES if (found := self._trace(place, side))}
+        kind = shape, *traces.values()
+        if kind not in self._kept:
+            self._kept[kind] = keep(self._outlines[shape], traces.values())
+        return Part(
+            condensed=self._kept[kind],
+            nodes=self.nodes[body, y : top + 1, x : right + 1],
+            body=body,
+            traces=traces,
+            modulus=shape[2],
+            force=self._nodal_force(place, self._outlines[shape].rectangle),
+        )
+
+    def _trace(self, place: Place, side: str) -> Trace | None:
+        """Rows of a side: all at an interface, or those of prescribed components, or None.
+
+        A spring has those of one node.
+
+        A contact has none at an end where the left or right side prescribes the normal
+        displacement: any pressing force would be a solution there, and so would any friction up to
+        it. A support of known bound has the component along it, everywhere.
+        """
+        stack, beyond = self.stack, self.neighbour(place, side)
+        if beyond == "support" and stack.support is not None and stack.support.bound is not None:
+            return Trace(side, (0,))
+        if beyond == "support" or (not isinstance(beyond, str) and beyond[2] != place[2]):
+            first = place[0] == 0 and stack.sides["left"].y.prescribed
+            last = place[0] == stack.substructures[0] - 1 and stack.sides["right"].y.prescribed
+            ends = 1 if first else 0, -1 if last else None
+            return Trace(side, (0, 1), *ends, has_macro=beyond != "support")
+        if not isinstance(beyond, str):
+            return Trace(side, has_macro=True)
+        if beyond == "right" and stack.spring is not None:
+            return Trace(side, (0, 1), 0, 1) if place[1:] == (0, 0) else None
+        given = stack.sides[beyond].x, stack.sides[beyond].y
+        held = tuple(component for component, one in enumerate(given) if one.prescribed)
+        return Trace(side, held) if held else None
+
+    def _nodal_force(self, place: Place, mesh: Rectangle) -> Array | None:
+        """Nodal forces of tractions and body forces, scaled, (2 n_nodes, n), or None.
+
+        Tractions vary linearly along a side, body forces are constant; both are work equivalent.
+        """
+        stack, order = self.stack, self.stack.order
+        total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
+        for side in SIDES:
+            if self.neighbour(place, side) != side:
+                continue
+            nodes = mesh.edge(side)
+            step = mesh.height if side in ("left", "right") else mesh.width
+            edges = np.arange(0, len(nodes) - 1, order)[:, None] + np.arange(order + 1)
+            for component, given in enumerate((stack.sides[side].x, stack.sides[side].y)):
+                if given.prescribed:
+                    continue
+                where = self.along(place, side, given)
+                traction = (given.mean + where * given.slope) / stack.young
+                force = step * np.matmul(edge_mass(order), traction[edges])
+                np.add.at(total[:, component], nodes[edges], force)
+        if stack.body_force is not None:
+            areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
+            density = stack.body_force * stack.length / stack.young
+            total += areas.reshape(-1, 1, 1) * density
+        return total.reshape(-1, len(stack.instants)) if total.any() else None

@@ -1,1 +1,0 @@
-"""Parallel rods that rub on a support, or on each other."""

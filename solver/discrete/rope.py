@@ -1,0 +1,306 @@
+"""A strand of helical wires that is bent: rods, each on a support of its own.
+
+Degrees of freedom run along wire after wire; each is what the wire slips on its support. Ends are
+held: neither an extreme fibre slips, nor what a clamp grips. So friction there could not be told
+from the reactions, and they are no points of the interfaces, one a wire, "wire LAYER.NUMBER".
+Lengths are scaled by the longest wire, forces by E A of the stiffest (solver/README.md, 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.cross_section import CrossSection
+from solver.discrete.cut_rods import (
+    COARSEST,
+    CutRods,
+    rod_stiffness,
+    substructure_sizes,
+    tributary,
+)
+from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.probes import Probe, constant
+from solver.discrete.problem import Problem, Scales
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop
+from solver.discrete.substructure import Elasticity, Substructure
+from solver.laws import (
+    Component,
+    Contact,
+    Dirichlet,
+    FrictionLaw,
+    Interface,
+    Rod,
+)
+from solver.refusal import RefusedError
+
+
+@dataclass(frozen=True, eq=False)
+class RopeWire:
+    """A wire of a strand, between two of its places that do not slip.
+
+    Attributes
+    ----------
+    layer, number
+        From 0 on, inside out and around.
+    helix
+        Its geometry and stiffness E A.
+    diameter
+        m.
+    length
+        Of the wire, m.
+    bound
+        Friction bound per length of wire, N/m: one number, or over time (n_instants,).
+    curvature
+        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
+    tension
+        Its force before it is bent, shape (n_instants,), N.
+    stands_for
+        Number of wires that are this one, each at another place along the strand.
+    """
+
+    layer: int
+    number: int
+    helix: HelicalWire
+    diameter: float
+    length: float
+    bound: Array
+    curvature: Array
+    tension: Array
+    stands_for: int = 1
+
+    @property
+    def name(self) -> str:
+        """What its interface is called: numbers of layer and wire, from 1 on."""
+        return f"wire {self.layer + 1}.{self.number + 1}"
+
+    @property
+    def area(self) -> float:
+        """Of its cross-section, m^2."""
+        return float(np.pi * self.diameter**2 / 4.0)
+
+    @property
+    def young(self) -> float:
+        """Young's modulus, Pa."""
+        return self.helix.stiffness / self.area
+
+    @property
+    def arc(self) -> Array:
+        """Arc lengths of the nodes, shape (n_nodes,), m."""
+        return np.linspace(0.0, self.length, len(self.curvature))
+
+    @property
+    def along(self) -> Array:
+        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
+        return np.asarray(np.cos(self.helix.lay) * self.arc)
+
+
+@dataclass(frozen=True, eq=False)
+class Rope:
+    """Helical wires of a strand whose sections stay plane, so that none is tied to another.
+
+    Their order means nothing.
+
+    Attributes
+    ----------
+    wires
+        All on equally many elements.
+    substructures
+        Parts that the elements of a wire are dealt to.
+    tension
+        Of the strand, shape (n_instants,), N, for whoever draws it.
+    curvature
+        Of the strand, uniform or at its clamp, same shape, 1/m.
+    is_clamped
+        Whether the curvature falls away from a clamp, so that every wire is there; or it is the
+        same all along, and the wires of a layer differ by their phase alone.
+    section
+        The strand's cross-section.
+    instants, duration
+        Instants, shape (n_instants,), and length of the interval, s.
+    friction_law
+        Of every wire on what it lies on.
+
+    Raises
+    ------
+    RefusedError
+        For wires on different meshes or instants, or none.
+    """
+
+    wires: Sequence[RopeWire]
+    substructures: int
+    tension: Array
+    curvature: Array
+    is_clamped: bool
+    section: CrossSection
+    instants: Array
+    duration: float
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
+
+    def __post_init__(self) -> None:
+        shapes = {wire.curvature.shape for wire in self.wires}
+        if len(shapes) != 1 or next(iter(shapes))[1] != len(self.instants):
+            raise RefusedError(
+                "Rope.wires",
+                sorted(shapes),
+                f"wires with a curvature of one shape, [n_nodes, {len(self.instants)}]",
+                "give all wires the same number of nodes",
+            )
+        if min(float(np.min(wire.bound)) for wire in self.wires) < 0.0:
+            raise RefusedError("RopeWire.bound", "below 0", "0 or more", "give no bound below zero")
+
+    @property
+    def elements(self) -> int:
+        """Of one wire."""
+        return len(self.wires[0].curvature) - 1
+
+    @property
+    def length(self) -> float:
+        """Of the longest wire, m."""
+        return max(wire.length for wire in self.wires)
+
+    @property
+    def seen_length(self) -> float:
+        """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
+        longest = max(float(wire.along[-1]) for wire in self.wires)
+        return longest if self.is_clamped else 2.0 * longest
+
+    @property
+    def stiffness(self) -> float:
+        """Axial stiffness of the stiffest wire, N."""
+        return max(wire.helix.stiffness for wire in self.wires)
+
+    def coarser(self) -> Self | None:
+        """Return the same uncut wires on half the elements; None where no front would be seen."""
+        elements = self.elements // 2
+        if elements < COARSEST:
+            return None
+        fine, coarse = np.linspace(0.0, 1.0, self.elements + 1), np.linspace(0.0, 1.0, elements + 1)
+        place = np.interp(coarse, fine, np.arange(self.elements + 1.0))
+        left = np.minimum(place.astype(np.intp), self.elements - 1)
+        share = (place - left)[:, None]
+        wires = [
+            replace(
+                wire,
+                curvature=(1.0 - share) * wire.curvature[left] + share * wire.curvature[left + 1],
+            )
+            for wire in self.wires
+        ]
+        return replace(self, wires=wires, substructures=1)
+
+    def discretise(self) -> Problem:
+        """Cut all wires alike and write the laws of their interfaces.
+
+        The search direction of cuts and ends is E A / l_sub of the wire, that of the points which
+        rub its density over the length of an element (`discretise_rods`).
+        """
+        sizes = substructure_sizes(self.elements, self.substructures)
+        contacts = [(number, None) for number in range(len(self.wires))]
+        cut = CutRods(sizes, len(self.wires), contacts, (False, False))
+        shared: dict[tuple[bytes, float], Elasticity] = {}
+        return Problem(
+            substructures=tuple(
+                part
+                for number in range(len(self.wires))
+                for part in _substructures(self, cut, number, shared)
+            ),
+            interfaces=dict(_interfaces(self, cut)),
+            positions=np.concatenate([wire.along for wire in self.wires]),
+            instants=self.instants,
+            scales=Scales(self.length, self.stiffness, self.duration),
+        )
+
+    def moment(self) -> Probe:
+        """Bending moment of the strand, N m, from what its wires slip.
+
+        At the clamp, or the mean along the strand, which is that of every section; with the wires
+        bent each about their own axis.
+        """
+        weights, stuck = [], self.section.slipping_bending * self.curvature
+        for wire in self.wires:
+            helix, arc = wire.helix, wire.arc
+            find = helix.levers_at_beginning if self.is_clamped else helix.mean_levers
+            levers = wire.stands_for * find(arc)
+            spring = helix.stiffness * levers / np.diff(arc)
+            weights.append(np.concatenate([[0.0], spring]) - np.concatenate([spring, [0.0]]))
+            force = helix.stuck_force(arc, wire.curvature)
+            stuck = stuck + levers @ (0.5 * (force[1:] + force[:-1]))
+        together = np.concatenate(weights)
+        dofs = np.flatnonzero(together)
+        return Probe(dofs, together[dofs], stuck)
+
+    def loop(self, problem: Problem) -> Loop:
+        """Moment over the curvature, which drives it."""
+        moment = self.moment()
+        across = "Curvature at the clamp" if self.is_clamped else "Curvature"
+        return Loop(
+            (across, "1/m"),
+            ("Moment", "N·m"),
+            constant(self.curvature),
+            lambda fields: moment(fields.displacement),
+        )
+
+    def described(self) -> Description:
+        """The strand in words, for whoever draws it."""
+        end, right = np.array([[1.0, 0.5]]), OUTWARD["right"]
+        acts = (
+            Act("right y", "κ", end, OUTWARD["top"], right, self.curvature, "1/m"),
+            Act("right x", "T", end, right, right, self.tension, "N"),
+        )
+        # Beside a clamp wires move, unlike a bar, as far as anywhere.
+        clamp = Hold("clamp", "left", moved=np.zeros(len(self.instants)))
+        return Description(
+            bodies=1,
+            length=self.seen_length,
+            height=self.section.diameter,
+            instants=self.instants,
+            acts=tuple(act for act in acts if np.any(act.values)),
+            holds=(clamp,) if self.is_clamped else (),
+        )
+
+
+def _substructures(
+    rope: Rope, cut: CutRods, number: int, shared: dict[tuple[bytes, float], Elasticity]
+) -> Iterator[Substructure]:
+    wire = rope.wires[number]
+    force = wire.helix.body_force(wire.arc, wire.curvature) / rope.stiffness
+    element = wire.length / rope.elements
+    scaled = wire.helix.stiffness / rope.stiffness * rope.length / element
+    for piece, size in enumerate(cut.sizes):
+        rows, trace, ends = cut.rows(number, piece)
+        key = trace.tobytes(), scaled
+        if key not in shared:
+            direction = np.full(len(trace), scaled / size)
+            direction[:-ends] /= size
+            shared[key] = Elasticity(rod_stiffness(size, scaled), trace, direction)
+        start = cut.starts[piece]
+        body_force = tributary(size, element)[:, None] * force[start : start + size + 1]
+        yield Substructure(shared[key], cut.dofs(number, piece), rows, body_force)
+
+
+def _interfaces(rope: Rope, cut: CutRods) -> Iterator[tuple[str, Interface]]:
+    for number, wire in enumerate(rope.wires):
+        yield wire.name, _friction(rope, cut, number)
+    still = np.zeros((len(rope.wires), len(rope.instants)))
+    yield "near end", Dirichlet(cut.left[0], still)
+    yield from cut.cuts()
+    yield "far end", Dirichlet(cut.right[-1], still)
+
+
+def _friction(rope: Rope, cut: CutRods, number: int) -> Contact:
+    wire = rope.wires[number]
+    weights = cut.weights(wire.length / rope.elements)
+    known = np.outer(weights, np.atleast_1d(wire.bound)) / rope.stiffness
+    component, scales = Component(cut.above(number)), (rope.length, rope.stiffness)
+    modulus = wire.helix.stiffness / rope.stiffness * rope.length / wire.length
+    return Contact(
+        tangential=rope.friction_law.at(component, weights, scales, known=known),
+        points=cut.nodes - 1,
+        positions=wire.along[1:-1],
+        weights=weights,
+        around=Rod(np.full(len(weights), modulus)),
+    )

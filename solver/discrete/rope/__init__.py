@@ -1,1 +1,0 @@
-"""Strands of helical wires that are bent."""

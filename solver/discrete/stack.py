@@ -1,0 +1,284 @@
+"""Rectangular bodies in the plane, one on a support or several stacked on each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from solver.arrays import Array, without_residue
+from solver.discrete.probes import constant, end_rotation, reaction, side_mean
+from solver.discrete.problem import Problem
+from solver.discrete.stack_problem import discretise_stack
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, ends_of
+from solver.laws import FrictionLaw
+
+SIDES = "left", "right", "top", "bottom"
+DRIVEN = "top", "left", "right"
+"""Sides of a body on a support, in the order in which one looks for what drives it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """What is given for one component along a side: mean + slope (2 s / length - 1).
+
+    Attributes
+    ----------
+    prescribed
+        Whether it is a displacement, m; else it is a traction, Pa.
+    mean, slope
+        Over time, shape (n_instants,); no slope is 0.
+    each_body
+        Whether s runs over each body of the stack anew, on the left and the right.
+    """
+
+    prescribed: bool
+    mean: Array
+    slope: Array | float = 0.0
+    each_body: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """What is given along a side of the stack, for the components along x and y."""
+
+    x: Given
+    y: Given
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A rigid rough support below the stack.
+
+    Attributes
+    ----------
+    gap
+        Opening at the nodes of the lowest side, shape (nodes along,), m.
+    friction
+        Coefficient mu.
+    bound
+        Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
+        support then presses as much as that takes, and adds no pressure of its own. None where
+        contact decides, and may open.
+    """
+
+    gap: Array
+    friction: float
+    bound: Array | None = None
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring along x at the foot of the right side of the lowest body, slack at first.
+
+    Attributes
+    ----------
+    slack
+        How far the foot may move to the left before it is pulled back, m.
+    stiffness
+        N/m.
+    """
+
+    slack: float
+    stiffness: float
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """Equal rectangular bodies on each other; one metre thick.
+
+    Attributes
+    ----------
+    length, height
+        Of one body, m.
+    bodies
+        Their number.
+    elements, substructures
+        Of one body, along and up.
+    order
+        Of the elements: 1 bilinear, 2 biquadratic.
+    macro_degree
+        Of the macro basis on each side of a substructure; long sides get more in proportion.
+    young, poisson, state
+        Elasticity, Pa; `state` is "strain" or "stress".
+    stiffness
+        Young's modulus of every body over `young`, shape (bodies,), where they differ.
+    friction
+        Coefficient mu between the bodies.
+    support
+        Below the lowest body, or None.
+    sides
+        What is given along the outer sides, by "left", "right", "top", "bottom"; others are free. A
+        support replaces "bottom". `left` and `right` run over the sides of all bodies.
+    body_force
+        Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
+    instants, duration
+        s.
+    spring
+        At the right side, of which nothing is prescribed then; or None.
+    tilt
+        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
+        `body_force` has turned the other way already. None where it does not.
+    friction_law
+        Between the bodies, and on the support.
+    """
+
+    length: float
+    height: float
+    elements: tuple[int, int]
+    substructures: tuple[int, int]
+    young: float
+    poisson: float
+    instants: Array
+    duration: float
+    bodies: int = 1
+    order: int = 1
+    macro_degree: int = 1
+    state: str = "strain"
+    stiffness: Array | None = None
+    friction: float = 0.0
+    support: Support | None = None
+    sides: Mapping[str, Side] = field(default_factory=dict)
+    body_force: Array | None = None
+    spring: Spring | None = None
+    tilt: Array | None = None
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
+
+    def __post_init__(self) -> None:
+        """Leave free what is not given."""
+        free = Given(False, np.zeros_like(self.instants))
+        others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
+        object.__setattr__(self, "sides", {**self.sides, **others})
+
+    def modulus(self, body: int) -> float:
+        """Young's modulus of a body over `young`."""
+        return 1.0 if self.stiffness is None else float(self.stiffness[body])
+
+    def discretise(self) -> Problem:
+        """Make the discrete problem."""
+        return discretise_stack(self)
+
+    def loop(self, problem: Problem) -> Loop:
+        """Spring force on a slope, shear force on a support, or what bends the end."""
+        if self.tilt is not None and self.spring is not None:
+            return _spring_over_angle(self.tilt)
+        if self.support is not None:
+            return _shear(self, problem)
+        if self.sides["right"].y.prescribed:
+            return _deflection(problem)
+        rotation, moment = end_rotation(problem), _moment(self)
+        return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
+
+    def described(self) -> Description:
+        """The bodies in words, for whoever draws them."""
+        return Description(
+            bodies=self.bodies,
+            length=self.length,
+            height=self.bodies * self.height,
+            instants=self.instants,
+            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            holds=tuple(self._holds()),
+            tilt=self.tilt,
+        )
+
+    def _acts(self) -> Iterator[Act]:
+        for name, side in self.sides.items():
+            if name == "bottom" and self.support is not None:
+                continue
+            for component, given in enumerate((side.x, side.y)):
+                yield _given(given, name, component)
+        if self.body_force is not None:
+            size = np.hypot(*self.body_force)
+            towards = self.body_force / np.where(size > 0.0, size, 1.0)
+            weight = size * self.length * (self.bodies * self.height)
+            yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), weight, "N")
+
+    def _holds(self) -> Iterator[Hold]:
+        if self.support is not None:
+            yield Hold("support", "bottom", gap=self.support.gap)
+        for name, side in self.sides.items():
+            is_still = _is_still(side)
+            if all(is_still):
+                yield Hold("clamp", name)
+            elif any(is_still):
+                yield Hold("rollers", name)
+        if self.spring is not None:
+            yield Hold("spring", "right")
+
+
+def _given(given: Given, side: str, component: int) -> Act:
+    """Show what is given along a side: evenly in the middle, unevenly at both ends."""
+    towards, away = ((1.0, 0.0), (0.0, 1.0))[component], OUTWARD[side]
+    first, last = ends_of(side)
+    unit = "m" if given.prescribed else "Pa"
+    is_normal = away[component] != 0.0
+    along = "xy"[component]
+    symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
+    where = f"{side} {along}"
+    if np.any(given.slope):
+        values = np.stack([given.mean - given.slope, given.mean + given.slope])
+        return Act(where, symbol, np.stack([first, last]), towards, away, values, unit)
+    several = is_normal and not given.prescribed
+    share = np.array([0.15, 0.5, 0.85] if several else [0.7 if is_normal else 0.3])
+    places = first + share[:, None] * (last - first)
+    return Act(where, symbol, places, towards, away, given.mean, unit)
+
+
+def _is_still(side: Side) -> list[bool]:
+    """Which components of a side are held at rest."""
+    return [
+        given.prescribed and not np.any(given.mean) and not np.any(given.slope)
+        for given in (side.x, side.y)
+    ]
+
+
+def _spring_over_angle(tilt: Array) -> Loop:
+    """Spring's force over the angle: it lags behind on the way back."""
+    return Loop(
+        ("Angle of the slope", "°"),
+        ("Spring force", "N"),
+        constant(np.degrees(tilt)),
+        lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
+    )
+
+
+def _shear(stack: Stack, problem: Problem) -> Loop:
+    """Shear force on the support over the horizontal displacement of the driven side."""
+    side = next((name for name in DRIVEN if _drives(stack.sides[name])), DRIVEN[0])
+    return Loop(
+        (f"Displacement of the {side}", "m"),
+        ("Shear force", "N"),
+        side_mean(problem, side, 0),
+        _shear_force,
+    )
+
+
+def _shear_force(fields: LoopFields) -> Array:
+    force = -fields.contact("support").tangential_force
+    return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
+
+
+def _drives(side: Side) -> bool:
+    return any(np.any(given.mean) or np.any(given.slope) for given in (side.x, side.y))
+
+
+def _deflection(problem: Problem) -> Loop:
+    held = reaction(problem, "right")
+    return Loop(
+        ("Deflection of the end", "m"),
+        ("Transverse force", "N"),
+        side_mean(problem, "right", 1),
+        lambda fields: held(fields.displacement),
+    )
+
+
+def _moment(stack: Stack) -> Array:
+    """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m.
+
+    A linear traction of an extreme over a height h has the moment extreme h^2 / 6.
+    """
+    given = stack.sides["right"].x
+    several = stack.bodies * stack.height**2
+    size = several if given.each_body else stack.bodies * several
+    return np.broadcast_to(-size / 6.0 * given.slope, stack.instants.shape)

@@ -1,1 +1,0 @@
-"""Rectangular bodies in the plane, one or several on each other."""
