@@ -5,7 +5,7 @@ import numpy as np
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import Bodies, Component, Contact, Dirichlet, Sliders, Unilateral
+from solver.laws import Bodies, Component, Contact, Dirichlet, Friction, Unilateral
 
 COURSES = ("random", "reversal", "open and close", "wander")
 
@@ -49,6 +49,12 @@ def problem(parts, interfaces, instants):
     )
 
 
+def friction_of(component, *, bound=0.0, friction=0.0):
+    """Coulomb's friction of a known bound, or of mu."""
+    none = np.zeros(len(component.above))
+    return Friction(component=component, bound=(none + bound)[:, None], friction=none + friction)
+
+
 def contact(normal, tangent, below, gap, friction):
     """Give a contact of as many points as there are normal rows."""
     count = len(normal)
@@ -56,7 +62,7 @@ def contact(normal, tangent, below, gap, friction):
     below = below or (None, None)
     return Contact(
         normal=Unilateral(component=Component(normal, below[0]), gap=gap),
-        tangential=Sliders.of_contact(Component(tangent, below[1]), friction * ones),
+        tangential=friction_of(Component(tangent, below[1]), friction=friction * ones),
         points=points,
         positions=1.0 * points,
         weights=ones,
@@ -71,10 +77,10 @@ def rubbing_points(seed, *, opens, two):
     across, along = (Component(rows[n], rows[n + 2] if two else None) for n in (0, 1))
     if opens:
         normal = Unilateral(component=across, gap=np.zeros(pairs))
-        sliders = Sliders.of_contact(along, np.full(pairs, 0.4))
+        sliders = friction_of(along, friction=np.full(pairs, 0.4))
     else:
         normal = None
-        sliders = Sliders.of_known_bound(along, random.uniform(0.0, 0.5, pairs))
+        sliders = friction_of(along, bound=random.uniform(0.0, 0.5, pairs))
     common = {
         "normal": normal,
         "points": np.arange(pairs),
@@ -130,9 +136,9 @@ def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
     along = np.arange(points)
     laws = {
         f"strand {above}-{below}": Contact(
-            tangential=Sliders.of_known_bound(
+            tangential=friction_of(
                 Component(points * above + along, points * below + along),
-                rng.uniform(0.0, 0.5, size=points),
+                bound=rng.uniform(0.0, 0.5, size=points),
             ),
             points=along,
             positions=1.0 * along,

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from contact_problems import local_stage
+from contact_problems import friction_of, local_stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import SettingError
 from solver.latin import solve
-from solver.laws import Component, Contact, Frictionless, SlackSpring
+from solver.laws import Component, Contact, Unilateral
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise, loop_of
@@ -102,14 +102,14 @@ def test_a_slope_that_falls_below_the_horizontal_lets_the_block_go():
 @given(st.integers(0, 2**31))
 def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(seed):
     random = np.random.default_rng(seed)
-    spring = SlackSpring(
+    spring = Unilateral(
         component=Component(np.arange(3)),
         gap=random.uniform(0.0, 1.0, 3),
         softness=10.0 ** random.uniform(-2.0, 2.0, 3),
     )
     law = Contact(
         normal=spring,
-        tangential=Frictionless(component=Component(np.arange(3, 6))),
+        tangential=friction_of(Component(np.arange(3, 6))),
         points=np.arange(3),
         positions=np.arange(3.0),
         weights=np.ones(3),

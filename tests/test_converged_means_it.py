@@ -11,7 +11,7 @@ from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.states import rules_of
+from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of

@@ -11,7 +11,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod, Sliders
+from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod
 
 if TYPE_CHECKING:
     from solver.discrete.rods import Rods
@@ -288,10 +288,10 @@ def _friction(rods: Rods, cut: CutRods, number: int) -> Contact:
     positions = np.zeros(points[-1] + 1)
     positions[points] = rods.nodes[node]
     below = cut.below(number)
-    bound = rods.bounds[node] * weights[:, None] / rods.stiffness
-    sliders = Sliders.of_known_bound(Component(cut.above(number), below), bound)
+    known = rods.bounds[node] * weights[:, None] / rods.stiffness
+    component, scales = Component(cut.above(number), below), (rods.length, rods.stiffness)
     return Contact(
-        tangential=rods.friction_law.on(sliders, weights, rods.length),
+        tangential=rods.friction_law.at(component, weights, scales, known=known),
         points=points,
         positions=positions,
         weights=weights,

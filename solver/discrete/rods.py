@@ -13,10 +13,7 @@ from solver.discrete.cut_rods import COARSEST, discretise_rods
 from solver.discrete.probes import Probe, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
-from solver.laws import (
-    Coulomb,
-    FrictionLaw,
-)
+from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
 SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
@@ -87,7 +84,7 @@ class Rods:
     body_force: Array | None = None
     section: Array | None = None
     pressure: Array | None = None
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         nodes, instants = self.elements + 1, len(self.instants)

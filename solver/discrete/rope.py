@@ -31,12 +31,10 @@ from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import (
     Component,
     Contact,
-    Coulomb,
     Dirichlet,
     FrictionLaw,
     Interface,
     Rod,
-    Sliders,
 )
 from solver.refusal import RefusedError
 
@@ -141,7 +139,7 @@ class Rope:
     section: CrossSection
     instants: Array
     duration: float
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         shapes = {wire.curvature.shape for wire in self.wires}
@@ -296,11 +294,11 @@ def _interfaces(rope: Rope, cut: CutRods) -> Iterator[tuple[str, Interface]]:
 def _friction(rope: Rope, cut: CutRods, number: int) -> Contact:
     wire = rope.wires[number]
     weights = cut.weights(wire.length / rope.elements)
-    bound = np.outer(weights, np.atleast_1d(wire.bound)) / rope.stiffness
-    sliders = Sliders.of_known_bound(Component(cut.above(number)), bound)
+    known = np.outer(weights, np.atleast_1d(wire.bound)) / rope.stiffness
+    component, scales = Component(cut.above(number)), (rope.length, rope.stiffness)
     modulus = wire.helix.stiffness / rope.stiffness * rope.length / wire.length
     return Contact(
-        tangential=rope.friction_law.on(sliders, weights, rope.length),
+        tangential=rope.friction_law.at(component, weights, scales, known=known),
         points=cut.nodes - 1,
         positions=wire.along[1:-1],
         weights=weights,

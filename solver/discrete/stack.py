@@ -12,7 +12,7 @@ from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import discretise_stack
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, ends_of
-from solver.laws import Coulomb, FrictionLaw
+from solver.laws import FrictionLaw
 
 SIDES = "left", "right", "top", "bottom"
 DRIVEN = "top", "left", "right"
@@ -143,7 +143,7 @@ class Stack:
     body_force: Array | None = None
     spring: Spring | None = None
     tilt: Array | None = None
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         """Leave free what is not given."""

@@ -24,12 +24,10 @@ from solver.laws import (
     Component,
     Contact,
     Dirichlet,
-    Frictionless,
+    FrictionLaw,
     Interface,
     Perfect,
     PointOfBody,
-    SlackSpring,
-    Sliders,
     Unilateral,
 )
 
@@ -132,15 +130,20 @@ def _contact(cut: CutStack, body: int) -> Contact:
         for axis in range(upper.shape[1])
     )
     areas = stack.length * weights
+    law, scales = stack.friction_law, (stack.length, stack.young * stack.length)
     if support is not None and support.bound is not None:
-        scaled = support.bound[node] / (stack.young * stack.length)
-        sliders = Sliders.of_known_bound(along, scaled * areas[:, None])
+        known = support.bound[node] / (stack.young * stack.length) * areas[:, None]
+        friction = law.at(along, areas, scales, known=known)
     else:
-        friction = stack.friction if support is None else support.friction
-        sliders = Sliders.of_contact(along, np.full(len(node), friction))
+        mu = np.full(len(node), stack.friction if support is None else support.friction)
+        friction = law.at(along, areas, scales, friction=mu)
+    normal = None
+    if across:
+        softness = law.softness_across(areas, scales)
+        normal = Unilateral(component=across[0], gap=gap, softness=softness)
     return Contact(
-        normal=Unilateral(component=across[0], gap=gap) if across else None,
-        tangential=stack.friction_law.on(sliders, areas, stack.length),
+        normal=normal,
+        tangential=friction,
         points=points,
         positions=np.linspace(0.0, stack.length, cut.nodes.shape[2])[touching],
         weights=areas,
@@ -155,12 +158,12 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     part = cut.parts[stack.substructures[0] - 1, 0, 0]
     rows = part.rows["right"]
     return Contact(
-        normal=SlackSpring(
+        normal=Unilateral(
             component=Component(rows[:, 0]),
             gap=np.array([spring.slack / stack.length]),
             softness=np.array([stack.young / spring.stiffness]),
         ),
-        tangential=Frictionless(component=Component(rows[:, 1])),
+        tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([stack.length]),
         weights=stack.length * part.traces["right"].weights(part.rectangle),

@@ -277,7 +277,7 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
                 least = SOFTENING * len(law.tangent.sides) * law.tangential.steepest_fall
                 k[rows] = np.maximum(k[rows], least)
         if law.tangential.softness is not None:
-            softness = law.compliance[law.points] / law.shares
+            softness = law.in_parallel(law.tangential.softness)[law.points] / law.shares
             for rows in law.tangent.sides:
                 k[rows] /= 1.0 + softness * k[rows]
     return k

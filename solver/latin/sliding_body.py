@@ -13,13 +13,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.laws import Contact, SlackSpring
-from solver.laws.compliant import CompliantSliders
-from solver.laws.frictionless import Frictionless
-from solver.laws.sliders import Sliders
+from solver.laws import Contact
 
-KNOWN_BOUND = (Sliders, CompliantSliders, Frictionless)
-"""Tangential laws whose friction falls with a shift, their bound being known from the pressure."""
 SAME = 1e-9
 """By how much a motion may differ from a slide along the support."""
 BALANCED = 1e-14
@@ -42,18 +37,21 @@ def slide_of(problem: Problem) -> Array | None:
     (law,) = ground
     if law.normal is None or not law.is_on_support:
         return None
-    if type(law.tangential) not in KNOWN_BOUND:
+    along = law.tangential
+    if along.strength is not None or along.cap is not None:
         return None
-    along, across = law.tangent.above, law.normal.component.above
-    wanted = np.concatenate([np.ones(len(along)), np.zeros(len(across))])
-    own = problem.motions[problem.row_dofs[np.concatenate([along, across])]]
+    slides, across = law.tangent.above, law.normal.component.above
+    wanted = np.concatenate([np.ones(len(slides)), np.zeros(len(across))])
+    own = problem.motions[problem.row_dofs[np.concatenate([slides, across])]]
     shares = np.linalg.lstsq(own, wanted, rcond=None)[0]
     is_held = np.abs(own @ shares - wanted).max() > SAME
     return None if is_held else np.asarray(problem.motions @ shares)
 
 
 def _is_spring(law: Contact) -> bool:
-    return isinstance(law.normal, SlackSpring)
+    """Whether a law is that of a spring: it presses, gives way, and does not rub."""
+    rubs = law.tangential.friction.any() or law.tangential.bound.any()
+    return law.normal is not None and law.normal.softness is not None and not rubs
 
 
 class Slide:

@@ -1,28 +1,34 @@
 """Contact: two sides that stick and slip, and where contact may be lost, open.
 
-It is a normal law and a tangential law put together. Where the pressure is known there is no normal
+It is a normal law and a friction law put together. Where the pressure is known there is no normal
 law. Below is a rigid support or another body. Forces act from what is below on the body above, and
 the jump is that of the body above over what is below.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.laws.around import Around, Rod
-from solver.laws.behaviour import Behaviour
-from solver.laws.interface import Component, Rule, beyond
-from solver.laws.pairs import Pairs
-from solver.laws.rules import Rules
-from solver.laws.tangential import Tangential
-from solver.laws.unilateral import Unilateral
+from solver.laws.friction import Friction, Strength
+from solver.laws.interface import (
+    Component,
+    Gaps,
+    Interface,
+    MacroPart,
+    Rule,
+    beyond,
+    squared,
+)
+from solver.laws.unilateral import ContactRule, Unilateral
 
 NO_SLIP = 1e-9
 """Slip, as a share of the largest displacement, up to which a point counts as stuck."""
@@ -30,12 +36,63 @@ OPEN = 2
 """Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Contact(Pairs):
-    """Pairs that stick and slip, and may open.
+@dataclass(frozen=True, eq=False)
+class Behaviour:
+    """What one interface's fields say of its law, shape (n_pairs, n_instants) each, scaled.
 
     Attributes
     ----------
+    slip
+        Increment of the tangential jump.
+    friction
+        Friction force on the body above.
+    bound
+        Largest friction force.
+    pressing, opening
+        Pressing force, and distance of the two sides; None where the pressure is known.
+    """
+
+    slip: Array
+    friction: Array
+    bound: Array
+    pressing: Array | None
+    opening: Array | None
+
+    @cached_property
+    def dissipated(self) -> Array:
+        """What full sliding along the way would dissipate."""
+        return self.bound * np.abs(self.slip)
+
+    def violation(self, mean_slip: float) -> Array:
+        """Violation of every pair and instant, an energy, scaled.
+
+        With q|v| + F v, where F is cut to |F| <= q: it is nowhere negative and zero exactly where
+        Coulomb's law holds; the excess of |F| over q times the mean slip; and of contact N g where
+        both are positive, tension times the mean slip, and overlap times the mean force.
+        """
+        held = np.clip(self.friction, -self.bound, self.bound)
+        found = self.dissipated + held * self.slip
+        found += np.abs(self.friction - held) * mean_slip
+        if self.pressing is not None and self.opening is not None:
+            pressed, opened = np.maximum(self.pressing, 0.0), np.maximum(self.opening, 0.0)
+            found += pressed * opened + (pressed - self.pressing) * mean_slip
+            found += pressed.mean() * (opened - self.opening)
+        return np.maximum(found, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact(Interface):
+    """Pairs that stick and slip, and may open.
+
+    A pair is a point of the body above and what lies below it; the pairs of one point (two, where a
+    cut crosses the interface, or ends at it) share its force.
+
+    Attributes
+    ----------
+    points
+        Point of the interface that each pair belongs to, shape (n_pairs,).
+    positions
+        Place of the points along the interface, shape (n_points,), m.
     weights
         Tributary length or area of each pair, shape (n_pairs,), m or m^2.
     tangential
@@ -44,12 +101,18 @@ class Contact(Pairs):
         The law across it; None where the pressure is known.
     around
         What the search direction has to know of the bodies.
+    macro
+        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
+        from the other is in equilibrium in the coarse problem. None on a rigid support.
     """
 
+    points: Indices
+    positions: Array
     weights: Array
-    tangential: Tangential
+    tangential: Friction
     normal: Unilateral | None = None
     around: Around = field(default_factory=Rod)
+    macro: sparse.csr_array | None = None
 
     remembers = True
 
@@ -59,13 +122,20 @@ class Contact(Pairs):
         along = self.tangential.component
         return (along,) if self.normal is None else (self.normal.component, along)
 
-    def begun(self, start: Array) -> Self:
-        """Give the law whose sliders begin elsewhere, as `Tangential.begun`."""
-        return replace(self, tangential=self.tangential.begun(start))
+    @property
+    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
+        """Rows of all components, of both sides."""
+        return np.concatenate([rows for component in self.components for rows in component.sides])
 
-    def during(self, some: slice) -> Self:
-        """Give the law of some instants alone."""
-        return replace(self, tangential=self.tangential.during(some))
+    @property
+    def tangent(self) -> Component:
+        """The component along the interface."""
+        return self.tangential.component
+
+    @property
+    def is_on_support(self) -> bool:
+        """Whether what lies below is rigid."""
+        return self.tangent.below is None
 
     @property
     def opens(self) -> bool:
@@ -78,34 +148,31 @@ class Contact(Pairs):
         on_support = self.is_on_support and isinstance(self.around, Rod)
         return on_support and not self.opens and self.tangential.softness is None
 
-    @cached_property
-    def shares(self) -> Array:
-        """Share of each pair in the force of its point: as its law says, or of its area."""
-        for weights in (*self.tangential.divided_by, self.weights):
-            whole = self.by_point(weights)[self.points]
-            if np.all(whole > 0.0):
-                return np.asarray(weights / whole)
-        return 1.0 / np.bincount(self.points)[self.points]
+    def begun(self, start: Array) -> Self:
+        """Law whose sliders begin elsewhere, as `Friction.begun`."""
+        return replace(self, tangential=self.tangential.begun(start))
+
+    def during(self, some: slice) -> Self:
+        """Law of some instants alone."""
+        return replace(self, tangential=self.tangential.during(some))
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join all of one law and of known bound, without macro bases; a lone support stays."""
-        apart: list[Self] = []
-        alike: dict[tuple[type[Tangential], bool], list[Self]] = {}
+        """Join all that may be treated as one, without macro bases; a lone one stays."""
+        alike: dict[tuple[Strength | None, bool, bool, bool], list[Self]] = {}
         for law in laws:
-            kind = type(law.tangential), law.is_on_support
-            (apart if law.opens else alike.setdefault(kind, [])).append(law)
-        joined = [
-            own[0] if on_support and len(own) == 1 else cls._joined(kind, own)
-            for (kind, on_support), own in alike.items()
-        ]
-        return joined + apart
+            springs = law.normal is not None and law.normal.softness is not None
+            kind = law.tangential.strength, law.is_on_support, law.opens, springs
+            alike.setdefault(kind, []).append(law)
+        return [own[0] if len(own) == 1 else cls._joined(own) for own in alike.values()]
 
     @classmethod
-    def _joined(cls, kind: type[Tangential], laws: Sequence[Self]) -> Self:
+    def _joined(cls, laws: Sequence[Self]) -> Self:
+        normals = [law.normal for law in laws if law.normal is not None]
         return replace(
             laws[0],
-            tangential=kind.joined([law.tangential for law in laws]),
+            tangential=Friction.joined([law.tangential for law in laws]),
+            normal=Unilateral.joined(normals) if normals else None,
             points=np.arange(sum(len(law.points) for law in laws)),
             positions=np.concatenate([law.positions[law.points] for law in laws]),
             weights=np.concatenate([law.weights for law in laws]),
@@ -113,20 +180,63 @@ class Contact(Pairs):
         )
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Prepare the law; contact comes first, because only it says what friction can carry."""
-        if self.normal is not None:
-            return self.normal.rule(self.tangential.rule(k, n_instants), k)
-        return self.tangential.rule(k, n_instants)
+        """Law for one k; contact comes first, because only it says what friction can carry."""
+        along = self.tangential.rule(k, n_instants)
+        if self.normal is None:
+            return along
+        bonds = bool(self.tangential.bound.any())
+        return ContactRule(self.normal, along, k, bonds=bonds)
+
+    def by_point(self, values: Array) -> Array:
+        """Sum of the values of each point's pairs: (n_pairs, ...) to (n_points, ...)."""
+        once, again = self._first_pairs
+        found = np.zeros((len(self.positions), *values.shape[1:]))
+        found[self.points[once]] = values[once]
+        np.add.at(found, self.points[again], values[again])
+        return found
 
     @cached_property
-    def compliance(self) -> Array:
-        """Tangential displacement before slip, per friction force, of every point, scaled."""
-        return self._by_point_in_parallel(self.tangential.softness)
+    def _first_pairs(self) -> tuple[Indices, Indices]:
+        """The first pair of every point, and those of points that have had one."""
+        _, once = np.unique(self.points, return_index=True)
+        return once, np.setdiff1d(np.arange(len(self.points)), once)
 
-    def _by_point_in_parallel(self, softness: Array | None) -> Array:
+    def mean_by_point(self, values: Array) -> Array:
+        """Mean of the values of each point's pairs, shape (n_points, ...)."""
+        counts = np.bincount(self.points, minlength=len(self.positions))
+        return np.asarray(self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1)))
+
+    def in_parallel(self, softness: Array | None) -> Array:
+        """Compliance of every point whose pairs have one each, (n_points,); zero without."""
         if softness is None:
             return np.zeros(len(self.positions))
         return np.asarray(1.0 / self.by_point(1.0 / softness))
+
+    @cached_property
+    def shares(self) -> Array:
+        """Share of each pair in the force of its point: as its law says, or of its area."""
+        softness = self.tangential.softness
+        strengths = self.tangential.most if softness is None else 1.0 / softness
+        for weights in (strengths, self.weights):
+            whole = self.by_point(weights)[self.points]
+            if np.all(whole > 0.0):
+                return np.asarray(weights / whole)
+        return 1.0 / np.bincount(self.points)[self.points]
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Macro forces of both sides, which cancel, component by component."""
+        if self.macro is None:
+            return
+        basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
+        for component in self.components:
+            yield MacroPart(np.concatenate(component.sides), basis)
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the forces of both sides; where they move is what the law is about."""
+        if self.is_on_support:
+            return Gaps()
+        sums = (sum(force[rows] for rows in component.sides) for component in self.components)
+        return Gaps(force=sum(squared(beyond(np.asarray(one), noise)) for one in sums))
 
     def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
         """Prepare the check of W and F against the law; parameters as of `gaps`."""
@@ -141,7 +251,7 @@ class Contact(Pairs):
         return Behaviour(
             slip=slip,
             friction=force[self.tangent.above],
-            bound=self.tangential.allowed(pressing, slip),
+            bound=self.tangential.allowed(pressing, slip, opening),
             pressing=pressing,
             opening=opening,
         )
@@ -203,34 +313,6 @@ class Contact(Pairs):
         before = 0.0 if start is None else self.by_point(start)[:, None]
         moved = self.by_point(self.tangential.slider(displacement, force))
         return np.diff(moved, axis=1, prepend=before)
-
-    def rules(self, first: int) -> list[Rules]:
-        """Say what the jumps of the points obey, component by component.
-
-        Parameters
-        ----------
-        first
-            Place of the first of them in a stack.
-        """
-        size = len(self.positions)
-        none, own = np.zeros(size), first + np.arange(size)
-        nothing = none[:, None]
-        no, yes = np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
-        bound = self.by_point(self.tangential.bound)
-        friction = self.mean_by_point(self.tangential.friction)
-        ratio, length = np.ones(size), np.full(size, np.inf)
-        ages = ratio, length
-        along = self.tangential
-        if along.ratio is not None and along.slip_length is not None:
-            ages = self.mean_by_point(along.ratio), self.mean_by_point(along.slip_length)
-        if self.normal is None:
-            return [Rules(no, none, own, friction, bound, self.compliance, *ages)]
-        gap = self.mean_by_point(self.normal.gap)
-        soft = self._by_point_in_parallel(self.normal.softness)
-        # Without friction what is in series along changes nothing, and tells the jump from others.
-        sprung = self.compliance if bound.any() or friction.any() else soft
-        tangential = Rules(no, none, own, friction, bound, sprung, *ages)
-        return [Rules(yes, gap, own, none, nothing, soft, ratio, length), tangential]
 
     @property
     def acts(self) -> bool:

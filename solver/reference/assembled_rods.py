@@ -62,8 +62,8 @@ class AssembledRods:
             )
         if found is not None:
             found.increment[self._fixed] = moved
-            slip = gone[self._fixed] + np.abs(moved)
-            found.pull[self._fixed] = bounds.at(slip, self._fixed) * np.sign(moved)
+            reached = bounds.at(gone + np.abs(found.increment))
+            found.pull[self._fixed] = reached[self._fixed] * np.sign(moved)
         return found
 
     def _search_with(self, bounds: Bounds) -> Search:

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.linalg import LinAlgError
 from scipy.linalg import cholesky
 
-from solver.arrays import Array, Indices, at_instant
+from solver.arrays import Array, Indices
 from solver.laws import OPEN
-from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
 from solver.reference.newton import CONVERGED, NEWTON_LIMIT, Marched, Newton
+from solver.reference.rules import Rules
 from solver.reference.states import HELD, Increment, Sides, States
 from solver.reference.unloading import unload
 
@@ -48,8 +48,8 @@ class NewtonWithChangingFriction(Newton):
     ) -> None:
         super().__init__(condensed, rules, rest, guesses)
         self._gone = np.zeros_like(rules.gap)
+        self._softens = any(one.slopes.min() < 0.0 for one in rules.strengths)
         self._of_motions = condensed.gauge.T @ condensed.stiffness @ condensed.gauge
-        self._growth = (rules.ratio - 1.0) / rules.slip_length
         self._ties = None if len(condensed.base) == len(rules.gap) else condensed.ties.toarray()
 
     def __call__(self, instant: int) -> Marched:
@@ -77,7 +77,7 @@ class NewtonWithChangingFriction(Newton):
             elif length > SHORTEST:
                 length *= 0.25
             else:
-                if self.jumps_at is None and np.any(self._growth < 0.0):
+                if self.jumps_at is None and self._softens:
                     self.jumps_at = instant
                 beyond = self._elsewhere(at, sides, guesses)
                 return None if beyond is None else (beyond.states, beyond.step)
@@ -87,7 +87,7 @@ class NewtonWithChangingFriction(Newton):
         """Right sides under which nothing is added to the instant before."""
         rules, force = self._rules, self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
-        bound = at_instant(rules.bound, max(instant - 1, 0))
+        bound = self._bound(max(instant - 1, 0))
         return Sides(-self.response.on_base(force)[:, None], bound, held[:, None])
 
     def _follow(self, at: Reached, sides: Sides, guesses: list[States]) -> Reached | None:
@@ -114,7 +114,8 @@ class NewtonWithChangingFriction(Newton):
             if beyond is not None:
                 return beyond
             at = slid
-        slid = self._slid(self._rules.ratio[:, None], sides, [at.states, *guesses])
+        last = self._rules.factor(np.full((len(self._gone), 1), np.inf))
+        slid = self._slid(last, sides, [at.states, *guesses])
         return None if slid is None else self._stable(slid, sides)
 
     def _stable(self, near: Reached, sides: Sides) -> Reached | None:
@@ -146,7 +147,9 @@ class NewtonWithChangingFriction(Newton):
         pieces: list[bytes] = []
         for _ in range(NEWTON_LIMIT):
             slip = np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
-            piece = states.tobytes() + (self._gone + slip < self._rules.slip_length).tobytes()
+            is_capped = self._carried(force, sides) > self._rules.cap
+            segment = self._rules.segment(self._gone + slip)
+            piece = states.tobytes() + segment.tobytes() + is_capped.tobytes()
             if piece in pieces and piece != pieces[-1]:  # of a cycle
                 return None
             pieces.append(piece)
@@ -161,19 +164,22 @@ class NewtonWithChangingFriction(Newton):
 
     def _linearised(self, slip: Array, force: Array, sides: Sides) -> Sides:
         """Set the tangent of the friction bound at slips (n,) >= 0, and give what is left of it."""
-        growth, most = self._growth_at(slip), self._most(force, sides)
-        factor = self._rules.factor((self._gone + slip)[:, None])
-        self.response.set_friction(self._rules.friction * factor[:, 0], growth * most)
-        return replace(sides, bound=sides.bound * factor - (growth * most * slip)[:, None])
+        rules, most = self._rules, self._most(force, sides)
+        grows = rules.growth(self._gone + slip) * most
+        factor = rules.factor(self._gone + slip)
+        is_capped = self._carried(force, sides) > rules.cap
+        self.response.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
+        bound = np.where(is_capped, rules.cap, sides.bound[:, 0]) * factor - grows * slip
+        return replace(sides, bound=bound[:, None])
 
-    def _growth_at(self, slip: Array) -> Array:
-        """Growth of the factor on the bound per slip, shape (n,)."""
-        return np.where(self._gone + slip < self._rules.slip_length, self._growth, 0.0)
+    def _carried(self, force: Array, sides: Sides) -> Array:
+        """Friction force r + mu f_n, whatever the cap, shape (n,)."""
+        rules = self._rules
+        return sides.bound[:, 0] + np.maximum(rules.friction * force[rules.partner], 0.0)
 
     def _most(self, force: Array, sides: Sides) -> Array:
         """Largest friction force of surfaces that have not slipped yet, shape (n,)."""
-        carried = self._rules.friction * force[self._rules.partner]
-        return np.asarray(sides.bound[:, 0] + np.maximum(carried, 0.0))
+        return np.minimum(self._carried(force, sides), self._rules.cap)
 
     def _obeys(self, states: States, slip: Array, force: Array, sides: Sides) -> bool:
         """Tell whether friction is what slip has left, not only by its tangent."""
@@ -193,11 +199,16 @@ class NewtonWithChangingFriction(Newton):
         begin, end = np.abs(at.slip), np.abs(reached.slip)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
         most = np.maximum(*(self._most(one.step.force[:, 0], sides) for one in (at, reached)))
-        growth = np.where(slips, np.minimum(*map(self._growth_at, (begin, end))) * most, 0.0)
+        on_way = self._gone + np.minimum(begin, end), self._gone + np.maximum(begin, end)
+        growth = np.where(slips, self._rules.lowest_growth(*on_way) * most, 0.0)
         if not np.any(growth < 0.0):
             return True
         is_open = (at.states == OPEN) & (reached.states == OPEN)
         sprung = self._rules.compliance > 0.0
+        stiffness = 1.0 + growth * self._rules.compliance
+        if np.any(stiffness <= 0.0):
+            return False
+        growth /= stiffness
         presses = sprung & (at.states == HELD) & (reached.states == HELD)
         growth[presses] += 1.0 / self._rules.compliance[presses]
         free = np.flatnonzero((slips | is_open | sprung)[self._condensed.base])

@@ -23,8 +23,9 @@ from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.contact_states import all_forces, status_of
 from solver.reference.newton import CONVERGED, Marched, Newton
 from solver.reference.residual import Shown, unbalanced_of
+from solver.reference.rules import rules_of
 from solver.reference.solution import Interrupted, Reference
-from solver.reference.states import States, rules_of
+from solver.reference.states import States
 
 MOST_JUMPS = 13_000
 """Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB, and its
@@ -94,7 +95,7 @@ class IncrementalContact:
         problem, condensed, rules = self._problem, self._condensed, self._rules
         own = rules.kept(condensed.moving)
         guesses = None if guess is None else guess[condensed.moving]
-        kind = NewtonWithChangingFriction if own.change else Newton
+        kind = NewtonWithChangingFriction if own.ages or np.isfinite(own.cap).any() else Newton
         newton = kind(condensed, own, problem.rest, guesses)
         done = self._nothing_done()
         ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)

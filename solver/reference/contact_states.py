@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.laws import OPEN
+from solver.laws.friction import follow
 from solver.laws.play import play
-from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
+from solver.reference.rules import Rules
 from solver.reference.states import HELD, States
 
 
@@ -30,10 +31,14 @@ def all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array
     slip = np.diff(jumps, axis=1, prepend=0.0)
     bound = rules.bounds(found, slip)
     found[given] = (-bound * np.sign(slip))[given]
-    sprung = np.flatnonzero(given & (rules.compliance > 0.0))
-    if len(sprung):
-        soft, jump = rules.compliance[sprung, None], jumps[sprung]
-        found[sprung] = (play(jump, bound[sprung] * soft) - jump) / soft
+    for number, strength in enumerate(rules.strengths):
+        own = given & (rules.compliance > 0.0) & (rules.strength == number)
+        if not own.any():
+            continue
+        soft, jump = rules.compliance[own, None], jumps[own]
+        reach = soft * np.broadcast_to(rules.before_slip(rules.bound, found), jumps.shape)[own]
+        slider = play(jump, reach) if number == 0 else follow(jump, reach, strength)
+        found[own] = (slider - jump) / soft
     return found
 
 

@@ -13,8 +13,8 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.glued import jumps
+from solver.reference.rules import rules_of
 from solver.reference.self_stress import self_stresses
-from solver.reference.states import rules_of
 
 VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.glued import jumps
-from solver.reference.states import rules_of
+from solver.reference.rules import rules_of
 
 
 def fingerprint(problem: Problem) -> bytes:
@@ -43,8 +43,9 @@ def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
         rules.friction,
         rules.bound,
         rules.compliance,
-        rules.ratio,
-        rules.slip_length,
+        rules.cap,
+        rules.strength,
+        *(np.array([one.slips, one.factors]) for one in rules.strengths),
     )
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         matrix.sort_indices()

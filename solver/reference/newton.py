@@ -16,10 +16,10 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array, Indices, at_instant
 from solver.laws import OPEN
-from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
 from solver.reference.contact_states import states_at
 from solver.reference.response import Response
+from solver.reference.rules import Rules
 from solver.reference.starts import Starts
 from solver.reference.states import HELD, Increment, Sides, States
 from solver.reference.unloading import unload
@@ -77,6 +77,7 @@ class Newton:
         if rest is not None:
             self._at_rest = states_at(condensed.jump(rest)[condensed.moving], rules)
         self._largest = float(np.abs(condensed.load).max(initial=0.0))
+        self._intact = np.ones_like(rules.gap)
         has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
         # Nothing has acted yet: then nothing moves, though a free body might.
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
@@ -94,14 +95,20 @@ class Newton:
         load = condensed.load[:, instant] - self._load - self.response.on_base(self._force)
         before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         held = before - np.where(rules.normal, self._opening, 0.0)
-        sides = Sides(load[:, None], at_instant(rules.bound, instant), held[:, None])
+        sides = Sides(load[:, None], self._bound(instant), held[:, None])
         step = self._together(sides, instant)
         self._load, self._shift = condensed.load[:, instant], condensed.shift[:, instant]
         slip, self._force = step.jump[:, 0] - before, step.force[:, 0]
         self._opening += slip
         self._strained += step.strained[:, 0]
         self._motion += step.motion[:, 0]
+        opened = self._states[rules.partner[rules.bonds]] == OPEN
+        self._intact[rules.bonds[opened]] = 0.0
         return Marched(slip, self._force, step.strained[:, 0], step.motion[:, 0])
+
+    def _bound(self, instant: int) -> Array:
+        """Friction force that needs no pressing one, where no bond is broken yet, (n, 1)."""
+        return at_instant(self._rules.bound, instant) * self._intact[:, None]
 
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
+from solver.reference.rules import Rules
 
 
 class Shown(NamedTuple):
@@ -38,7 +38,7 @@ def unbalanced_of(condensed: Condensation, rules: Rules, shown: Shown) -> NDArra
     vanish.
     """
     forces, unit = shown.forces, condensed.unit[:, None]
-    bound = rules.bounds(forces, shown.slip)
+    bound = rules.bounds(forces, shown.slip, shown.opening)
     pressed = np.maximum(forces - unit * shown.opening, 0.0)
     rubbed = np.clip(forces - unit * shown.slip, -bound, bound)
     wrong = np.abs(forces - np.where(rules.normal[:, None], pressed, rubbed))

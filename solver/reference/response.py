@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
-from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors
+from solver.reference.rules import Rules
 from solver.reference.states import HELD, Increment, Sides, States
 
 LOOSE = 1e-14
@@ -90,7 +90,7 @@ class Response:
         stays[self._base_rows] -= sides.load
         force = stays
         given = -self._way * sides.bound[rows]
-        right = given - force[rows] - self._slope * force[self._under]
+        right = given - self._share_of_own * force[rows] - self._slope * force[self._under]
         if self._grows:
             right += self._stiffer * (sides.held[rows] - self._slips @ unknown[:n_base])
         if not self._is_plain:
@@ -110,7 +110,7 @@ class Response:
         carried = given - self._slope * force[self._under]
         if self._grows:
             slip = self._slips @ (unknown[:n_base] + self._gauge @ motion) - sides.held[rows]
-            carried -= self._stiffer * slip
+            carried = (carried - self._stiffer * slip) / self._share_of_own
         carried[sprung] = force[rows[sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))
         force[rows] = carried
@@ -186,6 +186,10 @@ class Response:
         is_few = self._ties is None and len(rows) * FEW <= len(self._stiffness)
         self._own = self._stiffness.take(rows, axis=0) if is_few else None
         matrix = self._of_unknowns[np.ix_(rows, unknowns)]
+        # A spring in series lengthens the slip by its force over its stiffness.
+        self._share_of_own = 1.0 + self._stiffer * self._soft[rows]
+        if self._grows:
+            matrix *= self._share_of_own
         tied = np.flatnonzero(slope)
         if len(tied):
             under = self._of_unknowns[np.ix_(self._under[tied], unknowns)]
@@ -210,20 +214,21 @@ class Response:
         """
         free, gauge, sprung = self._free, self._gauge, self._sprung
         kept = self._gauge_kept = gauge[self._kept]
-        own, n_rows, n_free = self._rows[sprung], len(forces), len(free)
-        self._held = np.concatenate([self._base[self._kept], own])
+        held, n_rows, n_free = self._rows[sprung], len(forces), len(free)
+        self._held = np.concatenate([self._base[self._kept], held])
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
         if gauge.size:
             shifts = np.zeros((len(self._of_unknowns), gauge.shape[1]))
             shifts[self._kept] = -kept
             pulls = self._forces(shifts, self._kept)
-            matrix[:n_rows, n_rows:] = pulls[self._rows] + self._slope * pulls[self._under]
+            own = self._share_of_own * pulls[self._rows]
+            matrix[:n_rows, n_rows:] = own + self._slope * pulls[self._under]
             if self._grows:
                 matrix[:n_rows, n_rows:] += self._stiffer * (self._slips[:, free] @ gauge[free])
         if len(sprung):
-            come = self._come = self._jumps_of(own)
-            soft, size = self._soft[own], (len(own), len(self._others))
+            come = self._come = self._jumps_of(held)
+            soft, size = self._soft[held], (len(held), len(self._others))
             self._share = 1.0 / (1.0 + soft)
             moved = [come[:, free], np.zeros(size), come[:, free] @ gauge[free]]
             matrix[sprung] = self._share * (soft * matrix[sprung] + np.hstack(moved))

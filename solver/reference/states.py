@@ -14,22 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.discrete.problem import Problem
-from solver.laws.rules import Rules, stacked
 
 States = NDArray[np.int8]
 HELD = 0
-
-
-def rules_of(problem: Problem) -> Rules:
-    """Stack the laws of all interfaces with friction, point by point."""
-    found: list[Rules] = []
-    first = 0
-    for law in problem.rubbing.values():
-        own = law.rules(first)
-        found += own
-        first += len(own) * len(law.positions)
-    return stacked(found)
 
 
 @dataclass(frozen=True, eq=False)

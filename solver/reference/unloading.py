@@ -17,8 +17,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws import OPEN
-from solver.laws.rules import Rules
 from solver.reference.response import Response
+from solver.reference.rules import Rules
 from solver.reference.states import HELD, Sides, States
 
 CHANGES = 30

@@ -204,9 +204,10 @@ class BarSettings(SceneSettings):
         if self.pressure_load != "steady":
             bound = np.outer(density, self.path("pressure_load"))
         mean, section = self._uneven_section()
+        stiffness = self.young * self.section * mean
         return Rods(
             length=self.length,
-            stiffness=self.young * self.section * mean,
+            stiffness=stiffness,
             elements=self.elements,
             substructures=self.substructures,
             bound=bound,
@@ -217,7 +218,7 @@ class BarSettings(SceneSettings):
             support=self.path("support_load") if self.support_displacement else None,
             body_force=self.path("body_load") if self.body_force else None,
             section=section,
-            friction_law=self.law(),
+            friction_law=self.law(stiffness / self.length**2),
         )
 
     def sentence(self) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 import param
@@ -15,8 +14,7 @@ from solver.definitions import Pairs, SettingError, choice, count, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
 from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning_knots
-from solver.laws.catalogue import FRICTION_LAWS
-from solver.laws.friction_law import FrictionLaw
+from solver.laws import FrictionLaw, Strength
 from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.settings import Settings
@@ -39,8 +37,11 @@ class SceneSettings(Settings):
 
     friction_law = choice(
         "coulomb",
-        list(FRICTION_LAWS),
-        " ".join(f"{name}: {law.words}" for name, law in FRICTION_LAWS.items()),
+        ["coulomb", "compliant", "slip-dependent"],
+        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
+        "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
+        "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
+        "run in.",
         group="Contact",
         title="Friction law",
     )
@@ -114,11 +115,14 @@ class SceneSettings(Settings):
         """Settings that a scene is about: the path and size of its load, friction, cuts, and k."""
         return (cls.PATH, "seed", *cls.LOADS, "friction", "substructures", "k_scale")
 
-    def law(self) -> FrictionLaw:
-        """Law of friction; its attributes are named like settings."""
-        kind: Any = FRICTION_LAWS[str(self.friction_law)]
-        found: FrictionLaw = kind(**{one.name: getattr(self, one.name) for one in fields(kind)})
-        return found
+    def law(self, stiffness: float) -> FrictionLaw:
+        """Law of friction; `stiffness` is the unit of `contact_stiffness`, per area."""
+        if self.friction_law == "compliant":
+            return FrictionLaw(stiffness=self.contact_stiffness * stiffness)
+        if self.friction_law == "slip-dependent":
+            table = Strength((0.0, self.slip_length), (1.0, self.friction_ratio))
+            return FrictionLaw(strength=table)
+        return FrictionLaw()
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""

@@ -12,9 +12,7 @@ from solver.discrete.rigid_stack import rigid_slide, wrench
 from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
 from solver.discrete.structure import LoopFields
-from solver.laws import Coulomb
-from solver.laws.compliant import Compliant
-from solver.laws.slip_dependent import SlipDependent
+from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.closed_forms.cantilever import cantilever
 from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
@@ -37,38 +35,37 @@ STEADY = 0.01
 
 def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     """Friction along the bar, and the loop of its end."""
-    closed = closed_form(bar)
+    closed, law = closed_form(bar), bar.friction_law
     if closed is not None:
-        law = problem.friction
-        yield ExactCurve(
-            "friction", bar.nodes, closed.friction_force / law.by_point(law.weights)[:, None]
-        )
+        friction = problem.friction
+        density = closed.friction_force / friction.by_point(friction.weights)[:, None]
+        yield ExactCurve("friction", bar.nodes, density)
         yield ExactCurve("loop", closed.end_displacement, bar.load)
-    elif isinstance(bar.friction_law, Compliant) and _is_even(bar):
-        density = bar.friction_law.contact_stiffness * bar.stiffness / bar.length**2
-        given = bar.length, bar.stiffness, float(bar.bound[0]), density
+    elif _is_even(bar) and law == FrictionLaw(stiffness=law.stiffness):
+        given = bar.length, bar.stiffness, float(bar.bound[0]), law.stiffness
         grown = masing(bar.load, lambda force: pulled_compliant_bar(force, *given)[0])
         yield ExactCurve("loop", grown, bar.load)
-    elif isinstance(bar.friction_law, SlipDependent) and _is_even(bar):
-        yield from _grown(bar, bar.friction_law)
+    elif _is_even(bar) and law.strength and law == FrictionLaw(strength=law.strength):
+        yield from _grown(bar, law.strength)
 
 
-def _grown(bar: Rods, law: SlipDependent) -> Iterator[ExactCurve]:
+def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
     """Loop under a load that grows, as long as friction changes at every slipping point.
 
     Where friction softens that ends where the load would be more than the bar can take.
     """
-    bound, slope = float(bar.bound[0]), abs(law.friction_ratio - 1.0) / law.slip_length
+    (_, slip_length, *_), (_, ratio, *_) = strength.slips, strength.factors
+    bound, slope = float(bar.bound[0]), abs(ratio - 1.0) / slip_length
     if not slope or np.any(np.diff(bar.load, prepend=0.0) < 0.0):
         return
     gamma = np.sqrt(bound * slope / bar.stiffness)
     share = float(bar.load[-1]) * gamma / bound
-    zone = np.arcsinh(share) if law.friction_ratio > 1.0 else np.arcsin(min(share, 1.0))
-    if (share >= 1.0 and law.friction_ratio < 1.0) or zone > gamma * bar.length:
+    zone = np.arcsinh(share) if ratio > 1.0 else np.arcsin(min(share, 1.0))
+    if (share >= 1.0 and ratio < 1.0) or zone > gamma * bar.length:
         return
-    given = bar.stiffness, bound, law.friction_ratio, law.slip_length
+    given = bar.stiffness, bound, ratio, slip_length
     end = np.array([pulled_changing_bar(force, *given) for force in bar.load.tolist()])
-    if end[-1] <= law.slip_length:
+    if end[-1] <= slip_length:
         yield ExactCurve("loop", end, bar.load)
 
 
@@ -96,7 +93,7 @@ def exact_parabola(
     total = contact.normal_force.sum(axis=0)
     most = float(total.max())
     friction = body.support.friction
-    if most <= 0.0 or (friction and body.poisson < UNCOUPLED) or body.friction_law != Coulomb():
+    if most <= 0.0 or (friction and body.poisson < UNCOUPLED) or body.friction_law != FrictionLaw():
         return
     wide = body.poisson**2 if body.state == "strain" else 0.0
     modulus = body.young / (1.0 - wide)
@@ -137,7 +134,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     It does where it slides much farther than it is deformed, and no side holds it.
     """
     held = any(one.prescribed for side in body.sides.values() for one in (side.x, side.y))
-    if held or body.spring is None or body.friction_law != Coulomb():
+    if held or body.spring is None or body.friction_law != FrictionLaw():
         return
     slide = rigid_slide(body, body.spring)
     pushed, pressed, _ = wrench(body)
@@ -152,7 +149,7 @@ def exact_slope(body: Stack) -> Iterator[ExactCurve]:
     """Force of the spring over the angle: what friction leaves to it, up and down."""
     assert body.tilt is not None
     assert body.support is not None
-    if body.body_force is None or body.friction_law != Coulomb():
+    if body.body_force is None or body.friction_law != FrictionLaw():
         return
     weight = np.hypot(*body.body_force) * body.length * body.height
     down = weight * np.sin(body.tilt)

@@ -20,7 +20,6 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack import Support
 from solver.discrete.structure import LoopFields
 from solver.instants import instants_of
-from solver.laws import Coulomb
 from solver.loads import INJECTIONS, interpolate
 from solver.profiles import means, shares_of
 from solver.reference.closed_forms.diffusion import spread
@@ -251,7 +250,7 @@ class FaultSettings(PlaneSettings):
         lack = self.strength(place) - stress
         small = ROUND * float(np.abs(lack).max())
         spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
-        if self.law() != Coulomb() or not spreads or stress <= 0.0:
+        if self.friction_law != "coulomb" or not spreads or stress <= 0.0:
             return
         front = fronts(place, lack)
         if not front.any() or front.max() > INFINITE * min(self.length, self.height):

@@ -174,7 +174,7 @@ class PlaneSettings(SceneSettings):
             poisson=self.poisson,
             state=self.plane,
             friction=self.friction,
-            friction_law=self.law(),
+            friction_law=self.law(self.young / self.length),
             instants=self.times(),
             duration=self.duration,
         )

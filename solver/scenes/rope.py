@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -220,7 +221,7 @@ class RopeSettings(SceneSettings):
             for layer, own in enumerate(self.section.layers)
             for number in range(own.wires if self.is_clamped else 1)
         ]
-        return Rope(
+        rope = Rope(
             wires=wires,
             substructures=self.substructures,
             tension=tension,
@@ -229,8 +230,8 @@ class RopeSettings(SceneSettings):
             section=self.section,
             instants=self.times(),
             duration=self.duration,
-            friction_law=self.law(),
         )
+        return replace(rope, friction_law=self.law(rope.stiffness / rope.length**2))
 
     def _wire(
         self, layer: int, number: int, bound: Array, curvature: Array, tension: Array

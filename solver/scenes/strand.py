@@ -159,9 +159,10 @@ class StrandSettings(SceneSettings):
         if self.pressure_load != "steady":
             pressure = self.path("pressure_load")
             bound = np.tile(self.friction * pressure, (self.elements + 1, 1))
+        stiffness = self.young * self.section
         return Rods(
             length=self.length,
-            stiffness=self.young * self.section,
+            stiffness=stiffness,
             elements=self.elements,
             substructures=self.substructures,
             bound=bound,
@@ -172,7 +173,7 @@ class StrandSettings(SceneSettings):
             wires=self.wires,
             broken=(self.broken, self._break_node()) if self.broken else None,
             rigid_grip=self.grip == "displacement",
-            friction_law=self.law(),
+            friction_law=self.law(stiffness / self.length**2),
         )
 
     def coarser(self) -> Iterator[Rods]:

@@ -21,7 +21,7 @@ from solver.discrete.substructure import Elasticity, Substructure
 from solver.latin import PGD, Paper, iterations
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import LinearStage
-from solver.laws import Component, Contact, Sliders
+from solver.laws import Component, Contact, Friction
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -96,7 +96,9 @@ def half_plane(points: int, instants: int) -> Problem:
     rows = np.arange(points)
     positions = (rows + 0.5) / points
     law = Contact(
-        tangential=Sliders.of_known_bound(Component(rows), np.full(points, 1e-3)),
+        tangential=Friction(
+            component=Component(rows), bound=np.full((points, 1), 1e-3), friction=np.zeros(points)
+        ),
         points=rows,
         positions=positions,
         weights=np.full(points, 1.0 / points),

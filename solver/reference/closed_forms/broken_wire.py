@@ -15,7 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.rods import Rods
-from solver.laws import Coulomb
+from solver.laws import FrictionLaw
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 
 STEPS = 100
@@ -58,7 +58,7 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     on what they took over, where friction is not Coulomb's, or where the bound changes with time
     and the grip is rigid or wires slip away from the break.
     """
-    if scene.friction_law != Coulomb():
+    if scene.friction_law != FrictionLaw():
         return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None

@@ -20,7 +20,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array
 from solver.discrete.rods import Rods
-from solver.laws import Coulomb
+from solver.laws import FrictionLaw
 from solver.laws.play import play
 
 SECTIONS = 4096
@@ -75,7 +75,7 @@ def closed_form(scene: Rods) -> ClosedForm | None:
     """
     if scene.support is not None or scene.body_force is not None or scene.section is not None:
         return None
-    if scene.friction_law != Coulomb():
+    if scene.friction_law != FrictionLaw():
         return None
     reach = np.concatenate([_grip_beyond(scene, 0.0), np.zeros_like(scene.bounds[:1])])
     between = np.concatenate([reach[:1], _grip_beyond(scene, 0.5), reach[-1:]])

@@ -23,7 +23,7 @@ from scipy.optimize import linprog
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.condensation import Condensation, NoReferenceError
-from solver.reference.states import rules_of
+from solver.reference.rules import rules_of
 
 MOST_POINTS = 1000
 """Points above which the program, whose matrix is full, takes more than some seconds."""
@@ -135,7 +135,7 @@ def _forces(problem: Problem, some: slice) -> _Forces:
         raise NoReferenceError("The limit is that of known bounds, and of at most 1000 points.")
     condensed = Condensation(problem)
     rules = rules_of(problem).kept(condensed.moving)
-    if np.any(rules.ratio != 1.0):
+    if rules.ages:
         raise NoReferenceError("Where friction changes with slip the theorem says nothing.")
     residual, elastic = condensed.stiffness, -condensed.load[:, some]
     stresses = condensed.stresses

@@ -31,7 +31,7 @@ from scipy.optimize import linprog
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.condensation import Condensation, NoReferenceError
-from solver.reference.states import rules_of
+from solver.reference.rules import rules_of
 
 SLACK = 1e-9
 """Share of its size by which rounding lets a corner lie beyond a plane."""
@@ -75,7 +75,7 @@ def slip_space(problem: Problem) -> SlipSpace:
     condensed = Condensation(problem)
     rules = rules_of(problem).kept(condensed.moving)
     is_whole = len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
-    if not is_whole or rules.compliance.any() or np.any(rules.ratio != 1.0) or rules.smooth.any():
+    if not is_whole or rules.compliance.any() or not rules.is_linear or rules.smooth.any():
         raise NoReferenceError(
             "The planes are those of Coulomb's friction, where forces follow from slips."
         )

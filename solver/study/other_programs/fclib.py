@@ -39,7 +39,7 @@ from solver.prepared import prepared
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.condensation import NotHeldError, factored
 from solver.reference.glued import jumps
-from solver.reference.states import rules_of
+from solver.reference.rules import rules_of
 from solver.refusal import RefusedError
 from solver.scenes.method import method_of
 
@@ -219,7 +219,7 @@ def _points(problem: Problem) -> tuple[Indices, Array]:
         )
     if rules.compliance.any():
         raise _no_problem("its contact gives way, or is a spring", "set friction_law=coulomb")
-    if np.isfinite(rules.slip_length).any():
+    if not rules.is_linear:
         raise _no_problem("its friction changes with slip", "set friction_law=coulomb")
     if len(rules.gap) > MOST:
         raise _no_problem(

@@ -14,7 +14,7 @@ from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.distance import Fields, determinate_forces
 from solver.reference.glued import jumps
-from solver.reference.states import rules_of
+from solver.reference.rules import rules_of
 
 ELASTIC = 1e-4
 """Share of the forces inside elements that counts like a contact force: they leave so much more
@@ -64,7 +64,7 @@ def _broken_laws(problem: Problem, stiffness: sparse.csr_array, jump: Array, for
     unit = unit / (1.0 + unit * rules.compliance[:, None])
     opening = unit * (jump + rules.gap[:, None])
     moved = np.diff(jump, axis=1, prepend=0.0)
-    slip, bound = unit * moved, rules.bounds(force, moved)
+    slip, bound = unit * moved, rules.bounds(force, moved, opening)
     overlap, tension = np.maximum(-opening, 0.0), np.maximum(-force, 0.0)
     apart = np.minimum(np.maximum(opening, 0.0), np.maximum(force, 0.0))
     of_normal = np.maximum(np.maximum(overlap, tension), apart)

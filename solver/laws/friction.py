@@ -1,0 +1,415 @@
+"""The friction law: a spring in series with a slider (solver/README.md, 8 and 14).
+
+Asperities, or the part of a joint that no mesh shows, give way before they slip: along the
+interface a spring k_t is in series with a slider, whose friction force is at most
+
+    b = g(s) min(r + mu N, cap),
+
+with the known part r, the pressing force N, and a factor g of the slip s that the slider has
+accumulated, g(0) = 1. The slider stands at p = w + f / k_t, where w is the tangential jump and f
+the friction force on the body above. Along the search direction it is the play operator (problem
+2.1 of the paper), whose reach is longer by the bound over k_t. Coulomb's friction is mu alone,
+Jenkins' element has k_t, friction that hardens or softens has g; a bond has cohesion in r.
+
+Where contact opens the cohesion of a pair is gone for good: a brittle bond.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from solver.arrays import Array, Indices, in_rows
+from solver.laws.interface import Component
+from solver.laws.play import Play
+from solver.laws.springs import Springs
+from solver.refusal import RefusedError, check_range
+
+OPENED = 1e-9
+"""Opening, as a share of the largest normal jump, from which on a bond is broken."""
+
+
+@dataclass(frozen=True)
+class Strength:
+    """Factor on the friction bound over accumulated slip, linear between points.
+
+    Attributes
+    ----------
+    slips
+        Ascending from 0, m, or scaled; beyond the last the factor stays.
+    factors
+        Non-negative, the first is 1; as many.
+
+    Raises
+    ------
+    RefusedError
+        For other points.
+    """
+
+    slips: tuple[float, ...]
+    factors: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        slips, factors = np.array(self.slips), np.array(self.factors)
+        is_table = len(slips) == len(factors) >= 2 and np.all(np.isfinite([slips, factors]))
+        if not (is_table and slips[0] == 0.0 and factors[0] == 1.0 and np.all(np.diff(slips) > 0)):
+            raise RefusedError(
+                "strength",
+                list(zip(self.slips, self.factors, strict=False)),
+                "points (slip, factor), the first (0, 1), with slips that grow",
+                "divide all factors by the first, and begin at slip 0",
+            )
+        if np.any(factors < 0.0):
+            raise RefusedError("strength", factors.min(), "factors from 0 on", "raise it")
+
+    def __call__(self, slip: Array) -> Array:
+        """Factor after accumulated slip, of any shape."""
+        found: Array = np.interp(slip, self.slips, self.factors)
+        return found
+
+    @property
+    def slopes(self) -> Array:
+        """Growth per slip between the points, and none beyond, shape (n_points,)."""
+        return np.asarray(np.append(np.diff(self.factors) / np.diff(self.slips), 0.0))
+
+    def segment(self, slip: Array) -> Indices:
+        """Number of the point behind each slip, of any shape."""
+        return np.asarray(np.searchsorted(self.slips, slip, side="right") - 1)
+
+    def lowest_slope(self, first: Array, last: Array) -> Array:
+        """Smallest growth per slip on the way from one slip to a larger one, shape (n,)."""
+        passed = np.arange(len(self.slips))[:, None]
+        on_way = (self.segment(first) <= passed) & (passed <= self.segment(last))
+        found: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
+        return found
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """What a structure chooses of friction, beside mu and pressure; by default Coulomb's law.
+
+    "Area" is the tributary length along a rod, in m, and the area of a metre of thickness in the
+    plane, in m^2.
+
+    Attributes
+    ----------
+    stiffness
+        k_t per area, N/m over m or m^2; infinite where nothing gives way.
+    normal_stiffness
+        The same across the interface, where contact may open.
+    cohesion
+        Friction force per area without pressure, N/m or Pa.
+    cap
+        Largest friction force per area, before slip; N/m or Pa.
+    strength
+        Factor on the bound over accumulated slip; None where slip changes nothing.
+
+    Raises
+    ------
+    RefusedError
+        For stiffnesses or a cap that are not above zero, or a cohesion below.
+    """
+
+    stiffness: float = np.inf
+    normal_stiffness: float = np.inf
+    cohesion: float = 0.0
+    cap: float = np.inf
+    strength: Strength | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("stiffness", "normal_stiffness", "cap"):
+            check_range(self, name, 0.0, np.inf, above=True)
+        check_range(self, "cohesion", 0.0, np.inf)
+
+    def at(
+        self,
+        component: Component,
+        weights: Array,
+        scales: tuple[float, float],
+        *,
+        known: Array | None = None,
+        friction: Array | None = None,
+    ) -> Friction:
+        """Law at the pairs of an interface.
+
+        Parameters
+        ----------
+        component
+            Their rows.
+        weights
+            Tributary area of each, shape (n_pairs,), m or m^2.
+        scales
+            Units of length, m, and of force, N.
+        known
+            Friction force that known pressure makes, (n_pairs, n_instants) or (n_pairs, 1), scaled.
+        friction
+            mu of each pair, shape (n_pairs,), where pressure is not known.
+        """
+        length, force = scales
+        bound = np.zeros((len(weights), 1)) if known is None else known.reshape(len(known), -1)
+        if self.cohesion > 0.0:
+            bound = bound + (self.cohesion / force * weights)[:, None]
+        cap = None if np.isinf(self.cap) else self.cap / force * weights
+        if cap is not None:
+            bound = np.minimum(bound, cap[:, None])
+        strength = self.strength
+        if strength is not None:
+            slips = tuple(slip / length for slip in strength.slips)
+            strength = Strength(slips, strength.factors)
+        return Friction(
+            component=component,
+            bound=bound,
+            friction=np.zeros(len(weights)) if friction is None else friction,
+            cap=None if friction is None else cap,
+            softness=_softness(self.stiffness, weights, scales),
+            strength=strength,
+        )
+
+    def softness_across(self, weights: Array, scales: tuple[float, float]) -> Array | None:
+        """Compression of each pair per pressing force, (n_pairs,), scaled; None without one."""
+        return _softness(self.normal_stiffness, weights, scales)
+
+
+def _softness(stiffness: float, weights: Array, scales: tuple[float, float]) -> Array | None:
+    length, force = scales
+    return None if np.isinf(stiffness) else force / (length * stiffness * weights)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """The friction law at the pairs of an interface.
+
+    Attributes
+    ----------
+    component
+        Rows of the pairs.
+    bound
+        r, the friction force of each pair that needs no pressing one, non-negative, scaled: shape
+        (n_pairs, n_instants), or (n_pairs, 1) where it stays the same.
+    friction
+        Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
+    cap
+        Largest friction force before slip, (n_pairs,), scaled; None if there is none.
+    softness
+        1 / k_t of each pair, (n_pairs,), scaled; None if there is none.
+    strength
+        Factor over accumulated slip, scaled; None where slip changes nothing.
+    start
+        Where every slider stands before the first instant, (n_pairs,), scaled; None is zero.
+    """
+
+    component: Component
+    bound: Array
+    friction: Array
+    cap: Array | None = None
+    softness: Array | None = None
+    strength: Strength | None = None
+    start: Array | None = None
+
+    def slider(self, displacement: Array, force: Array | None) -> Array:
+        """Position of the slider of every pair, shape (n_pairs, n_instants), scaled.
+
+        Parameters
+        ----------
+        displacement, force
+            W and F of all rows, shape (n_rows, n_instants); None for F leaves the spring out.
+        """
+        jump = self.component.jump(displacement)
+        if self.softness is None or force is None:
+            return jump
+        return np.asarray(jump + self.softness[:, None] * force[self.component.above])
+
+    def begun(self, start: Array) -> Friction:
+        """Law whose sliders stand elsewhere before the first instant, (n_pairs,), scaled.
+
+        Raises
+        ------
+        RefusedError
+            If it remembers more than that.
+        """
+        if self.strength is not None or (self.bound.any() and self.friction.any()):
+            raise RefusedError(
+                "friction_law",
+                "slip-dependent" if self.strength is not None else "general",
+                "a law that remembers nothing but where its sliders stand",
+                "solve the whole interval at once, or take Coulomb's friction",
+            )
+        return replace(self, start=start)
+
+    def without_slip(self, pressing: Array | None, opening: Array | None = None) -> Array:
+        """Largest friction force before slip, (n_pairs, n_instants), or as the bound is.
+
+        Parameters
+        ----------
+        pressing
+            Force that presses, shape (n_pairs, n_instants); None where the pressure is known.
+        opening
+            Distance of the sides, same shape, where it may break a bond.
+        """
+        bound = self.bound
+        if pressing is not None:
+            if opening is not None and bound.any():
+                bound = bound * is_intact(opening, pressing)
+            bound = bound + self.friction[:, None] * np.maximum(pressing, 0.0)
+            if self.cap is not None:
+                bound = np.minimum(bound, self.cap[:, None])
+        return bound
+
+    def allowed(self, pressing: Array | None, slip: Array, opening: Array | None = None) -> Array:
+        """Largest friction force, shape (n_pairs, n_instants), after increments of slip."""
+        bound = np.broadcast_to(self.without_slip(pressing, opening), slip.shape)
+        if self.strength is None:
+            return bound
+        return np.asarray(bound * self.strength(np.cumsum(np.abs(slip), axis=1)))
+
+    @property
+    def most(self) -> Array:
+        """Largest value that the known part of the bound ever has, shape (n_pairs,)."""
+        return np.asarray(self.highest.max(axis=1))
+
+    @property
+    def highest(self) -> Array:
+        """Largest value that slip may give the known part of the bound, of its shape."""
+        return self.bound if self.strength is None else self.bound * max(self.strength.factors)
+
+    @property
+    def steepest_fall(self) -> Array:
+        """Largest force by which a known bound falls per slip, shape (n_pairs,)."""
+        fall = 0.0 if self.strength is None else -float(self.strength.slopes.min())
+        return np.asarray(self.bound.max(axis=1) * fall)
+
+    @property
+    def softens(self) -> bool:
+        """Whether the bound falls with slip anywhere."""
+        return self.strength is not None and bool(self.strength.slopes.min() < 0.0)
+
+    def during(self, some: slice) -> Friction:
+        """Law of some instants alone."""
+        return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, some])
+
+    @classmethod
+    def joined(cls, laws: Sequence[Friction]) -> Friction:
+        """Laws of one strength put one after the other, all on supports, or none."""
+        below = [law.component.below for law in laws if law.component.below is not None]
+        return replace(
+            laws[0],
+            component=Component(
+                np.concatenate([law.component.above for law in laws]),
+                np.concatenate(below) if below else None,
+            ),
+            bound=in_rows([law.bound for law in laws]),
+            friction=np.concatenate([law.friction for law in laws]),
+            cap=_joined([law.cap for law in laws], laws, np.inf),
+            softness=_joined([law.softness for law in laws], laws, 0.0),
+            start=_joined([law.start for law in laws], laws, 0.0),
+        )
+
+    def rule(self, k: Array, n_instants: int) -> FrictionRule:
+        """Law that is ready for one k, and so many instants."""
+        return FrictionRule(self, k, n_instants)
+
+
+def is_intact(opening: Array, pressing: Array) -> Array:
+    """1 up to the first instant at which a pair has opened, then 0; (n_pairs, n_instants) all."""
+    noise = OPENED * float(np.abs(opening).max(initial=0.0))
+    is_closed = (opening <= noise) | (pressing > 0.0)
+    return np.asarray(np.logical_and.accumulate(is_closed, axis=1), dtype=float)
+
+
+def _joined(
+    values: Sequence[Array | None], laws: Sequence[Friction], missing: float
+) -> Array | None:
+    if all(value is None for value in values):
+        return None
+    return np.concatenate(
+        [
+            np.full(len(law.bound), missing) if value is None else value
+            for value, law in zip(values, laws, strict=True)
+        ]
+    )
+
+
+class FrictionRule:
+    """The tangential component in the local stage, for one k."""
+
+    def __init__(self, law: Friction, k: Array, n_instants: int) -> None:
+        self._law = law
+        self._springs = Springs(law.component, k)
+        soft = self._springs.soft
+        # The slider lags by the force over both springs, the jump by their own share of that.
+        self._lag = soft if law.softness is None else soft + law.softness[:, None]
+        self._share = None if law.softness is None else np.asarray(soft / self._lag)
+        self._reach = None if law.cap is not None else np.asarray(law.bound * self._lag)
+        self._grows = law.friction[:, None] * self._lag
+        self._play = Play(len(law.bound), n_instants, law.start)
+
+    def __call__(
+        self,
+        incoming: Array,
+        displacement: Array,
+        _some: slice,
+        pressing: Array | None = None,
+        opening: Array | None = None,
+    ) -> None:
+        """Write W^ of the rows, as `Rule`; N and opening of the pairs where they vary."""
+        jump = self._springs.jump(incoming)
+        reach = self._reached(pressing, opening)
+        strength = self._law.strength
+        slider = follow(jump, reach, strength) if strength else self._play(jump, reach)
+        held = slider
+        if self._share is not None:
+            held = jump + self._share * (slider - jump)
+        self._springs.close(incoming, jump, held, displacement)
+
+    def _reached(self, pressing: Array | None, opening: Array | None) -> Array:
+        """How far the slider may stay behind z, (n_pairs, n_instants) or (n_pairs, 1)."""
+        if self._reach is not None and opening is None:
+            return self._reach if pressing is None else self._reach + self._grows * pressing
+        return np.asarray(self._law.without_slip(pressing, opening) * self._lag)
+
+
+def follow(target: Array, reach: Array, strength: Strength) -> Array:
+    """Positions of sliders that follow a target with a reach that changes with their slip.
+
+    Parameters
+    ----------
+    target
+        Where they would be without friction, shape (n_points, n_instants).
+    reach
+        How far each may stay behind before it has slipped, same shape or (n_points, 1).
+    strength
+        Factor on that over accumulated slip.
+    """
+    found = np.empty_like(target)
+    position, gone = np.zeros((2, len(target)))
+    reaches = np.broadcast_to(reach, target.shape).T
+    for after, wanted, most in zip(found.T, target.T, reaches, strict=True):
+        away = wanted - position
+        slip = _slip(np.abs(away), most, gone, strength)
+        position = position + np.sign(away) * slip
+        gone = gone + slip
+        after[:] = position
+    return found
+
+
+def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:
+    """Smallest slip a >= 0 of one instant with a + reach g(gone + a) = distance, shape (n,).
+
+    The left side is linear in a between the points of g, of which the first that is no less than
+    the distance ends the way. Where it falls with a, as friction softens faster than the search
+    direction unloads, and the distance is within reach, the point sticks: that is the solution that
+    it is at already.
+    """
+    slip, missing = np.zeros_like(distance), distance - reach * strength(gone)
+    left = missing > 0.0
+    for end in strength.slips[1:]:
+        ahead = np.maximum(end - gone, slip)
+        after = distance - ahead - reach * strength(gone + ahead)
+        ends = left & (after <= 0.0)
+        share = np.divide(missing, missing - after, out=np.zeros_like(after), where=ends)
+        slip = np.where(ends, slip + share * (ahead - slip), np.where(left, ahead, slip))
+        left &= ~ends
+        missing = after
+    return np.where(left, distance - reach * strength.factors[-1], slip)

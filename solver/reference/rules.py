@@ -1,0 +1,191 @@
+"""What jumps of the displacement obey at one instant, as incremental solvers read it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from solver.arrays import Array, Flags, Indices, in_rows
+from solver.discrete.problem import Problem
+from solver.laws import Contact, Strength
+from solver.laws.friction import is_intact
+
+PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
+"""Of friction that slip does not change."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rules:
+    """What the jumps obey, stacked as `Problem.sum_of_contact` says; (n,) each but for the bound.
+
+    Attributes
+    ----------
+    normal
+        Whether the jump is a normal one.
+    gap
+        Opening where it vanishes, scaled; 0 of tangential ones.
+    partner
+        Place of the normal jump whose force carries the friction; the own place without one.
+    friction
+        Coefficient mu, 0 of normal jumps.
+    bound
+        Friction force r that needs no normal force, scaled, shape (n, n_instants), or (n, 1) where
+        it stays the same; 0 of normal jumps.
+    cap
+        Largest friction force before slip, scaled; infinite where there is none.
+    compliance
+        Displacement in series with the jump, per force, scaled; 0 where there is none. What is said
+        of the jump is then said of the jump and it together.
+    strength
+        Which of the `strengths` it has.
+    strengths
+        Factors on the bound over accumulated slip, scaled; each once.
+    """
+
+    normal: Flags
+    gap: Array
+    partner: Indices
+    friction: Array
+    bound: Array
+    cap: Array
+    compliance: Array
+    strength: Indices
+    strengths: tuple[Strength, ...]
+
+    @property
+    def smooth(self) -> Flags:
+        """Tangential jumps without friction."""
+        return np.asarray(~self.normal & (self.friction == 0.0) & ~self.bounded)
+
+    @cached_property
+    def bounded(self) -> Flags:
+        """Jumps whose friction ever needs no normal force."""
+        return np.asarray(self.bound.any(axis=1))
+
+    @cached_property
+    def bonds(self) -> Indices:
+        """Places of those among them whose contact may open, which ends that."""
+        return np.flatnonzero(self.bounded & self.normal[self.partner])
+
+    def kept(self, moving: Indices) -> Rules:
+        """Rules of the unknown jumps; friction needs its normal force among them."""
+        place = np.full(len(self.gap), -1)
+        place[moving] = np.arange(len(moving))
+        partner = place[self.partner[moving]]
+        alone = partner < 0
+        partner[alone] = np.flatnonzero(alone)
+        return replace(
+            self,
+            normal=self.normal[moving],
+            gap=self.gap[moving],
+            partner=partner,
+            friction=self.friction[moving] * ~alone,
+            bound=self.bound[moving],
+            cap=self.cap[moving],
+            compliance=self.compliance[moving],
+            strength=self.strength[moving],
+        )
+
+    @cached_property
+    def ages(self) -> bool:
+        """Whether friction changes with slip anywhere."""
+        return any(set(one.factors) != {1.0} for one in self.strengths)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether friction is r + mu f_n, whatever was before: no strength, cap or bond."""
+        return not (self.ages or self.bonds.size or np.isfinite(self.cap).any())
+
+    def factor(self, gone: Array) -> Array:
+        """Factor on the friction bound after accumulated slip, shape (n, ...) both."""
+        return self._of_strengths(gone, Strength.__call__)
+
+    def growth(self, gone: Array) -> Array:
+        """Growth of the factor per further slip, shape (n,) both."""
+        return self._of_strengths(gone, lambda one, slip: one.slopes[one.segment(slip)])
+
+    def lowest_growth(self, first: Array, last: Array) -> Array:
+        """Smallest growth of the factor on the way from one slip to a larger one, shape (n,)."""
+        found = np.zeros_like(first)
+        for number, one in enumerate(self.strengths):
+            own = self.strength == number
+            found[own] = one.lowest_slope(first[own], last[own])
+        return found
+
+    def segment(self, gone: Array) -> Indices:
+        """Numbers of the points of the strengths behind accumulated slips, shape (n,)."""
+        return self._of_strengths(gone, lambda one, slip: one.segment(slip).astype(float)).astype(
+            np.intp
+        )
+
+    def _of_strengths(self, gone: Array, value: Callable[[Strength, Array], Array]) -> Array:
+        found = np.ones_like(gone)
+        for number, one in enumerate(self.strengths):
+            own = self.strength == number
+            found[own] = value(one, gone[own])
+        return found
+
+    def before_slip(self, bound: Array, force: Array) -> Array:
+        """Friction force r + mu f_n up to its cap, before slip changes it, shape (n, n_instants).
+
+        Parameters
+        ----------
+        bound, force
+            r, and the force of all jumps, same shape.
+        """
+        carried = self.friction[:, None] * force[self.partner]
+        return np.asarray(np.minimum(bound + np.maximum(carried, 0.0), self.cap[:, None]))
+
+    def bounds(self, force: Array, slip: Array, opening: Array | None = None) -> Array:
+        """Largest friction force, shape (n, n_instants).
+
+        Parameters
+        ----------
+        force, slip
+            Of all jumps, slip per instant, same shape.
+        opening
+            Of all jumps, same shape, where contact that opens breaks bonds.
+        """
+        bound = self.bound
+        if opening is not None and self.bonds.size:
+            bound = np.broadcast_to(bound, force.shape).copy()
+            under = self.partner[self.bonds]
+            bound[self.bonds] *= is_intact(opening[under], force[under])
+        most = self.before_slip(bound, force)
+        return most * self.factor(np.cumsum(np.abs(slip), axis=1)) if self.ages else most
+
+
+def rules_of(problem: Problem) -> Rules:
+    """Rules of all interfaces with friction, stacked as `Problem.sum_of_contact` says."""
+    strengths, parts, first = [PLAIN], list[Rules](), 0
+    for law in problem.rubbing.values():
+        own = law.tangential.strength or PLAIN
+        if own not in strengths:
+            strengths.append(own)
+        parts += _components(law, first, strengths.index(own))
+        first += len(law.components) * len(law.positions)
+    names = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance", "strength")
+    stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in names}
+    return Rules(**stacked, strengths=tuple(strengths))
+
+
+def _components(law: Contact, first: int, strength: int) -> list[Rules]:
+    """Rules of one interface, component by component, from a place in the stack on."""
+    size, along = len(law.positions), law.tangential
+    none, no, own = np.zeros(size), np.zeros(size, dtype=bool), first + np.arange(size)
+    endless, plain = np.full(size, np.inf), np.zeros(size, dtype=np.intp)
+    soft = law.in_parallel(along.softness)
+    bound, friction = law.by_point(along.bound), law.mean_by_point(along.friction)
+    normal = []
+    if law.normal is not None:
+        across = law.in_parallel(law.normal.softness)
+        gap = law.mean_by_point(law.normal.gap)
+        normal = [Rules(~no, gap, own, none, none[:, None], endless, across, plain, ())]
+        # Without friction what is in series along changes nothing, and tells the jump from others.
+        soft = soft if bound.any() or friction.any() else across
+    cap = endless if along.cap is None else law.by_point(along.cap)
+    strengths = np.full(size, strength)
+    return [*normal, Rules(no, none, own, friction, bound, cap, soft, strengths, ())]
