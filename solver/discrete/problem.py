@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
-from solver.discrete.plane_parts import Inside
+from solver.discrete.inside import Inside
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, RowValues
 

@@ -13,8 +13,9 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection
+from solver.discrete.helical_wire import RopeWire
 from solver.discrete.problem import Problem
-from solver.discrete.rope import Rope, RopeWire
+from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS, PRESSURES
 from solver.reference.closed_forms.bent_strand import BentStrand
