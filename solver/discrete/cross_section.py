@@ -106,11 +106,11 @@ class CrossSection:
     @cached_property
     def radii(self) -> tuple[float, ...]:
         """Radius of the helix of every layer, m: each lies on what is below."""
-        found, outer = [], 0.5 * self.core.diameter
+        radii, outer = [], 0.5 * self.core.diameter
         for layer in self.layers:
-            found.append(outer + 0.5 * layer.diameter)
+            radii.append(outer + 0.5 * layer.diameter)
             outer += layer.diameter
-        return tuple(found)
+        return tuple(radii)
 
     @property
     def diameter(self) -> float:
@@ -188,7 +188,7 @@ class CrossSection:
 
 
 def seven_wire() -> CrossSection:
-    """Give a seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
+    """Seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
 
     Six wires of 5.2 mm on one of 5.4 mm, with a lay length of 16 diameters (14 to 18 are allowed).
     """
@@ -200,7 +200,7 @@ def seven_wire() -> CrossSection:
 
 
 def mooring(layers: int) -> CrossSection:
-    """Give a spiral strand as it moors platforms and stays bridges: 6, 12, 18, ... wires.
+    """Spiral strand as it moors platforms and stays bridges: 6, 12, 18, ... wires.
 
     Wires of 5 mm and lay angles of 17 degrees are usual sizes, of no one product; the core wire is
     so much thicker that the wires of a layer have room beside each other. Three layers are 35 mm
@@ -217,7 +217,7 @@ def mooring(layers: int) -> CrossSection:
 
 
 def conductor() -> CrossSection:
-    """Give an overhead conductor of aluminium on steel: Drake, 26 and 7 wires, 28.1 mm (ASTM B232).
+    """Overhead conductor of aluminium on steel: Drake, 26 and 7 wires, 28.1 mm (ASTM B232).
 
     Seven steel wires of 3.454 mm, then 10 and 16 of aluminium of 4.442 mm. Lay lengths are 25, 13
     and 11 times the diameter over the layer, within what the standard allows. It breaks at 140 kN.

@@ -92,11 +92,11 @@ class HelicalWire:
         The force there follows from the first two elements, in whose middles it is known. `arc` as
         in `body_force`; shape (n_elements,), m.
         """
-        found = np.zeros(len(arc) - 1)
-        shares = np.array([1.5, -0.5])[: len(found)]
+        levers = np.zeros(len(arc) - 1)
+        shares = np.array([1.5, -0.5])[: len(levers)]
         arm = self.radius * np.cos(self.lay) * np.cos(self.start)
-        found[:2] = arm * shares / shares.sum()
-        return found
+        levers[:2] = arm * shares / shares.sum()
+        return levers
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,7 +39,7 @@ def cut_at(rope: Rope, place: float) -> CutWires:
     Under a uniform curvature the one wire of a layer passes half a turn, from the outermost fibre
     to the innermost; the other half is its mirror image in the plane of bending.
     """
-    found = []
+    cuts = []
     for number, wire in enumerate(rope.wires):
         helix = wire.helix
         starts = helix.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
@@ -53,8 +53,8 @@ def cut_at(rope: Rope, place: float) -> CutWires:
             sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
             arcs = np.arccos(np.cos(turned)) / np.pi * wire.length
         whole = np.full(len(angles), number)
-        found.append((np.full(len(angles), wire.layer), whole, angles, arcs, sides))
-    layer, which, angle, arc, side = (np.concatenate(one) for one in zip(*found, strict=True))
+        cuts.append((np.full(len(angles), wire.layer), whole, angles, arcs, sides))
+    layer, which, angle, arc, side = (np.concatenate(one) for one in zip(*cuts, strict=True))
     radius = np.array([wire.helix.radius for wire in rope.wires])[which]
     centres = radius[:, None] * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     return CutWires(layer, which, centres, arc, side)
