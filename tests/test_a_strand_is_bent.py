@@ -15,7 +15,7 @@ from solver.arrays import Array
 from solver.discrete.cross_section import CONSTRUCTIONS, CrossSection, WireLayer, seven_wire
 from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.rope import Rope
-from solver.discrete.wire_forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.wire_forces import CutWires, cut_at, stress_at, stress_ranges, wire_stresses
 from solver.files import result_arrays
 from solver.latin import Auto, Latin, Stop
 from solver.reference.choice import incremental_solver
@@ -183,8 +183,9 @@ def taken(name: str, run: FinishedRun) -> float:
 def section_of(
     scene: Rope, displacement: Array, instant: int, place: float
 ) -> tuple[CutWires, Array]:
-    cut, forces = cut_at(scene, place), WireForces(scene)
-    return cut, forces.stress_at(cut, forces(displacement, slice(instant, instant + 1)))[:, 0]
+    cut = cut_at(scene, place)
+    stress = wire_stresses(scene, displacement, slice(instant, instant + 1))
+    return cut, stress_at(scene, cut, stress)[:, 0]
 
 
 def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> None:
