@@ -49,7 +49,10 @@ class Trace:
         return np.add.outer(2 * nodes, self.components)
 
     def weights(self, rectangle: Rectangle) -> Array:
-        """Length of the side that belongs to each node, shape (n_nodes,), scaled."""
+        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled.
+
+        Where a contact ends inside the side, half of it belongs to the last node.
+        """
         return rectangle.edge_weights(self.side)[self.span]
 
 
