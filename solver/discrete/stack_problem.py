@@ -11,6 +11,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.cut_stack import CutStack, Place
 from solver.discrete.inside import Inside
+from solver.discrete.plane import side_basis
 from solver.discrete.plane_parts import (
     lined_up,
     number_rows,
@@ -94,13 +95,11 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
             beyond = cut.neighbour(place, side)
             if isinstance(beyond, str) or beyond[2] != place[2]:
                 continue
-            rows, _, basis = lined_up([part], side, stack.macro_degree)
-            other = cut.parts[beyond].rows[opposite]
-            macro = np.asarray(np.kron(basis.toarray(), np.eye(2)))
-            yield (
-                f"cut {_name(place)} to {_name(beyond)}",
-                Perfect(rows.ravel(), other.ravel(), macro),
-            )
+            rows, other = part.rows[side], cut.parts[beyond].rows[opposite]
+            basis = side_basis(part.rectangle, side, len(rows), stack.macro_degree)
+            macro = np.asarray(np.kron(basis, np.eye(2)))
+            name = f"cut {_name(place)} to {_name(beyond)}"
+            yield name, Perfect(rows.ravel(), other.ravel(), macro)
     for side, given in stack.sides.items():
         if given.x.prescribed or given.y.prescribed:
             yield from _prescribed(cut, side, given)
@@ -119,7 +118,8 @@ def _contact(cut: CutStack, body: int) -> Contact:
     lower, below = None, np.inf
     if body:
         under = [cut.parts[column, rows - 1, body - 1] for column in range(columns)]
-        lower, below = lined_up(under, "top", stack.macro_degree)[0], stack.modulus(body - 1)
+        lower = np.concatenate([part.rows["top"] for part in under])
+        below = stack.modulus(body - 1)
     spans = [part.nodes[0, part.traces["bottom"].span] for part in above]
     node = np.concatenate(spans) - cut.nodes[body, 0, 0]
     touching, points = np.unique(node, return_inverse=True)
