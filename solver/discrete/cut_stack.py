@@ -132,8 +132,8 @@ class CutStack:
             return Trace(side, has_macro=True)
         if beyond == "right" and stack.spring is not None:
             return Trace(side, (0, 1), 0, 1) if place[1:] == (0, 0) else None
-        given = stack.sides[beyond].x, stack.sides[beyond].y
-        held = tuple(component for component, one in enumerate(given) if one.prescribed)
+        sides = enumerate(stack.sides[beyond])
+        held = tuple(component for component, given in sides if given.prescribed)
         return Trace(side, held) if held else None
 
     def _nodal_force(self, place: Place, mesh: Rectangle) -> Array | None:
@@ -149,7 +149,7 @@ class CutStack:
             nodes = mesh.edge(side)
             step = mesh.height if side in ("left", "right") else mesh.width
             edges = np.arange(0, len(nodes) - 1, order)[:, None] + np.arange(order + 1)
-            for component, given in enumerate((stack.sides[side].x, stack.sides[side].y)):
+            for component, given in enumerate(stack.sides[side]):
                 if given.prescribed:
                     continue
                 where = self.along(place, side, given)

@@ -61,7 +61,7 @@ class Fault:
             length=body.length,
             height=body.height,
             instants=body.instants,
-            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            acts=tuple(self._acts()),
             holds=(Hold("image", "bottom"), Hold("rollers", "top")),
         )
 

@@ -54,7 +54,7 @@ def wrench(stack: Stack) -> tuple[Array, Array, Array]:
         size = height if name in ("left", "right") else length
         x = {"left": 0.0, "right": length}.get(name)
         y = {"bottom": 0.0, "top": height}.get(name)
-        loads = [_resultant(given, size) for given in (side.x, side.y)]
+        loads = [_resultant(given, size) for given in side]
         force += [total for total, _ in loads]
         (along_x, first_x), (along_y, first_y) = loads
         moment += first_y if x is None else x * along_y

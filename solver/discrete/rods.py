@@ -180,7 +180,7 @@ class Rods:
             length=self.length,
             height=None,
             instants=self.instants,
-            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            acts=tuple(self._acts()),
             holds=tuple(self._holds()),
             broken=broken,
         )

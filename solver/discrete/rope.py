@@ -198,7 +198,7 @@ class Rope:
             length=self.seen_length,
             height=self.section.diameter,
             instants=self.instants,
-            acts=tuple(act for act in acts if np.any(act.values)),
+            acts=acts,
             holds=(clamp,) if self.is_clamped else (),
         )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,9 +39,13 @@ class Given:
     slope: Array | float = 0.0
     each_body: bool = False
 
+    @property
+    def is_zero(self) -> bool:
+        """Whether it is zero throughout."""
+        return not np.any(self.mean) and not np.any(self.slope)
 
-@dataclass(frozen=True, eq=False)
-class Side:
+
+class Side(NamedTuple):
     """What is given along a side of the stack, for the components along x and y."""
 
     x: Given
@@ -177,7 +182,7 @@ class Stack:
             length=self.length,
             height=self.bodies * self.height,
             instants=self.instants,
-            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            acts=tuple(self._acts()),
             holds=tuple(self._holds()),
             tilt=self.tilt,
         )
@@ -186,7 +191,7 @@ class Stack:
         for name, side in self.sides.items():
             if name == "bottom" and self.support is not None:
                 continue
-            for component, given in enumerate((side.x, side.y)):
+            for component, given in enumerate(side):
                 yield _given(given, name, component)
         if self.body_force is not None:
             size = np.hypot(*self.body_force)
@@ -198,7 +203,7 @@ class Stack:
         if self.support is not None:
             yield Hold("support", "bottom", gap=self.support.gap)
         for name, side in self.sides.items():
-            is_still = _is_still(side)
+            is_still = [given.prescribed and given.is_zero for given in side]
             if all(is_still):
                 yield Hold("clamp", name)
             elif any(is_still):
@@ -225,14 +230,6 @@ def _given(given: Given, side: str, component: int) -> Act:
     return Act(where, symbol, places, towards, away, given.mean, unit)
 
 
-def _is_still(side: Side) -> list[bool]:
-    """Which components of a side are held at rest."""
-    return [
-        given.prescribed and not np.any(given.mean) and not np.any(given.slope)
-        for given in (side.x, side.y)
-    ]
-
-
 def _spring_over_angle(tilt: Array) -> Loop:
     """Spring's force over the angle: it lags behind on the way back."""
     return Loop(
@@ -245,7 +242,8 @@ def _spring_over_angle(tilt: Array) -> Loop:
 
 def _shear(stack: Stack, problem: Problem) -> Loop:
     """Shear force on the support over the horizontal displacement of the driven side."""
-    side = next((name for name in DRIVEN if _drives(stack.sides[name])), DRIVEN[0])
+    driven = (name for name in DRIVEN if not all(given.is_zero for given in stack.sides[name]))
+    side = next(driven, DRIVEN[0])
     return Loop(
         (f"Displacement of the {side}", "m"),
         ("Shear force", "N"),
@@ -257,10 +255,6 @@ def _shear(stack: Stack, problem: Problem) -> Loop:
 def _shear_force(fields: LoopFields) -> Array:
     force = -fields.contact("support").tangential_force
     return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
-
-
-def _drives(side: Side) -> bool:
-    return any(np.any(given.mean) or np.any(given.slope) for given in (side.x, side.y))
 
 
 def _deflection(problem: Problem) -> Loop:

@@ -101,7 +101,7 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
             name = f"cut {_name(place)} to {_name(beyond)}"
             yield name, Perfect(rows.ravel(), other.ravel(), macro)
     for side, given in stack.sides.items():
-        if given.x.prescribed or given.y.prescribed:
+        if any(one.prescribed for one in given):
             yield from _prescribed(cut, side, given)
 
 
@@ -177,7 +177,7 @@ def _prescribed(cut: CutStack, side: str, given: Side) -> Iterator[tuple[str, Di
         if cut.neighbour(place, side) != side or side not in part.traces:
             continue
         for number, component in enumerate(part.traces[side].components):
-            one = (given.x, given.y)[component]
+            one = given[component]
             rows.append(part.rows[side][:, number])
             moved = one.mean + cut.along(place, side, one) * one.slope
             if side in ("left", "right"):
@@ -192,7 +192,7 @@ def _settle_corners(cut: CutStack, place: Place, side: str, component: int, move
     for level, node in (("bottom", 0), ("top", -1)):
         if cut.neighbour(place, level) != level:
             continue
-        other = (cut.stack.sides[level].x, cut.stack.sides[level].y)[component]
+        other = cut.stack.sides[level][component]
         if other.prescribed:
             sign = 1.0 if side == "right" else -1.0
             moved[node] = other.mean + sign * other.slope

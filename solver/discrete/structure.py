@@ -100,7 +100,7 @@ class Description:
     instants
         Shape (n_instants,), s.
     acts
-        All that acts and is not zero throughout.
+        All that acts; what is zero throughout is left out.
     holds
         All that holds the bodies.
     tilt
@@ -117,6 +117,11 @@ class Description:
     holds: Sequence[Hold]
     tilt: Array | None = None
     broken: tuple[int, float] | None = None
+
+    def __post_init__(self) -> None:
+        """Leave out what is zero throughout."""
+        acts = tuple(act for act in self.acts if np.any(act.values))
+        object.__setattr__(self, "acts", acts)
 
 
 class LoopFields(Protocol):

@@ -133,7 +133,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
 
     It does where it slides much farther than it is deformed, and no side holds it.
     """
-    held = any(one.prescribed for side in body.sides.values() for one in (side.x, side.y))
+    held = any(given.prescribed for side in body.sides.values() for given in side)
     if held or body.spring is None or body.friction_law != FrictionLaw():
         return
     slide = rigid_slide(body, body.spring)
