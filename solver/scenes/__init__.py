@@ -20,13 +20,7 @@ from solver.scenes.strand import STRAND
 from solver.settings import Settings
 
 CATALOGUE: dict[str, Entry] = {
-    "bar": BAR,
-    "block": BLOCK,
-    "fault": FAULT,
-    "incline": INCLINE,
-    "layers": LAYERS,
-    "rope": ROPE,
-    "strand": STRAND,
+    entry.settings.scene: entry for entry in (BAR, BLOCK, FAULT, INCLINE, LAYERS, ROPE, STRAND)
 }
 
 

@@ -84,10 +84,10 @@ def _is_even(bar: Rods) -> bool:
 
 
 def exact_parabola(
-    body: Stack, radius: float, problem: Problem, found: LoopFields
+    body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
     """Pressure and friction of Hertz, Cattaneo and Mindlin, for the forces that are found."""
-    law, contact = problem.rubbing["support"], found.contact("support")
+    law, contact = problem.rubbing["support"], solution.contact("support")
     assert contact.normal_force is not None
     assert body.support is not None
     total = contact.normal_force.sum(axis=0)
@@ -162,7 +162,9 @@ def exact_slope(body: Stack) -> Iterator[ExactCurve]:
     yield ExactCurve("loop", np.degrees(body.tilt), force)
 
 
-def exact_layers(body: Stack, problem: Problem, found: LoopFields | None) -> Iterator[ExactCurve]:
+def exact_layers(
+    body: Stack, problem: Problem, solution: LoopFields | None
+) -> Iterator[ExactCurve]:
     """Force that bends beams, apart without friction, or as one where nothing slips."""
     given = body.sides["right"].y
     if body.state != "stress" or (body.stiffness is not None and np.ptp(body.stiffness)):
@@ -170,12 +172,11 @@ def exact_layers(body: Stack, problem: Problem, found: LoopFields | None) -> Ite
     if not given.prescribed:
         return
     apart = body.friction == 0.0
-    if not apart and (found is None or any(_slips(found, name) for name in problem.rubbing)):
-        return
+    if not apart:
+        if solution is None:
+            return
+        if any(solution.contact(name).status.any() for name in problem.rubbing):
+            return
     beams, height = (body.bodies, body.height) if apart else (1, body.bodies * body.height)
     stiffness = beams * cantilever(body.length, height, body.young, body.poisson)
     yield ExactCurve("loop", given.mean, stiffness * given.mean)
-
-
-def _slips(found: LoopFields, name: str) -> bool:
-    return bool(np.any(found.contact(name).status))

@@ -163,8 +163,8 @@ class FaultSettings(PlaneSettings):
         times = start = self.times()
         if self.instants == 1:  # a fluid needs all of the time before
             start = instants_of(self.duration, 2, self._knots(self.injection_load), times)
-        found = spread(place, start, self._along("injection_load", start), self.diffusivity)
-        return found if start is times else found[:, np.searchsorted(start, times)]
+        fluid = spread(place, start, self._along("injection_load", start), self.diffusivity)
+        return fluid if start is times else fluid[:, np.searchsorted(start, times)]
 
     def strength(self, place: Array) -> Array:
         """Largest friction per area, shape (n_places, n_instants), Pa."""

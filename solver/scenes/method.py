@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 from solver.latin import (
@@ -24,14 +23,15 @@ from solver.settings import Settings
 
 def method_of(settings: Settings) -> Latin:
     """Method that checked settings describe."""
+    at_once = settings.finish == "at-once"
     return Latin(
         direction=_direction(settings),
-        linear=_LINEAR[settings.linear_stage](settings),
+        linear=_linear(settings),
         multiscale=settings.multiscale,
         relaxation=settings.relaxation,
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
         start=Nested(partial(coarser_problems, settings)) if settings.start == "nested" else None,
-        finish=_FINISH[settings.finish],
+        finish=None if settings.finish == "none" else StatusStep(at_once=at_once),
         stop=Stop(settings.accuracy, settings.tolerance, settings.max_iterations),
         threads=settings.threads,
     )
@@ -45,21 +45,12 @@ def _direction(settings: Settings) -> SearchDirection | FromStatus:
     return FromStatus(first) if updates else first
 
 
-def _modes(settings: Settings) -> PGD:
+def _linear(settings: Settings) -> Full | PGD:
+    if settings.linear_stage == "full":
+        return Full()
     return PGD(
         modes=settings.pgd_modes,
         tolerance=settings.pgd_tolerance,
         pairs=settings.pgd_pairs,
         sharing=settings.pgd_sharing,
     )
-
-
-_FINISH = {
-    "none": None,
-    "accuracy": StatusStep(at_once=False),
-    "at-once": StatusStep(),
-}
-_LINEAR: dict[str, Callable[[Settings], Full | PGD]] = {
-    "full": lambda settings: Full(),
-    "pgd": _modes,
-}

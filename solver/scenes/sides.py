@@ -106,13 +106,13 @@ class SideSettings(PlaneSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
     def _behind(self) -> Mapping[str, str]:
-        found = {}
+        settings = {}
         for side in LOADED_SIDES:
             axes = "yx" if side == "top" else "xy"
             for component, axis in zip(COMPONENTS, axes, strict=True):
                 kind = "displacement" if self._prescribes(side, component) else "traction"
-                found[f"{side} {axis}"] = f"{side}_{component}_{kind}"
-        return found
+                settings[f"{side} {axis}"] = f"{side}_{component}_{kind}"
+        return settings
 
     def _prescribes(self, side: str, component: str) -> bool:
         return PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
