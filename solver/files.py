@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.curves import messages, read_tables
 from solver.definitions import CurveParameter, SettingError, parse
-from solver.discrete.plane_parts import Inside
+from solver.discrete.inside import Inside
 from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction

@@ -9,8 +9,7 @@ from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.incremental import incremental
 from solver.reference.solution import Reference
-from solver.scenes.rope import bent_strand, rope
-from solver.scenes.rope_settings import RopeSettings
+from solver.scenes.rope import RopeSettings
 
 SMALL_ROPE: dict[str, Any] = {"layers": 1, "length": 0.15, "tension": 4e4, "substructures": 2}
 STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "substructures": 4}
@@ -21,7 +20,7 @@ def settings_of(**changes: Any) -> RopeSettings:
 
 
 def solved(settings: RopeSettings) -> tuple[Rope, Reference]:
-    scene = rope(settings)
+    scene = settings.structure()
     return scene, incremental(scene.discretise())
 
 
@@ -30,6 +29,6 @@ def moment_of(scene: Rope, found: Reference) -> Array:
 
 
 def exact_of(settings: RopeSettings) -> BentStrand:
-    found = bent_strand(settings)
+    found = settings.bent_strand()
     assert found is not None
     return found

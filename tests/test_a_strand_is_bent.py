@@ -12,10 +12,10 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import Rods, solve
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection, WireLayer
+from solver.discrete.cross_section import CONSTRUCTIONS, CrossSection, WireLayer, seven_wire
 from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.rope import Rope
-from solver.discrete.wire_forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.wire_forces import CutWires, cut_at, stress_at, stress_ranges, wire_stresses
 from solver.files import result_arrays
 from solver.latin import Auto, Latin, Stop
 from solver.reference.choice import incremental_solver
@@ -24,9 +24,7 @@ from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod, incremental
 from solver.refusal import RefusedError
 from solver.scenes import discretise
-from solver.scenes.constructions import CONSTRUCTIONS, seven_wire
 from solver.scenes.method import method_of
-from solver.scenes.rope import rope
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantities import reading
 
@@ -72,7 +70,7 @@ def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose
 
 
 def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
-    scene = rope(settings_of(**{**CLAMPED, "layers": 1}))
+    scene = settings_of(**{**CLAMPED, "layers": 1}).structure()
     turn = 2.0 * np.pi / len(scene.wires)
     wires = [
         replace(wire, helix=replace(wire.helix, start=wire.helix.start + turn))
@@ -155,7 +153,7 @@ def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_ev
     np.testing.assert_allclose(general.displacement, special.displacement, atol=1e-12)
     arrays = result_arrays(settings, solve(problem, method_of(settings)))
     shape = (settings.elements - 1, settings.instants)
-    for wire in rope(settings).wires:
+    for wire in settings.structure().wires:
         assert arrays[f"interface/{wire.name}/slip"].shape == shape
     assert arrays["status"].shape == (len(problem.rubbing) * shape[0], shape[1])
 
@@ -170,7 +168,7 @@ def test_what_is_no_strand_is_refused() -> None:
         WireLayer(6, 5e-3, 2e11, 1.6)
     with pytest.raises(RefusedError, match="at least one wire"):
         WireLayer(0, 5e-3, 2e11, 0.3)
-    scene = rope(settings_of(**CLAMPED))
+    scene = settings_of(**CLAMPED).structure()
     short = replace(scene.wires[0], curvature=scene.wires[0].curvature[1:])
     with pytest.raises(RefusedError, match="same number of nodes"):
         replace(scene, wires=[short, *scene.wires[1:]])
@@ -185,8 +183,9 @@ def taken(name: str, run: FinishedRun) -> float:
 def section_of(
     scene: Rope, displacement: Array, instant: int, place: float
 ) -> tuple[CutWires, Array]:
-    cut, forces = cut_at(scene, place), WireForces(scene)
-    return cut, forces.stress_at(cut, forces(displacement, slice(instant, instant + 1)))[:, 0]
+    cut = cut_at(scene, place)
+    stress = wire_stresses(scene, displacement, slice(instant, instant + 1))
+    return cut, stress_at(scene, cut, stress)[:, 0]
 
 
 def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> None:

@@ -9,7 +9,7 @@ from solver.latin import Ending, solve
 from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.scenes.strand import StrandSettings, strand
+from solver.scenes.strand import StrandSettings
 
 FAST = {
     "finish": "none",
@@ -26,7 +26,7 @@ def solved(**changes):
     settings = StrandSettings.checked({**FAST, **changes})
     solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
-    return strand(settings), solution.iterate
+    return settings.structure(), solution.iterate
 
 
 def axial_forces(scene, displacement):

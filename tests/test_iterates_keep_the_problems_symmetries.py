@@ -11,7 +11,7 @@ from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Contact, Dirichlet, Neumann
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
-from solver.scenes.bar import BarSettings, bar
+from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
 
@@ -161,7 +161,7 @@ def test_without_friction_a_body_force_hangs_the_bar_as_in_the_textbook(multisca
         friction=0.0, peak=0.0, body_force=1000.0, substructures=7, multiscale=multiscale
     )
     iterate = sample(chosen, 3000)
-    scene, x = bar(chosen), iterate.problem.positions
+    scene, x = chosen.structure(), iterate.problem.positions
     profile = scene.length * x - 0.5 * x**2
     expected = profile[:, None] * scene.body_force / scene.stiffness
     assert relative(iterate.displacement, expected) < 1e-9

@@ -14,7 +14,7 @@ from solver.reference.assembly import assembled_stiffness
 from solver.reference.closed_forms.diffusion import spread
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise, left_out, structure_of
-from solver.scenes.bar import BarSettings, bar
+from solver.scenes.bar import BarSettings
 from solver.scenes.base import EVERY_POINT, THINNED
 from solver.scenes.method import method_of
 
@@ -234,7 +234,7 @@ def varying(**changes):
 @pytest.mark.parametrize("table", [GRADED, NOTCHED], ids=["graded", "notched"])
 def test_every_element_is_as_stiff_as_all_that_lies_in_it(table):
     chosen = varying(section_profile=table, length=2.0)
-    scene = bar(chosen)
+    scene = chosen.structure()
     fine = np.linspace(0.0, 2.0, 24 * 20_000 + 1)
     middles = 0.5 * (fine[1:] + fine[:-1])
     compliance = np.mean(1.0 / np.interp(middles, *np.transpose(table)).reshape(24, -1), axis=1)

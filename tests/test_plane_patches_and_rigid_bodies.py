@@ -9,7 +9,7 @@ from plane import lengths, reaction, solved, stress
 from solver.discrete.rigid_stack import rigid_rest
 from solver.latin import Ending, solve
 from solver.scenes import discretise
-from solver.scenes.block import BlockSettings, block
+from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
 
 PRESSURE, SHEAR = 1e6, 4e5
@@ -155,7 +155,7 @@ def test_a_body_falls_on_its_support_and_stands_there_as_if_it_had_been_there(ga
 def test_a_rigid_body_rests_under_its_load_and_a_roller_keeps_it_upright():
     values = {"gap": "parabola", "top": "traction", "top_normal_traction": -PRESSURE}
     level, tilted, held = (
-        rigid_rest(block(BlockSettings.checked(values | change)))
+        rigid_rest(BlockSettings.checked(values | change).structure())
         for change in ({}, {"top_normal_slope": 0.6}, {"top_normal_slope": 0.6, "left": "roller"})
     )
     assert abs(level[1, -1]) < 1e-9
@@ -163,7 +163,7 @@ def test_a_rigid_body_rests_under_its_load_and_a_roller_keeps_it_upright():
     assert tilted[1, -1] == pytest.approx(-0.01 / 5.0, rel=0.05)
     assert held[0, -1] < 0.0
     assert not held[1].any()
-    assert rigid_rest(block(BlockSettings.checked({"gap": ((0.0, 1e-3),)}))) is None
+    assert rigid_rest(BlockSettings.checked({"gap": ((0.0, 1e-3),)}).structure()) is None
 
 
 @pytest.mark.parametrize("interpolation", INTERPOLATIONS)

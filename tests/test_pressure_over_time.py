@@ -19,7 +19,7 @@ from solver.reference.contact import IncrementalContact
 from solver.reference.distance import distance_to
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.scenes.bar import BarSettings, bar
+from solver.scenes.bar import BarSettings
 
 STIFFNESS = 659_400.0
 DRAWN = settings(max_examples=25)
@@ -27,7 +27,7 @@ FACTORS = st.lists(st.floats(0.05, 1.0), min_size=8, max_size=8)
 
 
 def rod(**values: Any) -> Rods:
-    return bar(BarSettings.checked(values))
+    return BarSettings.checked(values).structure()
 
 
 def solved(scene: Rods) -> ClosedForm:

@@ -14,7 +14,7 @@ from solver.discrete.rods import Rods
 from solver.reference import search as module
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.incremental import Interrupted, Reference, incremental
-from solver.scenes.bar import BarSettings, bar
+from solver.scenes.bar import BarSettings
 
 BOUND = 1500.0
 STIFFNESS = 659_400.0
@@ -23,7 +23,7 @@ FORCES = st.lists(st.floats(-2400.0, 2400.0), min_size=1, max_size=12)
 
 
 def scene(**values: object) -> Rods:
-    return bar(BarSettings.checked({"method": "paper", **values}))
+    return BarSettings.checked({"method": "paper", **values}).structure()
 
 
 def under(base: Rods, load: list[float] | np.ndarray) -> Rods:
@@ -139,7 +139,7 @@ SHARES = st.floats(-1.0, 1.0).map(lambda share: share if abs(share) > 1e-200 els
 
 
 def problem(**values: object) -> Problem:
-    return bar(BarSettings.checked({"method": "paper", **values})).discretise()
+    return BarSettings.checked({"method": "paper", **values}).structure().discretise()
 
 
 def table(values: list[float]) -> list[list[float]]:
@@ -230,7 +230,7 @@ def test_decomposition_changes_nothing():
 
 
 def test_without_friction_the_bar_is_elastic():
-    scene = bar(BarSettings.checked({"method": "paper", "friction": 0.0}))
+    scene = BarSettings.checked({"method": "paper", "friction": 0.0}).structure()
     found = incremental(scene.discretise())
     elastic = scene.nodes[:, None] * scene.load / scene.stiffness
     np.testing.assert_allclose(found.displacement, elastic, rtol=0.0, atol=1e-15)

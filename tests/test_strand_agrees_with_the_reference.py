@@ -13,7 +13,7 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.scenes.strand import StrandSettings, strand
+from solver.scenes.strand import StrandSettings
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}
@@ -54,7 +54,7 @@ def test_only_the_four_forces_at_an_inner_break_balance_each_other(wires):
 @pytest.mark.parametrize("grip", ["force", "displacement"])
 def test_where_nothing_rubs_the_force_error_is_relative_to_what_pulls(grip):
     settings = options(broken=0, wires=4, grip=grip)
-    problem, pull = discretise(settings), strand(settings).load
+    problem, pull = discretise(settings), settings.structure().load
     reference = reference_of(problem)
     assert np.abs(reference.contact_force).max() < 1e-10
     wrong = replace(reference, contact_force=reference.contact_force + 0.01 * pull)

@@ -19,7 +19,13 @@ from app.worker.geometry import StressField, floats, thinned
 from app.worker.outlines import Indices, outlines_of
 from solver.arrays import Array
 from solver.discrete.rope import Rope
-from solver.discrete.wire_forces import WireForces, cut_at, stress_ranges
+from solver.discrete.wire_forces import (
+    cut_at,
+    stress_at,
+    stress_ranges,
+    wire_forces,
+    wire_stresses,
+)
 from solver.latin import Iterate
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of
@@ -64,7 +70,6 @@ class DrawnRope:
         self._nodes_moved, self._points_moved = (
             self._moved(np.asarray(places)) for places in (nodes, points)
         )
-        self._forces = WireForces(rope)
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the strand is bent, which is given, and where its wires slip."""
@@ -74,8 +79,7 @@ class DrawnRope:
 
     def stress(self, iterate: Iterate, settings: Settings) -> StressField:
         """Mean stress over the section of every wire."""
-        stress = self._forces(iterate.displacement, self._columns)
-        stress = stress / self._forces.areas[:, None, None]
+        stress = wire_stresses(self._rope, iterate.displacement, self._columns)
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
@@ -169,7 +173,7 @@ def axial_force_of_rope(
     wire, places = rope.wires[number], thinned(rope.elements, MOST_PLACES)
     nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
     stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
-    force = WireForces(rope)(iterate.displacement, columns)[number]
+    force = wire_forces(rope, iterate.displacement, columns)[number]
     middles = 0.5 * (wire.along[1:] + wire.along[:-1])
     return {
         "x": floats(np.asarray(middles)[places]),
@@ -188,14 +192,14 @@ def section(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dic
     """
     columns = sampler.columns
     place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
-    cut, forces = cut_at(rope, place), WireForces(rope)
+    cut = cut_at(rope, place)
     lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
     node = np.round(cut.arc / lengths * rope.elements).astype(np.intp)
     points = cut.wire * (rope.elements - 1) + np.clip(node - 1, 0, rope.elements - 2)
     slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
     core = rope.section.core
     stretched = core.young / rope.section.stiffness * rope.tension[columns]
-    stress = forces.stress_at(cut, forces(iterate.displacement, columns))
+    stress = stress_at(rope, cut, wire_stresses(rope, iterate.displacement, columns))
     radii = [0.5 * rope.wires[number].diameter for number in cut.wire]
     return {
         "place": place,

@@ -41,19 +41,10 @@ def rod_stiffness(elements: int, element_stiffness: float | Array) -> sparse.csr
     -------
     Shape (elements + 1, elements + 1).
     """
-    diagonal = np.zeros(elements + 1)
-    diagonal[:-1] = element_stiffness
-    diagonal[1:] += element_stiffness
-    # Written out as it is stored: a general constructor takes ten times as long.
-    entries = np.empty(3 * elements + 1)
-    entries[::3] = diagonal
-    entries[1::3] = entries[2::3] = np.negative(element_stiffness)
-    nodes = np.arange(elements + 1)
-    columns = np.repeat(nodes, 3)[1:-1]
-    columns[1::3] += 1
-    columns[2::3] -= 1
-    ends = np.clip(3 * np.arange(elements + 2) - 1, 0, len(entries))
-    return sparse.csr_array((entries, columns, ends), shape=(elements + 1, elements + 1))
+    springs = np.broadcast_to(element_stiffness, elements)
+    diagonal = np.append(springs, 0.0)
+    diagonal[1:] += springs
+    return sparse.csr_array(sparse.diags_array([-springs, diagonal, -springs], offsets=[-1, 0, 1]))
 
 
 def tributary(elements: int, element_length: float) -> Array:

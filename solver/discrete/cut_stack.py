@@ -98,7 +98,7 @@ class CutStack:
             height = stack.height / stack.length / stack.elements[1]
             mesh = Rectangle(*size, width, height, elastic, stack.order)
             self._outlines[shape] = Condensed(mesh)
-        traces = {side: found for side in SIDES if (found := self._trace(place, side))}
+        traces = {side: trace for side in SIDES if (trace := self._trace(place, side))}
         kind = shape, *traces.values()
         if kind not in self._kept:
             self._kept[kind] = keep(self._outlines[shape], traces.values())

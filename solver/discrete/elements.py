@@ -54,9 +54,9 @@ def edge_mass(order: int) -> Array:
     """
     places, weights = leggauss(order + 1)
     values = np.array([_shape(order, xi)[0] for xi in places])
-    found = np.asarray(0.5 * values.T @ (weights[:, None] * values))
-    found.flags.writeable = False
-    return found
+    matrix = np.asarray(0.5 * values.T @ (weights[:, None] * values))
+    matrix.flags.writeable = False
+    return matrix
 
 
 def strain_matrix(order: int, xi: float, eta: float, width: float, height: float) -> Array:
@@ -118,7 +118,7 @@ def projected_strain_matrix(xi: float, eta: float, width: float, height: float) 
 
 def _gauss_points(count: int) -> list[tuple[float, float, float]]:
     """Places, and shares of the area, of count x count points."""
-    places, weights = (found.tolist() for found in leggauss(count))
+    places, weights = (values.tolist() for values in leggauss(count))
     along = list(zip(places, weights, strict=True))
     return [(xi, eta, 0.25 * one * other) for eta, one in along for xi, other in along]
 
@@ -129,14 +129,14 @@ def _dilatation(strain: Array) -> Array:
 
 def _bending(xi: float, eta: float, width: float, height: float) -> Array:
     """Strains of 1 - xi^2 and 1 - eta^2 of both components, shape (3, 4)."""
-    found = np.zeros((3, 4))
-    found[0, 0] = found[2, 1] = -2.0 * xi * 2.0 / width
-    found[2, 2] = found[1, 3] = -2.0 * eta * 2.0 / height
-    return found
+    strain = np.zeros((3, 4))
+    strain[0, 0] = strain[2, 1] = -2.0 * xi * 2.0 / width
+    strain[2, 2] = strain[1, 3] = -2.0 * eta * 2.0 / height
+    return strain
 
 
 def _shape(order: int, xi: float) -> tuple[Array, Array]:
-    """Give Lagrange's polynomials on equidistant nodes of [-1, 1], and their slopes."""
+    """Lagrange's polynomials on equidistant nodes of [-1, 1], and their slopes."""
     if order == 1:
         return np.array([0.5 * (1.0 - xi), 0.5 * (1.0 + xi)]), np.array([-0.5, 0.5])
     values = np.array([0.5 * xi * (xi - 1.0), 1.0 - xi**2, 0.5 * xi * (xi + 1.0)])

@@ -92,8 +92,68 @@ class HelicalWire:
         The force there follows from the first two elements, in whose middles it is known. `arc` as
         in `body_force`; shape (n_elements,), m.
         """
-        found = np.zeros(len(arc) - 1)
-        shares = np.array([1.5, -0.5])[: len(found)]
+        levers = np.zeros(len(arc) - 1)
+        shares = np.array([1.5, -0.5])[: len(levers)]
         arm = self.radius * np.cos(self.lay) * np.cos(self.start)
-        found[:2] = arm * shares / shares.sum()
-        return found
+        levers[:2] = arm * shares / shares.sum()
+        return levers
+
+
+@dataclass(frozen=True, eq=False)
+class RopeWire:
+    """A wire of a strand, between two of its places that do not slip.
+
+    Attributes
+    ----------
+    layer, number
+        From 0 on, inside out and around.
+    helix
+        Its geometry and stiffness E A.
+    diameter
+        m.
+    length
+        Of the wire, m.
+    bound
+        Friction bound per length of wire, N/m: one number, or over time (n_instants,).
+    curvature
+        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
+    tension
+        Its force before it is bent, shape (n_instants,), N.
+    stands_for
+        Number of wires that are this one, each at another place along the strand.
+    """
+
+    layer: int
+    number: int
+    helix: HelicalWire
+    diameter: float
+    length: float
+    bound: Array
+    curvature: Array
+    tension: Array
+    stands_for: int = 1
+
+    @property
+    def name(self) -> str:
+        """What its interface is called: numbers of layer and wire, from 1 on."""
+        return f"wire {self.layer + 1}.{self.number + 1}"
+
+    @property
+    def area(self) -> float:
+        """Of its cross-section, m^2."""
+        return float(np.pi * self.diameter**2 / 4.0)
+
+    @property
+    def young(self) -> float:
+        """Young's modulus, Pa."""
+        return self.helix.stiffness / self.area
+
+    @property
+    def arc(self) -> Array:
+        """Arc lengths of the nodes, shape (n_nodes,), m."""
+        return np.linspace(0.0, self.length, len(self.curvature))
+
+    @property
+    def along(self) -> Array:
+        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
+        return np.asarray(np.cos(self.helix.lay) * self.arc)

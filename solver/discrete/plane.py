@@ -114,10 +114,10 @@ class Rectangle:
         """Length of a side that belongs to each of its nodes, scaled."""
         upright = side in ("left", "right")
         count, step = (self.rows, self.height) if upright else (self.columns, self.width)
-        found = np.zeros(self.order * count + 1)
+        weights = np.zeros(self.order * count + 1)
         for place, share in enumerate(shares(self.order)):
-            found[place : place + self.order * count : self.order] += step * share
-        return found
+            weights[place : place + self.order * count : self.order] += step * share
+        return weights
 
     def stress(self, displacement: Array) -> Array:
         """Stresses (xx, yy, xy) at the centres of the cells.
@@ -132,14 +132,14 @@ class Rectangle:
         Shape (n_cells, 3), scaled. The incompatible modes have no strain at the centre.
         """
         own = displacement[self.elements].reshape(self.rows, self.columns, -1)
-        found = np.empty((self.rows, self.order, self.columns, self.order, 3))
+        stresses = np.empty((self.rows, self.order, self.columns, self.order, 3))
         centres = (np.arange(self.order) + 0.5) * 2.0 / self.order - 1.0
         for up, eta in enumerate(centres):
             for along, xi in enumerate(centres):
                 at = float(xi), float(eta), self.width, self.height
                 strain = strain_matrix(1, *at) if self.order == 1 else projected_strain_matrix(*at)
-                found[:, up, :, along] = own @ (self.elastic @ strain).T
-        return found.reshape(-1, 3)
+                stresses[:, up, :, along] = own @ (self.elastic @ strain).T
+        return stresses.reshape(-1, 3)
 
 
 def dofs_of(nodes: Indices) -> Indices:

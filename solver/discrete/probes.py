@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
-from solver.discrete.plane_parts import Inside
+from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
 
 AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
@@ -42,7 +42,7 @@ class Probe:
 
 
 def constant(values: Array) -> Probe:
-    """What is known beforehand, shape (n_instants,), as if it were found."""
+    """Probe of what is known beforehand, shape (n_instants,)."""
     return Probe(np.zeros(0, dtype=np.intp), np.zeros(0), values)
 
 
@@ -159,6 +159,6 @@ def _edges(inside: Inside, side: str) -> tuple[Indices, Indices, Indices]:
 
 
 def _probe(inside: Inside, weights: Array) -> Probe:
-    found, constant = inside.adjoint(weights)
-    dofs = np.flatnonzero(found)
-    return Probe(dofs, found[dofs], constant)
+    kept, constant = inside.adjoint(weights)
+    dofs = np.flatnonzero(kept)
+    return Probe(dofs, kept[dofs], constant)

@@ -19,7 +19,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.contact_groups import ContactGroup, grouped
-from solver.discrete.plane_parts import Inside
+from solver.discrete.inside import Inside
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, RowValues
 
@@ -141,14 +141,14 @@ class Problem:
     @cached_property
     def given_forces(self) -> list[RowValues]:
         """Forces that are prescribed, interface by interface."""
-        found = (law.given_force for law in self.interfaces.values())
-        return [one for one in found if one is not None]
+        laws = self.interfaces.values()
+        return [law.given_force for law in laws if law.given_force is not None]
 
     @cached_property
     def given_displacements(self) -> list[RowValues]:
         """Displacements that are prescribed, interface by interface."""
-        found = (law.given_displacement for law in self.interfaces.values())
-        return [one for one in found if one is not None]
+        laws = self.interfaces.values()
+        return [law.given_displacement for law in laws if law.given_displacement is not None]
 
     @cached_property
     def is_held(self) -> NDArray[np.bool_]:
@@ -158,8 +158,7 @@ class Problem:
     @cached_property
     def cuts(self) -> list[tuple[Indices, Indices]]:
         """Rows of both sides of the glued cuts, interface by interface."""
-        found = (law.joined for law in self.interfaces.values())
-        return [one for one in found if one is not None]
+        return [law.joined for law in self.interfaces.values() if law.joined is not None]
 
     @cached_property
     def sliding(self) -> tuple[Indices, Array]:
@@ -172,8 +171,8 @@ class Problem:
     @cached_property
     def rubbing_rows(self) -> slice | Indices:
         """Rows of all components of the bodies above at interfaces with friction."""
-        parts = [one.above for law in self.rubbing.values() for one in law.components]
-        return as_slice(np.unique(np.concatenate(parts)))
+        rows = [side.above for law in self.rubbing.values() for side in law.components]
+        return as_slice(np.unique(np.concatenate(rows)))
 
     @cached_property
     def rubbing_is_normal(self) -> NDArray[np.bool_]:
@@ -186,8 +185,8 @@ class Problem:
     @cached_property
     def friction(self) -> Contact:
         """The interface with friction, where it is the only one."""
-        (found,) = self.rubbing.values()
-        return found
+        (contact,) = self.rubbing.values()
+        return contact
 
     @cached_property
     def rubbing(self) -> dict[str, Contact]:
@@ -213,19 +212,19 @@ class Problem:
         P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
         solver/README.md, 2).
         """
-        entries, places, numbers, loads = [], [], [], []
+        entries, rows, columns, loads = [], [], [], []
         n_macro = 0
         for interface in self.interfaces.values():
             for own, basis, load in interface.macro_parts():
-                row, column = np.nonzero(basis) if isinstance(basis, np.ndarray) else basis.coords
-                entries.append(basis[row, column] if isinstance(basis, np.ndarray) else basis.data)
-                places.append(own[row])
-                numbers.append(n_macro + column)
+                block = sparse.coo_array(basis)
+                entries.append(block.data)
+                rows.append(own[block.coords[0]])
+                columns.append(n_macro + block.coords[1])
                 loads.append(np.zeros((basis.shape[1], self.n_instants)) if load is None else load)
                 n_macro += basis.shape[1]
-        found = (np.concatenate(entries), (np.concatenate(places), np.concatenate(numbers)))
+        places = np.concatenate(rows), np.concatenate(columns)
         shape = (self.n_rows, n_macro)
-        return sparse.csr_array(found, shape=shape), np.concatenate(loads)
+        return sparse.csr_array((np.concatenate(entries), places), shape), np.concatenate(loads)
 
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:
@@ -240,13 +239,12 @@ class Problem:
     @cached_property
     def body_force_on_rows(self) -> Array | None:
         """Forces on the rows that do the work of all body forces, (n_rows, n_instants); or None."""
-        parts = self.substructures
-        loads = [(one.dofs, one.body_force) for one in parts if one.body_force is not None]
-        if not loads:
+        if all(part.body_force is None for part in self.substructures):
             return None
         whole = np.zeros((self.n_dofs, self.n_instants))
-        for dofs, load in loads:
-            whole[dofs] += load
+        for part in self.substructures:
+            if part.body_force is not None:
+                whole[part.dofs] += part.body_force
         return np.asfortranarray(self.mean_of_rows.T @ whole)
 
     @cached_property
@@ -271,13 +269,12 @@ class Problem:
     @cached_property
     def contact_places(self) -> dict[str, tuple[slice, ...]]:
         """Where the components of each interface stand in a stack of contact forces, by name."""
-        found, first = {}, 0
+        places, first = {}, 0
         for name, law in self.rubbing.items():
-            size = len(law.positions)
-            starts = [first + size * number for number in range(len(law.components))]
-            found[name] = tuple(slice(start, start + size) for start in starts)
-            first = starts[-1] + size
-        return found
+            size, last = len(law.positions), first + len(law.positions) * len(law.components)
+            places[name] = tuple(slice(start, start + size) for start in range(first, last, size))
+            first = last
+        return places
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
@@ -285,11 +282,11 @@ class Problem:
 
         Shapes (n,) and (n, n_instants).
         """
-        parts = self.given_displacements
-        none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
-        rows = np.concatenate([none[0], *(law.rows for law in parts)])
+        given = self.given_displacements
+        rows = np.concatenate([np.zeros(0, dtype=np.intp), *(part.rows for part in given)])
+        values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
-        return dofs, np.concatenate([none[1], *(law.values for law in parts)])[first]
+        return dofs, np.concatenate(values)[first]
 
 
 def nothing_acts(problem: Problem) -> bool:

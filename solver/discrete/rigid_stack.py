@@ -166,15 +166,15 @@ def rigid_slide(stack: Stack, spring: Spring) -> Array:
     assert stack.support is not None
     pushed, pressed, _ = wrench(stack)
     bound = stack.support.friction * np.maximum(-pressed, 0.0)
-    found, place = np.zeros_like(pushed), 0.0
+    slid, place = np.zeros_like(pushed), 0.0
     for instant, (load, most) in enumerate(zip(pushed, bound, strict=True)):
         pull = spring.stiffness * max(-place - spring.slack, 0.0)
         # What the spring has to pull at least, and at most, for friction to do the rest.
         wanted = min(max(pull, -load - most), most - load)
         if wanted != pull:
             place = -spring.slack - max(wanted, 0.0) / spring.stiffness
-        found[instant] = place
-    return found
+        slid[instant] = place
+    return slid
 
 
 def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
@@ -237,5 +237,5 @@ def _farthest(opening: Array, way: Array, work: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         rises = work + offset + growth * ends >= 0.0
         least = np.where(rises, -(work + offset) / growth, 0.0)
-    found = np.take_along_axis(least, rises.argmax(axis=0)[None], axis=0)[0]
-    return np.where(np.isfinite(found), found, 0.0)
+    distance = np.take_along_axis(least, rises.argmax(axis=0)[None], axis=0)[0]
+    return np.where(np.isfinite(distance), distance, 0.0)

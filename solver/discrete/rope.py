@@ -23,7 +23,7 @@ from solver.discrete.cut_rods import (
     substructure_sizes,
     tributary,
 )
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.helical_wire import RopeWire
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop
@@ -37,66 +37,6 @@ from solver.laws import (
     Rod,
 )
 from solver.refusal import RefusedError
-
-
-@dataclass(frozen=True, eq=False)
-class RopeWire:
-    """A wire of a strand, between two of its places that do not slip.
-
-    Attributes
-    ----------
-    layer, number
-        From 0 on, inside out and around.
-    helix
-        Its geometry and stiffness E A.
-    diameter
-        m.
-    length
-        Of the wire, m.
-    bound
-        Friction bound per length of wire, N/m: one number, or over time (n_instants,).
-    curvature
-        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
-    tension
-        Its force before it is bent, shape (n_instants,), N.
-    stands_for
-        Number of wires that are this one, each at another place along the strand.
-    """
-
-    layer: int
-    number: int
-    helix: HelicalWire
-    diameter: float
-    length: float
-    bound: Array
-    curvature: Array
-    tension: Array
-    stands_for: int = 1
-
-    @property
-    def name(self) -> str:
-        """What its interface is called: numbers of layer and wire, from 1 on."""
-        return f"wire {self.layer + 1}.{self.number + 1}"
-
-    @property
-    def area(self) -> float:
-        """Of its cross-section, m^2."""
-        return float(np.pi * self.diameter**2 / 4.0)
-
-    @property
-    def young(self) -> float:
-        """Young's modulus, Pa."""
-        return self.helix.stiffness / self.area
-
-    @property
-    def arc(self) -> Array:
-        """Arc lengths of the nodes, shape (n_nodes,), m."""
-        return np.linspace(0.0, self.length, len(self.curvature))
-
-    @property
-    def along(self) -> Array:
-        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
-        return np.asarray(np.cos(self.helix.lay) * self.arc)
 
 
 @dataclass(frozen=True, eq=False)

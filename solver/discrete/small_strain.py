@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane_parts import Inside
+from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.structure import Structure
-from solver.discrete.wire_forces import WireForces
+from solver.discrete.wire_forces import wire_forces
 
 SMALL = 0.05
 """Largest strain, or slope of a body, for which small strains hold."""
@@ -58,7 +58,7 @@ def _of_rods(positions: Array, displacement: Array) -> float:
 
 
 def _of_wires(rope: Rope, displacement: Array) -> float:
-    forces = WireForces(rope)(displacement, slice(None))
+    forces = wire_forces(rope, displacement, slice(None))
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
         axial = np.abs(force).max(initial=0.0) / wire.helix.stiffness

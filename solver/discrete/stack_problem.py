@@ -10,8 +10,8 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.cut_stack import CutStack, Place
+from solver.discrete.inside import Inside
 from solver.discrete.plane_parts import (
-    Inside,
     lined_up,
     number_rows,
     rigid_motions,

@@ -20,9 +20,9 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete.elements import elastic_matrix
+from solver.discrete.inside import Inside
 from solver.discrete.plane import Condensed, Rectangle, side_basis
 from solver.discrete.plane_parts import (
-    Inside,
     Part,
     Trace,
     keep,

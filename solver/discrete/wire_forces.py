@@ -39,7 +39,7 @@ def cut_at(rope: Rope, place: float) -> CutWires:
     Under a uniform curvature the one wire of a layer passes half a turn, from the outermost fibre
     to the innermost; the other half is its mirror image in the plane of bending.
     """
-    found = []
+    cuts = []
     for number, wire in enumerate(rope.wires):
         helix = wire.helix
         starts = helix.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
@@ -53,73 +53,62 @@ def cut_at(rope: Rope, place: float) -> CutWires:
             sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
             arcs = np.arccos(np.cos(turned)) / np.pi * wire.length
         whole = np.full(len(angles), number)
-        found.append((np.full(len(angles), wire.layer), whole, angles, arcs, sides))
-    layer, which, angle, arc, side = (np.concatenate(one) for one in zip(*found, strict=True))
+        cuts.append((np.full(len(angles), wire.layer), whole, angles, arcs, sides))
+    layer, which, angle, arc, side = (np.concatenate(one) for one in zip(*cuts, strict=True))
     radius = np.array([wire.helix.radius for wire in rope.wires])[which]
     centres = radius[:, None] * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     return CutWires(layer, which, centres, arc, side)
 
 
-class WireForces:
-    """Forces in the wires of a strand, their tension and what bending adds.
+def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
+    """Forces in the elements of all wires: their tension and what bending adds.
 
     Parameters
     ----------
     rope
         The strand.
+    displacement
+        Of the problem's degrees of freedom, shape (n_dofs, n_instants), m.
+    columns
+        Numbers of the instants.
+
+    Returns
+    -------
+    Shape (n_wires, n_elements, n_columns), N.
     """
+    slips = np.split(displacement[:, columns], len(rope.wires))
+    forces = []
+    for wire, slip in zip(rope.wires, slips, strict=True):
+        stuck = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
+        spring = wire.helix.stiffness / np.diff(wire.arc)
+        change = spring[:, None] * np.diff(slip, axis=0) + 0.5 * (stuck[1:] + stuck[:-1])
+        forces.append(wire.tension[columns] + change)
+    return np.stack(forces)
 
-    def __init__(self, rope: Rope) -> None:
-        self._rope = rope
-        helices = [wire.helix for wire in rope.wires]
-        self._arc = np.stack([wire.arc for wire in rope.wires])
-        stretch = [one.stiffness * one.radius * np.cos(one.lay) ** 2 for one in helices]
-        angles = [one.angle(arc) for one, arc in zip(helices, self._arc, strict=True)]
-        self._around = np.array(stretch)[:, None] * np.cos(angles)
-        stiffness = np.array([one.stiffness for one in helices])
-        self._spring = stiffness[:, None] / np.diff(self._arc, axis=1)
-        self.areas: Array = np.array([wire.area for wire in rope.wires])
 
-    def __call__(self, displacement: Array, columns: slice | Indices) -> Array:
-        """Forces in the elements at some instants.
+def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
+    """Mean stresses over the sections of all wires in their elements, as `wire_forces`, Pa."""
+    areas = np.array([wire.area for wire in rope.wires])
+    return np.asarray(wire_forces(rope, displacement, columns) / areas[:, None, None])
 
-        Parameters
-        ----------
-        displacement
-            Of the problem's degrees of freedom, shape (n_dofs, n_instants), m.
-        columns
-            Numbers of the instants.
 
-        Returns
-        -------
-        Shape (n_wires, n_elements, n_columns), N.
-        """
-        wires = self._rope.wires
-        slip = displacement[:, columns].reshape(*self._arc.shape, -1)
-        curvature = np.stack([wire.curvature[:, columns] for wire in wires])
-        stuck = self._around[:, :, None] * curvature
-        change = self._spring[:, :, None] * np.diff(slip, axis=1)
-        change += 0.5 * (stuck[:, 1:] + stuck[:, :-1])
-        tension = np.stack([wire.tension[columns] for wire in wires])
-        return np.asarray(tension[:, None, :] + change)
+def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
+    """Mean stress of every wire that is cut, from `wire_stresses`.
 
-    def stress_at(self, cut: CutWires, force: Array) -> Array:
-        """Mean stress of every wire that is cut, from forces as `__call__` gives them.
+    It is linear between the middles of elements, and beyond the first and the last of them.
 
-        It is linear between the middles of elements, and beyond the first and the last of them.
-
-        Returns
-        -------
-        Shape (n_cut, n_columns), Pa.
-        """
-        if force.shape[1] == 1:
-            return np.asarray(force[cut.wire, 0] / self.areas[cut.wire, None])
-        size = self._arc[cut.wire, 1]
-        at = cut.arc / size - 0.5
-        first = np.clip(np.floor(at).astype(np.intp), 0, force.shape[1] - 2)
-        share = (at - first)[:, None]
-        low, high = force[cut.wire, first], force[cut.wire, first + 1]
-        return np.asarray(((1.0 - share) * low + share * high) / self.areas[cut.wire, None])
+    Returns
+    -------
+    Shape (n_cut, n_columns), Pa.
+    """
+    if rope.elements == 1:
+        return np.asarray(stress[cut.wire, 0])
+    sizes = np.array([wire.length / rope.elements for wire in rope.wires])
+    at = cut.arc / sizes[cut.wire] - 0.5
+    first = np.clip(np.floor(at).astype(np.intp), 0, rope.elements - 2)
+    share = (at - first)[:, None]
+    low, high = stress[cut.wire, first], stress[cut.wire, first + 1]
+    return np.asarray((1.0 - share) * low + share * high)
 
 
 def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
@@ -127,8 +116,7 @@ def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
 
     At the fibre of the wire where its bending about its own axis adds to it; over some instants.
     """
-    forces = WireForces(rope)
-    axial = forces(displacement, some) / forces.areas[:, None, None]
+    axial = wire_stresses(rope, displacement, some)
     curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
     outer = np.array([0.5 * wire.young * wire.diameter for wire in rope.wires])
     bent = outer[:, None, None] * 0.5 * (curvature[:, 1:] + curvature[:, :-1])

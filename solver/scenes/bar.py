@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, count, curve, quantity
+from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
+from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS, interpolate
 from solver.profiles import harmonic_means, means, shares_of
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.exact_rods import exact_bar
+from solver.scenes.exact import exact_bar
 from solver.scenes.words import acting, is_steel
 
 PROFILES = {
@@ -39,6 +41,19 @@ class BarSettings(SceneSettings):
 
     scene = "bar"
     LOADS: ClassVar = ("peak",)
+    PEAKS: ClassVar = {
+        "load": "peak",
+        "support_load": "support_displacement",
+        "body_load": "body_force",
+        "pressure_load": "pressure",
+    }
+    BEHIND: ClassVar = {
+        "right x": "peak",
+        "top y": "pressure",
+        "left x": "support_displacement",
+        "body": "body_force",
+    }
+    PROFILES: ClassVar = PROFILES
 
     load = curve(
         "sine",
@@ -148,37 +163,12 @@ class BarSettings(SceneSettings):
         """Number of nodes."""
         return self.elements + 1
 
-    def _candidates(self) -> Mapping[str, str]:
-        own = {"left x": "support_displacement", "body": "body_force"}
-        return {"right x": "peak", "top y": "pressure", **own}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        sizes = {
-            "load": self.peak,
-            "support_load": self.support_displacement,
-            "body_load": self.body_force,
-            "pressure_load": self.pressure,
-        }
-        return sizes[path]
-
-    def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
-        own: str | Pairs = getattr(self, name)
-        if not name.endswith("_profile") or not isinstance(own, str):
-            return super().points(name)
-        return tuple((x * self.length, factor) for x, factor in PROFILES[own])
-
     def check_together(self) -> None:
         """Refuse negative factors too."""
         super().check_together()
-        shared.check_pressure(self)
+        shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
         for name in ("friction_profile", "pressure_profile"):
-            table = getattr(self, name)
-            if not isinstance(table, str) and min(factor for _, factor in table) < 0.0:
-                raise SettingError(
-                    name, table, "factors of at least 0", "raise the negative factor"
-                )
+            shared.refuse_negative(self, name, "factor")
         self._check_section()
 
     def _check_section(self) -> None:
@@ -203,78 +193,79 @@ class BarSettings(SceneSettings):
                 "bring the factors nearer to each other",
             )
 
+    def structure(self) -> Rods:
+        """Make the friction bar (paper, section 3 and Table 1).
 
-def bar(settings: BarSettings) -> Rods:
-    """Make the friction bar that the settings describe (paper, section 3 and Table 1).
+        The bar is at rest and free of stress before the first instant.
+        """
+        nodes = np.linspace(0.0, self.length, self.elements + 1)
+        density = self.friction * self._density(nodes)
+        bound = density * self.pressure
+        if self.pressure_load != "steady":
+            bound = np.outer(density, self.path("pressure_load"))
+        mean, section = self._uneven_section()
+        stiffness = self.young * self.section * mean
+        return Rods(
+            length=self.length,
+            stiffness=stiffness,
+            elements=self.elements,
+            substructures=self.substructures,
+            bound=bound,
+            load=self.path("load"),
+            instants=self.times(),
+            duration=self.duration,
+            pressure=self.path("pressure_load"),
+            support=self.path("support_load") if self.support_displacement else None,
+            body_force=self.path("body_load") if self.body_force else None,
+            section=section,
+            friction_law=self.law(stiffness / self.length**2),
+        )
 
-    The bar is at rest and free of stress before the first instant.
-    """
-    nodes = np.linspace(0.0, settings.length, settings.elements + 1)
-    density = settings.friction * _density(settings, nodes)
-    mean, section = _section(settings)
-    stiffness = settings.young * settings.section * mean
-    return Rods(
-        length=settings.length,
-        stiffness=stiffness,
-        elements=settings.elements,
-        substructures=settings.substructures,
-        bound=shared.bound_of(settings, density),
-        load=settings.path("load"),
-        instants=settings.times(),
-        duration=settings.duration,
-        pressure=settings.path("pressure_load"),
-        support=settings.path("support_load") if settings.support_displacement else None,
-        body_force=settings.path("body_load") if settings.body_force else None,
-        section=section,
-        friction_law=settings.law(stiffness / settings.length**2),
-    )
+    def sentence(self) -> str:
+        """The bar in a sentence."""
+        bound = self.structure().bound
+        table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
+        ends = f"its right end is {acting(self.path('load'), 'pulled', 'pushed')}"
+        if self.support_displacement:
+            left = acting(self.path("support_load"), "moved", "moved back")
+            ends += f", and its left end is {left}"
+        if self.body_force:
+            along = acting(self.path("body_load"), "pulled", "pushed")
+            ends += f"; all along it is {along}"
+        if self.pressure_load != "steady":
+            ends += "; what presses it changes"
+        held = "" if self.support_displacement else ", held at its left end"
+        body = "A steel bar" if is_steel(self.young) else "An elastic bar"
+        return f"{body} lies on a {table} table{held}; {ends}."
 
+    def coarser(self) -> Iterator[Rods]:
+        """Yield the same bar, uncut, on ever coarser meshes."""
+        return shared.ever_coarser(self.structure())
 
-def _words(settings: BarSettings) -> str:
-    bound = bar(settings).bound
-    table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-    ends = f"its right end is {acting(settings.path('load'), 'pulled', 'pushed')}"
-    if settings.support_displacement:
-        left = acting(settings.path("support_load"), "moved", "moved back")
-        ends += f", and its left end is {left}"
-    if settings.body_force:
-        along = acting(settings.path("body_load"), "pulled", "pushed")
-        ends += f"; all along it is {along}"
-    if settings.pressure_load != "steady":
-        ends += "; what presses it changes"
-    held = "" if settings.support_displacement else ", held at its left end"
-    body = "A steel bar" if is_steel(settings.young) else "An elastic bar"
-    return f"{body} lies on a {table} table{held}; {ends}."
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Friction along the bar and the loop of its end, where closed forms are known."""
+        return exact_bar(self.structure(), problem)
 
+    def _uneven_section(self) -> tuple[float, Array | None]:
+        """Harmonic mean of the section's factors, and every element's over that mean."""
+        if self.section_profile == "uniform":
+            return 1.0, None
+        ends = np.linspace(0.0, self.length, self.elements + 1)
+        table = self.section_profile
+        if isinstance(table, str):
+            factors = interpolate(PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
+        else:
+            factors = harmonic_means(table, ends)
+        mean = float(1.0 / np.mean(1.0 / factors))
+        return mean, factors / mean
 
-def _section(settings: BarSettings) -> tuple[float, Array | None]:
-    """Give the harmonic mean of the section's factors, and every element's over that mean."""
-    if settings.section_profile == "uniform":
-        return 1.0, None
-    ends = np.linspace(0.0, settings.length, settings.elements + 1)
-    table = settings.section_profile
-    if isinstance(table, str):
-        factors = interpolate(PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / settings.length)
-    else:
-        factors = harmonic_means(table, ends)
-    mean = float(1.0 / np.mean(1.0 / factors))
-    return mean, factors / mean
-
-
-def _density(settings: BarSettings, nodes: Array) -> Array:
-    """Return the factors on mu and p together: presets at the nodes, tables over their shares."""
-    names = "friction_profile", "pressure_profile"
-    mu, pressure = tables = [settings.points(name) for name in names]
-    if all(isinstance(getattr(settings, name), str) for name in names):
-        return interpolate(mu, nodes) * interpolate(pressure, nodes)
-    return means(tables, shares_of(nodes))
-
-
-def _coarser(settings: BarSettings) -> Iterator[Problem]:
-    scene = bar(settings).coarser()
-    while scene is not None:
-        yield scene.discretise()
-        scene = scene.coarser()
+    def _density(self, nodes: Array) -> Array:
+        """Factors on mu and p together: presets at the nodes, tables over their shares."""
+        names = "friction_profile", "pressure_profile"
+        mu, pressure = tables = [self.points(name) for name in names]
+        if all(isinstance(getattr(self, name), str) for name in names):
+            return interpolate(mu, nodes) * interpolate(pressure, nodes)
+        return means(tables, shares_of(nodes))
 
 
 BAR = Entry(
@@ -287,10 +278,6 @@ BAR = Entry(
     ),
     settings=BarSettings,
     kind="rod",
-    structure=bar,
-    words=_words,
     sizes=shared.ROD_SIZES,
     grows=("elements",),
-    coarser=_coarser,
-    exact=lambda settings, problem, found: exact_bar(bar(settings), problem),
 )

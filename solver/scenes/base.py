@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
+import param
 
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, quantity
+from solver.discrete.problem import Problem
+from solver.discrete.structure import LoopFields, Structure
 from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning_knots
 from solver.laws import FrictionLaw, Strength
 from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -86,6 +90,9 @@ class SceneSettings(Settings):
         applies=lambda settings: settings.is_repeatable,
     )
 
+    seed: param.Integer[int]
+    """Every scene defines it, where it shows it."""
+
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
     MESH: ClassVar[Sequence[str]] = ("elements",)
@@ -96,10 +103,16 @@ class SceneSettings(Settings):
     """Setting that says how that goes on over time."""
     SHAPES: ClassVar[Mapping[str, Preset]] = PRESETS
     """What the presets of paths over time stand for."""
+    PEAKS: ClassVar[Mapping[str, str]] = {}
+    """Setting of the largest value that the preset of each path reaches."""
+    BEHIND: ClassVar[Mapping[str, str]] = {}
+    """Settings that place or scale what acts, whether it does or not."""
+    PROFILES: ClassVar[Mapping[str, Pairs]] = {}
+    """Presets of factors along the body, over shares of its length."""
 
     @classmethod
     def chief(cls) -> tuple[str, ...]:
-        """Name what a scene is about: the path and size of its load, friction, cuts, and k."""
+        """Settings that a scene is about: the path and size of its load, friction, cuts, and k."""
         return (cls.PATH, "seed", *cls.LOADS, "friction", "substructures", "k_scale")
 
     def law(self, stiffness: float) -> FrictionLaw:
@@ -111,26 +124,52 @@ class SceneSettings(Settings):
             return FrictionLaw(strength=table)
         return FrictionLaw()
 
+    def structure(self) -> Structure:
+        """Bodies, with all that acts on them."""
+        raise NotImplementedError
+
+    def sentence(self) -> str:
+        """What there is, what acts on it, and what rubs, for whoever sees it for the first time."""
+        raise NotImplementedError
+
+    def coarser(self) -> Iterator[Structure]:
+        """Yield the same scene, uncut, on ever coarser meshes; nothing where no run starts so."""
+        yield from ()
+
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterable[ExactCurve]:
+        """What is known of the scene without a mesh.
+
+        Parameters
+        ----------
+        problem
+            Its discrete problem.
+        solution
+            What an incremental solver found, if it did: closed forms of contact are for its forces.
+        """
+        return ()
+
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all bodies."""
         raise NotImplementedError
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        raise NotImplementedError
+        """Largest value that a preset of a path over time reaches."""
+        return float(getattr(self, self.PEAKS[path]))
+
+    def peak_or_table(self, path: str) -> str:
+        """Name of the setting by which a path becomes smaller: of its peak, or its table."""
+        return self.PEAKS[path] if isinstance(getattr(self, path), str) else path
 
     def behind(self) -> Mapping[str, str]:
-        """Name the settings that place or scale what acts on the scene, where any does.
+        """Settings that place or scale what acts on the scene, where any does.
 
         By what they are behind: "right x" along a side, "body" throughout, "gap", "break".
         """
-        found = self._candidates()
-        return {what: name for what, name in found.items() if self.applies(name)}
+        return {what: name for what, name in self._behind().items() if self.applies(name)}
 
-    def _candidates(self) -> Mapping[str, str]:
-        """Name what may be behind something; `behind` leaves out what does not apply."""
-        return {}
+    def _behind(self) -> Mapping[str, str]:
+        return self.BEHIND
 
     @property
     def is_repeatable(self) -> bool:
@@ -172,29 +211,25 @@ class SceneSettings(Settings):
 
     def _instants(self, tables: Mapping[str, Pairs]) -> Array:
         """Instants for these tables and all presets; a single one has those where paths turn."""
-        own: Any = self  # every scene defines these, where it shows them
         acting = [name for name in self.paths if name in tables or self.size_of(name)]
         knots = {name: self._knots(tables.get(name, getattr(self, name))) for name in acting}
-        if own.instants == 1:
+        if self.instants == 1:
             knots = {name: self._turning(name, times) for name, times in knots.items()}
         given = [knots[name] for name in tables]
         corners = [times for name, times in knots.items() if name not in tables]
         joined = (np.concatenate([NO_KNOTS, *times]) for times in (given, corners))
-        return instants_of(own.duration, own.instants, *joined)
+        return instants_of(self.duration, self.instants, *joined)
 
     def _knots(self, path: str | Pairs) -> Array:
-        own: Any = self
-        return knots_of(path, own.duration, own.seed, self._shapes, self.cycles)
+        return knots_of(path, self.duration, self.seed, self._shapes, self.cycles)
 
     def _turning(self, name: str, knots: Array) -> Array:
-        own: Any = self
-        inside = knots[(knots > 0.0) & (knots < own.duration)]
-        every = np.concatenate([[0.0], inside, [own.duration]])
+        inside = knots[(knots > 0.0) & (knots < self.duration)]
+        every = np.concatenate([[0.0], inside, [self.duration]])
         return turning_knots(every, self._along(name, every))
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables: paths of too many points are thinned."""
-        own: Any = self
         times = self.times()
         for name in self._tables:
             when, values = np.array(getattr(self, name)).T
@@ -202,35 +237,35 @@ class SceneSettings(Settings):
             seen = interpolate(np.column_stack([times, self.path(name)]), when[inside])
             lost = float(np.abs(values[inside] - seen).max(initial=0.0))
             span = float(np.ptp(values))
-            count = len(apart(when[inside], times, SAME * own.duration))
-            if own.instants > 1 and count and lost > STRAIGHT * span:
+            count = len(apart(when[inside], times, SAME * self.duration))
+            if self.instants > 1 and count and lost > STRAIGHT * span:
                 yield (
                     f"{name}: {count} of {len(values)} points are left out; they differ from the "
                     f"path that is solved by at most {100.0 * lost / span:.2g} % of their range"
                 )
 
     def path(self, name: str) -> Array:
-        """Give a quantity over time from the setting of its path; a table has its own size."""
+        """A quantity over time from the setting of its path; a table has its own size."""
         return self._along(name, self.times())
 
     def points(self, name: str) -> Pairs:
-        """Return the points of a curve setting, or those that stand for its preset."""
-        own: Any = self
-        if not isinstance(getattr(self, name), str):
-            table: Pairs = getattr(self, name)
-            return table
-        even = np.linspace(0.0, own.duration, (POINTS - 1) * self.cycles + 1)
-        times = instants_of(own.duration, 2, NO_KNOTS, self._knots(getattr(self, name)))
-        times = instants_of(own.duration, 2, times, even)
+        """Points of a curve setting, or those that stand for its preset."""
+        own: str | Pairs = getattr(self, name)
+        if not isinstance(own, str):
+            return own
+        if name.endswith("_profile"):
+            return tuple((x * self.length, factor) for x, factor in self.PROFILES[own])
+        even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
+        times = instants_of(self.duration, 2, NO_KNOTS, self._knots(own))
+        times = instants_of(self.duration, 2, times, even)
         values = self._along(name, times)
         kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
         return as_points(times[kept], values[kept])
 
     def _along(self, name: str, instants: Array) -> Array:
-        own: Any = self
         curve: str | Pairs = getattr(self, name)
         size = self.size_of(name) if isinstance(curve, str) else 0.0
-        return load_path(curve, instants, own.duration, size, own.seed, self._shapes, self.cycles)
+        return load_path(curve, instants, self.duration, size, self.seed, self._shapes, self.cycles)
 
     @property
     def _shapes(self) -> Mapping[str, Preset]:
@@ -251,7 +286,6 @@ class SceneSettings(Settings):
 
     def check_together(self) -> None:
         """Refuse more parts than there is to deal out, and fields beyond memory."""
-        own: Any = self
         for part, whole in self.PARTS.items():
             value, most = getattr(self, part), getattr(self, whole)
             if value > most:
@@ -268,11 +302,11 @@ class SceneSettings(Settings):
                 self.n_instants,
                 f"at most {most} with {self.n_nodes} nodes",
                 "give fewer instants, or a coarser mesh"
-                if self.n_instants == own.instants
+                if self.n_instants == self.instants
                 else "give paths with fewer points or cycles, or a coarser mesh",
             )
 
 
 def as_points(where: Array, values: Array) -> Pairs:
-    """Give points with as many digits as one likes to read."""
+    """Points with as many digits as one likes to read."""
     return tuple((float(f"{a:.6g}"), float(f"{b:.6g}")) for a, b in zip(where, values, strict=True))

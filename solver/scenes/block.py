@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -20,7 +21,7 @@ from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.exact_bodies import exact_on_spring, exact_parabola
+from solver.scenes.exact import exact_on_spring, exact_parabola
 from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
 
@@ -118,21 +119,21 @@ class BlockSettings(SideSettings):
         """Whether a spring holds the block."""
         return bool(self.spring) and self.applies("spring")
 
-    def _candidates(self) -> Mapping[str, str]:
+    def _behind(self) -> Mapping[str, str]:
         # Where both forces act, the larger stands for their sum.
         force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
-        return {**super()._candidates(), "body": force, "gap": "radius"}
+        return {**super()._behind(), "body": force, "gap": "radius"}
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset reaches; that of the body force is a factor."""
+        """Largest value that a preset reaches; that of the body force is a factor."""
         return 1.0 if path == "body_load" else super().size_of(path)
 
     def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
+        """Points of the preset that a curve setting has at present."""
         if name != "gap" or not isinstance(self.gap, str):
             return super().points(name)
         x = np.linspace(0.0, self.length, POINTS)
-        return as_points(x, _gap(self, x))
+        return as_points(x, self._gap(x))
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, the gap among them."""
@@ -145,7 +146,7 @@ class BlockSettings(SideSettings):
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""
         super().check_together()
-        loss = loss_of_equilibrium(block(self))
+        loss = loss_of_equilibrium(self.structure())
         if loss is not None:
             raise SettingError(
                 "top",
@@ -155,64 +156,61 @@ class BlockSettings(SideSettings):
                 f"lower that load, press more, {loss.remedy}, or hold a side",
             )
 
+    def structure(self) -> Stack:
+        """Make the block; one metre thick."""
+        sides = {side: self.side(side) for side in ("left", "right", "top")}
+        nodes = np.linspace(0.0, self.length, self.nodes[0])
+        table = self.gap
+        gap = self._gap(nodes) if isinstance(table, str) else gap_at(table, nodes)
+        return replace(
+            self.stack(),
+            support=Support(gap, self.friction),
+            sides=sides,
+            body_force=self._body_force(),
+            spring=Spring(0.0, self.spring) if self.has_spring else None,
+        )
 
-def block(settings: BlockSettings) -> Stack:
-    """Make the block that the settings describe; one metre thick."""
-    sides = {side: settings.side(side) for side in ("left", "right", "top")}
-    nodes = np.linspace(0.0, settings.length, settings.nodes[0])
-    table = settings.gap
-    gap = _gap(settings, nodes) if isinstance(table, str) else gap_at(table, nodes)
-    return settings.stack(
-        support=Support(gap, settings.friction),
-        sides=sides,
-        body_force=_body_force(settings),
-        spring=Spring(0.0, settings.spring) if settings.has_spring else None,
-    )
+    def sentence(self) -> str:
+        """The block in a sentence."""
+        support = {"flat": "flat", "parabola": "round"}.get(str(self.gap), "uneven")
+        rough = "rough" if self.friction else "smooth"
+        acts: list[str] = []
+        for side in LOADED_SIDES:
+            if getattr(self, side) in AT_REST:
+                continue
+            inward = -self.path(f"{side}_normal_load")
+            along = self.path(f"{side}_tangential_load")
+            own = [acting(inward, "pressed", "pulled")] if inward.any() else []
+            own += [acting(along, "moved", "moved back")] if along.any() else []
+            acts += [f"{listed(own)} at its {side}"] if own else []
+        if self._body_force() is not None:
+            acts.append("loaded all through")
+        if self.has_spring:
+            acts.append("pulled back by a spring")
+        held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
+        acts += [f"held at its {side}" for side in held]
+        does = listed(acts) if acts else "left alone"
+        block = "A steel block" if is_steel(self.young) else "An elastic block"
+        return f"{block} lies on a {support} {rough} support; it is {does}."
 
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterable[ExactCurve]:
+        """Tractions on a parabola, once there are forces for them, or the slide on a spring."""
+        body = self.structure()
+        if self.gap != "parabola":
+            return exact_on_spring(body)
+        if solution is None:
+            return ()
+        return exact_parabola(body, self.radius, problem, solution)
 
-def _gap(settings: BlockSettings, x: Array) -> Array:
-    """Return the gap of a preset at places along the lowest side, m."""
-    if settings.gap == "flat":
-        return np.zeros_like(x)
-    return np.asarray((x - 0.5 * settings.length) ** 2 / (2.0 * settings.radius))
+    def _gap(self, x: Array) -> Array:
+        """Gap of a preset at places along the lowest side, m."""
+        if self.gap == "flat":
+            return np.zeros_like(x)
+        return np.asarray((x - 0.5 * self.length) ** 2 / (2.0 * self.radius))
 
-
-def _words(settings: BlockSettings) -> str:
-    support = {"flat": "flat", "parabola": "round"}.get(str(settings.gap), "uneven")
-    rough = "rough" if settings.friction else "smooth"
-    acts: list[str] = []
-    for side in LOADED_SIDES:
-        if getattr(settings, side) in AT_REST:
-            continue
-        inward = -settings.path(f"{side}_normal_load")
-        along = settings.path(f"{side}_tangential_load")
-        own = [acting(inward, "pressed", "pulled")] if inward.any() else []
-        own += [acting(along, "moved", "moved back")] if along.any() else []
-        acts += [f"{listed(own)} at its {side}"] if own else []
-    if _body_force(settings) is not None:
-        acts.append("loaded all through")
-    if settings.has_spring:
-        acts.append("pulled back by a spring")
-    held = [side for side in LOADED_SIDES if getattr(settings, side) == "clamped"]
-    acts += [f"held at its {side}" for side in held]
-    does = listed(acts) if acts else "left alone"
-    block = "A steel block" if is_steel(settings.young) else "An elastic block"
-    return f"{block} lies on a {support} {rough} support; it is {does}."
-
-
-def _body_force(settings: BlockSettings) -> Array | None:
-    sizes = np.array([settings.body_force_x, settings.body_force_y])
-    return sizes[:, None] * settings.path("body_load") if sizes.any() else None
-
-
-def _exact(
-    settings: BlockSettings, problem: Problem, found: LoopFields | None
-) -> Iterable[ExactCurve]:
-    """Give tractions on a parabola, once there are forces for them, or the slide on a spring."""
-    body = block(settings)
-    if settings.gap != "parabola":
-        return exact_on_spring(body)
-    return () if found is None else exact_parabola(body, settings.radius, problem, found)
+    def _body_force(self) -> Array | None:
+        sizes = np.array([self.body_force_x, self.body_force_y])
+        return sizes[:, None] * self.path("body_load") if sizes.any() else None
 
 
 BLOCK = Entry(
@@ -225,9 +223,6 @@ BLOCK = Entry(
     ),
     settings=BlockSettings,
     kind="plane",
-    structure=block,
-    words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
-    exact=_exact,
 )

@@ -1,17 +1,13 @@
-"""What the catalogue knows of a scene."""
+"""What the catalogue knows of a scene beside its settings."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Generic, Literal, NamedTuple, TypeVar
+from typing import Literal, NamedTuple
 
-from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields, Structure
-from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import SceneSettings
 
-S = TypeVar("S", bound=SceneSettings)
 Kind = Literal["rod", "wires", "helices", "plane"]
 
 
@@ -30,8 +26,8 @@ class Emblem(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Entry(Generic[S]):
-    """One scene of the catalogue, and what it can.
+class Entry:
+    """One scene of the catalogue.
 
     Attributes
     ----------
@@ -40,21 +36,10 @@ class Entry(Generic[S]):
     emblem
         Its small picture.
     settings
-        Its settings.
+        Its settings, which make its structure.
     kind
         What there is to see: a rod on its support, wires beside each other, wires around a core, or
         plane bodies.
-    structure
-        Makes what the scene is made of.
-    words
-        Say of settings what there is, what acts on it, and what rubs, in a sentence for whoever
-        sees it for the first time.
-    coarser
-        Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
-        where no run starts from them.
-    exact
-        Give what is known of it without a mesh, for its settings, its problem, and what an
-        incremental solver has found, if it has: closed forms of contact are for the forces there.
     sizes
         Numbers over which costs are measured, by setting.
     grows
@@ -64,11 +49,7 @@ class Entry(Generic[S]):
     title: str
     source: str
     emblem: Emblem
-    settings: type[S]
+    settings: type[SceneSettings]
     kind: Kind
-    structure: Callable[[S], Structure]
-    words: Callable[[S], str]
     sizes: Mapping[str, tuple[int, ...]]
     grows: tuple[str, ...]
-    coarser: Callable[[S], Iterable[Problem]] | None = None
-    exact: Callable[[S, Problem, LoopFields | None], Iterable[ExactCurve]] | None = None

@@ -6,17 +6,19 @@ it by diffusion (solver/README.md, 17).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, curve, quantity, redefined
+from solver.definitions import SettingError, curve, quantity, redefined
 from solver.discrete.fault import Fault, sheared
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Support
+from solver.discrete.structure import LoopFields
 from solver.instants import instants_of
 from solver.loads import INJECTIONS, interpolate
 from solver.profiles import means, shares_of
@@ -50,6 +52,9 @@ class FaultSettings(PlaneSettings):
 
     scene = "fault"
     LOADS: ClassVar = ("overpressure", "shear_stress")
+    PEAKS: ClassVar = {"injection_load": "overpressure"}
+    BEHIND: ClassVar = {"left x": "overpressure", "top x": "shear_stress"}
+    PROFILES: ClassVar = PROFILES
     PATH = "injection_load"
     SHAPES: ClassVar = INJECTIONS
 
@@ -149,26 +154,12 @@ class FaultSettings(PlaneSettings):
         """Whether the loop is that of what drives: the fluid does."""
         return False
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"left x": "overpressure", "top x": "shear_stress"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest pressure of the fluid that a preset reaches."""
-        return float(self.overpressure)
-
-    def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
-        own = self.normal_profile
-        if name != "normal_profile" or not isinstance(own, str):
-            return super().points(name)
-        return tuple((x * self.length, factor) for x, factor in PROFILES[own])
-
     def pressing(self, place: Array) -> Array:
-        """Give the normal stress before any fluid is let in, shape (n_places,), Pa."""
+        """Normal stress before any fluid is let in, shape (n_places,), Pa."""
         return np.asarray(self.normal_stress * interpolate(self.points("normal_profile"), place))
 
     def fluid(self, place: Array) -> Array:
-        """Give the pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
+        """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
         if self.instants == 1:  # a fluid needs all of the time before
             start = instants_of(self.duration, 2, self._knots(self.injection_load), times)
@@ -176,18 +167,18 @@ class FaultSettings(PlaneSettings):
         return found if start is times else found[:, np.searchsorted(start, times)]
 
     def strength(self, place: Array) -> Array:
-        """Give the largest friction per area, shape (n_places, n_instants), Pa."""
+        """Largest friction per area, shape (n_places, n_instants), Pa."""
         return np.asarray(self.friction * (self.pressing(place)[:, None] - self.fluid(place)))
 
     def pressing_at_nodes(self) -> Array:
-        """Return the normal stress of the nodes: of a table, its mean over the share of each."""
+        """Normal stress of the nodes: of a table, its mean over the share of each."""
         if isinstance(self.normal_profile, str):
             return self.pressing(self._places)
         shares = shares_of(self._places, self.order)
         return np.asarray(self.normal_stress * means([self.normal_profile], shares))
 
     def strength_at_nodes(self) -> Array:
-        """Return the largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
+        """Largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
         pressing = self.pressing_at_nodes()
         return np.asarray(self.friction * (pressing[:, None] - self.fluid(self._places)))
 
@@ -201,18 +192,11 @@ class FaultSettings(PlaneSettings):
         self._check_work()
         place = self._places
         pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
-        table = self.normal_profile
-        if not isinstance(table, str) and min(factor for _, factor in table) < 0.0:
-            raise SettingError(
-                "normal_profile",
-                self.normal_profile,
-                "factors of at least 0",
-                "raise the negative factor",
-            )
+        shared.refuse_negative(self, "normal_profile", "factor")
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
-            name = "overpressure" if isinstance(self.injection_load, str) else "injection_load"
+            name = self.peak_or_table("injection_load")
             raise SettingError(
                 name,
                 getattr(self, name),
@@ -231,57 +215,56 @@ class FaultSettings(PlaneSettings):
                 "give fewer points, or fewer elements along",
             )
 
+    def structure(self) -> Fault:
+        """Make the quarter of the body; one metre thick."""
+        modulus = 0.5 * self.young / (1.0 + self.poisson)
+        stress, height = self.shear_stress, self.height
+        strength = self.strength_at_nodes()
+        body = replace(
+            self.stack(),
+            support=Support(np.zeros(len(strength)), self.friction, strength),
+            sides=sheared(stress, modulus, height, self.n_instants),
+        )
+        return Fault(body, stress, self.path("injection_load"))
 
-def fault(settings: FaultSettings) -> Fault:
-    """Make the quarter of the body that the settings describe; one metre thick."""
-    modulus = 0.5 * settings.young / (1.0 + settings.poisson)
-    stress, height = settings.shear_stress, settings.height
-    strength = settings.strength_at_nodes()
-    body = settings.stack(
-        support=Support(np.zeros(len(strength)), settings.friction, strength),
-        sides=sheared(stress, modulus, height, settings.n_instants),
-    )
-    return Fault(body, stress, settings.path("injection_load"))
+    def sentence(self) -> str:
+        """The fault in a sentence."""
+        path = self.path("injection_load")
+        if not path.any():
+            return "A fault is sheared; a quarter of it is seen."
+        moves = acting(path, "let in", "sucked out", back="{} and stopped")
+        return (
+            f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
+            "a quarter is seen."
+        )
 
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Front of slip and the friction, as long as slip spreads in an infinite body.
 
-def _words(settings: FaultSettings) -> str:
-    path = settings.path("injection_load")
-    if not path.any():
-        return "A fault is sheared; a quarter of it is seen."
-    moves = acting(path, "let in", "sucked out", back="{} and stopped")
-    return (
-        f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
-        "a quarter is seen."
-    )
-
-
-def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:
-    """Give the front of slip and the friction, as long as slip spreads in an infinite body.
-
-    It does where strength falls with time, everywhere, and grows away from the well.
-    """
-    stress = settings.shear_stress
-    if np.any(np.diff(settings.path("injection_load")) < 0.0):
-        return
-    place = np.linspace(0.0, settings.length, FINE + 1)
-    lack = settings.strength(place) - stress
-    small = ROUND * float(np.abs(lack).max())
-    spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
-    if settings.friction_law != "coulomb" or not spreads or stress <= 0.0:
-        return
-    front = fronts(place, lack)
-    if not front.any() or front.max() > INFINITE * min(settings.length, settings.height):
-        return
-    yield ExactCurve("front", front, settings.times())
-    nodes = problem.rubbing["support"].positions
-    friction = np.full((len(nodes), settings.n_instants), stress)
-    strength = settings.strength_at_nodes()
-    for instant in np.flatnonzero(front):
-        ahead = nodes > front[instant]
-        added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))
-        friction[ahead, instant] += added
-        friction[~ahead, instant] = strength[~ahead, instant]
-    yield ExactCurve("friction", nodes, -friction)
+        It does where strength falls with time, everywhere, and grows away from the well.
+        """
+        stress = self.shear_stress
+        if np.any(np.diff(self.path("injection_load")) < 0.0):
+            return
+        place = np.linspace(0.0, self.length, FINE + 1)
+        lack = self.strength(place) - stress
+        small = ROUND * float(np.abs(lack).max())
+        spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
+        if self.friction_law != "coulomb" or not spreads or stress <= 0.0:
+            return
+        front = fronts(place, lack)
+        if not front.any() or front.max() > INFINITE * min(self.length, self.height):
+            return
+        yield ExactCurve("front", front, self.times())
+        nodes = problem.rubbing["support"].positions
+        friction = np.full((len(nodes), self.n_instants), stress)
+        strength = self.strength_at_nodes()
+        for instant in np.flatnonzero(front):
+            ahead = nodes > front[instant]
+            added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))
+            friction[ahead, instant] += added
+            friction[~ahead, instant] = strength[~ahead, instant]
+        yield ExactCurve("friction", nodes, -friction)
 
 
 FAULT = Entry(
@@ -294,9 +277,6 @@ FAULT = Entry(
     ),
     settings=FaultSettings,
     kind="plane",
-    structure=fault,
-    words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
-    exact=lambda settings, problem, found: _exact(settings, problem),
 )

@@ -6,19 +6,23 @@ pulls at the foot of the uphill side once it has slid down by the slack.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, curve, quantity, redefined
+from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
+from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.refusal import plain
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.exact_bodies import exact_slope
+from solver.scenes.exact import exact_slope
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
 
@@ -28,6 +32,8 @@ class InclineSettings(PlaneSettings):
 
     scene = "incline"
     LOADS: ClassVar = ("slope",)
+    PEAKS: ClassVar = {"slope_load": "slope"}
+    BEHIND: ClassVar = {"body": "weight"}
     PATH = "slope_load"
     SHAPES: ClassVar = PULLS
 
@@ -97,20 +103,13 @@ class InclineSettings(PlaneSettings):
         """Whether the loop is over a displacement: it is over the angle of the slope."""
         return False
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"body": "weight"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest angle of the slope that a preset reaches."""
-        return float(self.slope)
-
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""
         super().check_together()
-        loss = loss_of_equilibrium(incline(self))
+        loss = loss_of_equilibrium(self.structure())
         if loss is None:
             return
-        name = "slope" if isinstance(self.slope_load, str) else "slope_load"
+        name = self.peak_or_table("slope_load")
         angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
         raise SettingError(
             name,
@@ -120,24 +119,28 @@ class InclineSettings(PlaneSettings):
             "lower the slope, or take a longer base or a lower block",
         )
 
+    def structure(self) -> Stack:
+        """Make the block on its slope; one metre thick."""
+        angle = np.radians(self.path("slope_load"))
+        density = self.weight / (self.length * self.height)
+        return replace(
+            self.stack(),
+            support=Support(np.zeros(self.nodes[0]), self.friction),
+            body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
+            spring=Spring(self.slack, self.spring),
+            tilt=angle,
+        )
 
-def incline(settings: InclineSettings) -> Stack:
-    """Make the block on its slope that the settings describe; one metre thick."""
-    angle = np.radians(settings.path("slope_load"))
-    density = settings.weight / (settings.length * settings.height)
-    return settings.stack(
-        support=Support(np.zeros(settings.nodes[0]), settings.friction),
-        body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
-        spring=Spring(settings.slack, settings.spring),
-        tilt=angle,
-    )
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Force of the spring over the angle."""
+        return exact_slope(self.structure())
 
-
-def _words(settings: InclineSettings) -> str:
-    slope = settings.path("slope_load")
-    moves = acting(slope, "rises", "falls", "rises and falls", "rises and falls")
-    rough = "rough" if settings.friction else "smooth"
-    return f"A block lies on a {rough} slope that {moves}; a spring catches it when it slides down."
+    def sentence(self) -> str:
+        """The block on its slope in a sentence."""
+        path = self.path("slope_load")
+        moves = acting(path, "rises", "falls", "rises and falls", "rises and falls")
+        slope = f"{'rough' if self.friction else 'smooth'} slope that {moves}"
+        return f"A block lies on a {slope}; a spring catches it when it slides down."
 
 
 INCLINE = Entry(
@@ -150,9 +153,6 @@ INCLINE = Entry(
     ),
     settings=InclineSettings,
     kind="plane",
-    structure=incline,
-    words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
-    exact=lambda settings, problem, found: exact_slope(incline(settings)),
 )

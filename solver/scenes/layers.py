@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import choice, count, curve, quantity, redefined
+from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
+from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.exact_bodies import exact_layers
+from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted, is_steel
 
@@ -22,6 +26,7 @@ class LayersSettings(PlaneSettings):
 
     scene = "layers"
     LOADS: ClassVar = ("deflection", "moment")
+    PEAKS: ClassVar = {"pressure_load": "pressure", "pull_load": "pull"}
     PATH = "bend_load"
     across = "thickness"
 
@@ -139,10 +144,10 @@ class LayersSettings(PlaneSettings):
         return bool(self.bending != "moment")
 
     def bends_by(self, kind: str) -> bool:
-        """Tell whether the end is bent so, as far as a preset and not a table says."""
+        """Whether the end is bent so, as far as a preset and not a table says."""
         return self.bending == kind and isinstance(self.bend_load, str)
 
-    def _candidates(self) -> Mapping[str, str]:
+    def _behind(self) -> Mapping[str, str]:
         end = "moment" if self.bending == "moment" and self.moment else "pull"
         own = {"right x": end, "right y": "deflection"}
         return {"top y": "pressure", "bottom y": "pressure", **own}
@@ -154,45 +159,50 @@ class LayersSettings(PlaneSettings):
         return "s", "m" if self.bending == "deflection" else "N·m/m"
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        sizes = {"pressure_load": "pressure", "pull_load": "pull", "bend_load": self.bending}
-        return float(getattr(self, sizes[path]))
+        """Largest value that a preset of a path over time reaches."""
+        if path == "bend_load":
+            return float(self.moment if self.bending == "moment" else self.deflection)
+        return super().size_of(path)
 
+    def structure(self) -> Stack:
+        """Make the stack; its left end is clamped; one metre thick."""
+        rest = np.zeros(self.n_instants)
+        held, free = Given(True, rest), Given(False, rest)
+        pressing = self.path("pressure_load")
+        pull = self.path("pull_load")
+        if self.bending == "deflection":
+            bent = Given(True, self.path("bend_load"))
+            right = Side(Given(False, pull), bent)
+        else:
+            # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
+            moment = self.path("bend_load")
+            extreme = -6.0 * moment / (self.layers * self.thickness**2)
+            right = Side(Given(False, pull, extreme, each_body=True), free)
+        return replace(
+            self.stack(),
+            stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
+            sides={
+                "left": Side(held, held),
+                "right": right,
+                "top": Side(free, Given(False, -pressing)),
+                "bottom": Side(free, Given(False, pressing)),
+            },
+        )
 
-def layers(settings: LayersSettings) -> Stack:
-    """Make the stack that the settings describe; its left end is clamped; one metre thick."""
-    rest = np.zeros(settings.n_instants)
-    held, free = Given(True, rest), Given(False, rest)
-    pressing = settings.path("pressure_load")
-    pull = settings.path("pull_load")
-    if settings.bending == "deflection":
-        bent = Given(True, settings.path("bend_load"))
-        right = Side(Given(False, pull), bent)
-    else:
-        # A linear traction of this extreme over one layer has the moment extreme * thickness^2 / 6.
-        moment = settings.path("bend_load")
-        extreme = -6.0 * moment / (settings.layers * settings.thickness**2)
-        right = Side(Given(False, pull, extreme, each_body=True), free)
-    return settings.stack(
-        stiffness=np.where(np.arange(settings.layers) % 2, settings.contrast, 1.0),
-        sides={
-            "left": Side(held, held),
-            "right": right,
-            "top": Side(free, Given(False, -pressing)),
-            "bottom": Side(free, Given(False, pressing)),
-        },
-    )
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Force that bends the layers, where they act apart or as one."""
+        return exact_layers(self.structure(), problem, solution)
 
-
-def _words(settings: LayersSettings) -> str:
-    kind = "steel" if is_steel(settings.young) else "elastic"
-    layers = f"{counted(settings.layers).capitalize()} {kind} layers"
-    pressed = "are pressed together and rub" if settings.pressure else "lie on each other"
-    bent, pull = settings.path("bend_load"), settings.path("pull_load")
-    ends = acting(bent, "bent up", "bent down", "bent up and down")
-    if pull.any():
-        ends = f"{ends}, and {acting(pull, 'pulled', 'pushed')}"
-    return f"{layers}, held at the left, {pressed}; the right end is {ends}."
+    def sentence(self) -> str:
+        """The stack in a sentence."""
+        kind = "steel" if is_steel(self.young) else "elastic"
+        layers = f"{counted(self.layers).capitalize()} {kind} layers"
+        pressed = "are pressed together and rub" if self.pressure else "lie on each other"
+        bent, pull = self.path("bend_load"), self.path("pull_load")
+        ends = acting(bent, "bent up", "bent down", "bent up and down")
+        if pull.any():
+            ends = f"{ends}, and {acting(pull, 'pulled', 'pushed')}"
+        return f"{layers}, held at the left, {pressed}; the right end is {ends}."
 
 
 LAYERS = Entry(
@@ -206,9 +216,6 @@ LAYERS = Entry(
     ),
     settings=LayersSettings,
     kind="plane",
-    structure=layers,
-    words=_words,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
     grows=("layers",),
-    exact=lambda settings, problem, found: exact_layers(layers(settings), problem, found),
 )

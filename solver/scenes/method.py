@@ -23,7 +23,7 @@ from solver.settings import Settings
 
 
 def method_of(settings: Settings) -> Latin:
-    """Give the method that checked settings describe."""
+    """Method that checked settings describe."""
     return Latin(
         direction=_direction(settings),
         linear=_LINEAR[settings.linear_stage](settings),

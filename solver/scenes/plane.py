@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import param
 
@@ -117,7 +117,7 @@ class PlaneSettings(SceneSettings):
 
     @property
     def k_factors(self) -> tuple[float, float]:
-        """Give further factors on k of contacts, along and across them."""
+        """Further factors on k of contacts, along and across them."""
         return self.k_friction_scale, self.k_normal_scale
 
     @property
@@ -160,17 +160,10 @@ class PlaneSettings(SceneSettings):
         """Whether any load path is random."""
         return any(getattr(self, name) == "random" for name in self.paths)
 
-    def stack(self, **others: Any) -> Stack:
-        """Make the bodies.
-
-        Parameters
-        ----------
-        others
-            Attributes of the stack that scenes do not have alike.
-        """
-        own: Any = self  # every scene defines the sizes, where it shows them
+    def stack(self) -> Stack:
+        """Make the bodies, free on all sides and without loads."""
         return Stack(
-            length=own.length,
+            length=self.length,
             height=getattr(self, self.across),
             bodies=self.n_bodies,
             elements=(self.elements, self.elements_up),
@@ -181,10 +174,9 @@ class PlaneSettings(SceneSettings):
             poisson=self.poisson,
             state=self.plane,
             friction=self.friction,
-            friction_law=self.law(self.young / own.length),
+            friction_law=self.law(self.young / self.length),
             instants=self.times(),
             duration=self.duration,
-            **others,
         )
 
     def _check_shape(self) -> None:

@@ -4,111 +4,283 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
+from solver.definitions import SettingError, choice, count, curve, quantity
+from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection
+from solver.discrete.helical_wire import RopeWire
 from solver.discrete.problem import Problem
-from solver.discrete.rope import Rope, RopeWire
+from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
+from solver.loads import PRESETS, PRESSURES
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.rope_settings import RopeSettings
 from solver.scenes.words import acting, counted
 
 
-def rope(settings: RopeSettings) -> Rope:
-    """Make the strand that the settings describe.
+class RopeSettings(SceneSettings):
+    """Settings of the strand; by default 37 wires near a clamp, bent up, down and up again."""
 
-    Wires of a layer pass every fibre, one after the other: under a uniform curvature half a turn of
-    one of them, from the outermost fibre to the innermost, which do not slip, is all there is.
-    """
-    section = settings.section
-    curvature, tension = settings.path("load"), settings.path("tension_load")
-    below, above = section.line_pressures(tension)
-    bounds = settings.friction * (below + above)
-    if settings.tension_load == "steady":
-        bounds = bounds[:, :1]
-    wires = [
-        _wire(settings, layer, number, bounds[layer], curvature, tension)
-        for layer, own in enumerate(section.layers)
-        for number in range(own.wires if settings.is_clamped else 1)
-    ]
-    made = Rope(
-        wires=wires,
-        substructures=settings.substructures,
-        tension=tension,
-        curvature=curvature,
-        is_clamped=settings.is_clamped,
-        section=section,
-        instants=settings.times(),
-        duration=settings.duration,
+    scene = "rope"
+    LOADS: ClassVar = ("curvature",)
+    PEAKS: ClassVar = {"load": "curvature", "tension_load": "tension"}
+    BEHIND: ClassVar = {"right y": "curvature", "right x": "tension"}
+
+    construction = choice(
+        "mooring",
+        list(CONSTRUCTIONS),
+        "mooring: a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire. "
+        "seven-wire: prestressing strand of 15.7 mm. conductor: an overhead conductor of 28 mm, 26 "
+        "aluminium wires on 7 of steel (Drake).",
+        group="Strand",
+        title="Construction",
     )
-    law = settings.law(made.stiffness / made.length**2)
-    return replace(made, friction_law=law)
-
-
-def _wire(
-    settings: RopeSettings,
-    layer: int,
-    number: int,
-    bound: Array,
-    curvature: Array,
-    tension: Array,
-) -> RopeWire:
-    section, helix = settings.section, settings.section.helix(layer, number)
-    own, share = section.layers[layer], np.ones(settings.elements + 1)
-    length = helix.half_pitch
-    if settings.is_clamped:
-        length = settings.length / float(np.cos(helix.lay))
-        share = np.exp(-np.linspace(0.0, settings.length, len(share)) / settings.falls_off())
-    return RopeWire(
-        layer=layer,
-        number=number,
-        helix=helix,
-        diameter=own.diameter,
-        length=length,
-        bound=bound,
-        curvature=np.outer(share, curvature),
-        tension=section.wire_tension(layer, tension),
-        stands_for=1 if settings.is_clamped else own.wires,
+    layers = count(
+        3,
+        (1, MOST_LAYERS),
+        (1, MOST_LAYERS),
+        "Number of layers on the core: 7, 19, 37, 61 or 91 wires.",
+        group="Strand",
+        title="Layers",
+        applies=lambda settings: settings.construction == "mooring",
+    )
+    load = curve(
+        "cycle",
+        PRESETS,
+        "time",
+        "curvature",
+        ("s", "1/m"),
+        "Curvature over time, uniform or at the clamp: a preset, or points (s, 1/m).",
+        group="Load",
+        title="Curvature path",
+    )
+    curvature = quantity(
+        0.1,
+        (-1e3, 1e3),
+        (0.0, 0.5),
+        "Largest curvature that the preset reaches: 1 over the radius to which the strand is bent. "
+        "Sections stay plane, so each wire is stretched and pressed as it goes round.",
+        group="Load",
+        title="Peak curvature",
+        unit="1/m",
+        applies=lambda settings: isinstance(settings.load, str),
+    )
+    tension = quantity(
+        250e3,
+        (0.0, 1e12),
+        (0.0, 1e6),
+        "Tension of the strand, by which wires press on what is below them. About a quarter of "
+        "what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, 30 kN conductor. It is "
+        "bent without untwisting, and what friction adds to a wire's tension presses no harder.",
+        group="Load",
+        title="Tension",
+        unit="N",
+        applies=lambda settings: isinstance(settings.tension_load, str),
+    )
+    tension_load = curve(
+        "steady",
+        PRESSURES,
+        "time",
+        "tension",
+        ("s", "N"),
+        "Tension over time. loosening: it stays for a quarter of the interval, and falls to a "
+        "fifth. tightening: the other way. shaken: it falls to a fifth and comes back, six times. "
+        "Or points (s, N).",
+        group="Load",
+        title="Tension over time",
+    )
+    seed = shared.seed(lambda settings: settings.load == "random")
+    duration = shared.duration()
+    instants = shared.instants(61)
+    bending = choice(
+        "clamp",
+        ["uniform", "clamp"],
+        "uniform: the same curvature all along; wires of a layer are then alike, and one of each "
+        "stands for all. clamp: the curvature falls away from a clamp, and every wire is there.",
+        group="Strand",
+        title="Where it is bent",
+    )
+    fall_off = quantity(
+        0.0,
+        (0.0, 1e4),
+        (0.0, 1.0),
+        "Distance λ from the clamp at which the curvature is exp(-1) of that at the clamp. 0: "
+        "sqrt(E I / T), of the bending stiffness while nothing slips and the largest tension.",
+        group="Strand",
+        title="Fall-off λ",
+        unit="m",
+        applies=lambda settings: settings.bending == "clamp",
+    )
+    length = quantity(
+        0.6,
+        (1e-3, 1e3),
+        (0.1, 5.0),
+        "Length of strand from the clamp on; beyond it nothing slips. Some three times λ.",
+        group="Strand",
+        title="Length L",
+        unit="m",
+        applies=lambda settings: settings.bending == "clamp",
+        logarithmic=True,
+    )
+    friction = shared.friction(
+        "mu of the wires on what they lie on; those beside each other do not rub"
+    )
+    elements = count(
+        60,
+        (2, 20_000),
+        (10, 400),
+        "Number of linear elements of a wire: of its length, or of half a turn where it is bent "
+        "alike all along.",
+        group="Strand",
+        title="Elements per wire",
+    )
+    substructures = count(
+        10,
+        (1, 20_000),
+        (1, 50),
+        "Number of pieces (substructures) that a wire is cut into, all alike.",
+        group="Decomposition",
+        title="Substructures per wire",
     )
 
+    @classmethod
+    def chief(cls) -> tuple[str, ...]:
+        """Settings that it is about: what is bent, how far, how taut, and how rough."""
+        own = "construction", "layers", "bending", "load", "curvature", "tension", "friction"
+        return (*own, "k_scale")
 
-def bent_strand(settings: RopeSettings) -> BentStrand | None:
-    """Solve it without a mesh: bent alike all along, under a tension that stays."""
-    tension = settings.path("tension_load")
-    is_known = not settings.is_clamped and settings.friction_law == "coulomb"
-    if not is_known or np.ptp(tension) or not tension[0] or not settings.friction:
-        return None
-    return BentStrand(settings.section, settings.friction, float(tension[0]))
+    @cached_property
+    def section(self) -> CrossSection:
+        """The strand's cross-section."""
+        return CONSTRUCTIONS[self.construction](self.layers)
 
+    @property
+    def is_clamped(self) -> bool:
+        """Whether the curvature falls away from a clamp."""
+        return bool(self.bending == "clamp")
 
-def _exact(
-    settings: RopeSettings, _problem: Problem, _found: LoopFields | None
-) -> Iterator[ExactCurve]:
-    """Give the moment over the curvature."""
-    strand = bent_strand(settings)
-    if strand is not None:
-        curvature = settings.path("load")
-        yield ExactCurve("loop", curvature, strand.along(curvature))
+    @property
+    def n_wires(self) -> int:
+        """Number of wires whose slip is sought; the core does not slip."""
+        section = self.section
+        return section.wires - 1 if self.is_clamped else len(section.layers)
 
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures in all."""
+        return self.n_wires * int(self.substructures)
 
-def _words(settings: RopeSettings) -> str:
-    bent = acting(settings.path("load"), "bent up", "bent down", "bent up and down")
-    where = "near a clamp" if settings.is_clamped else "alike all along"
-    tension = "" if settings.tension_load == "steady" else "; its tension changes"
-    wires = counted(settings.section.wires)
-    return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all wires."""
+        return self.n_wires * int(self.elements + 1)
 
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the loop is over a displacement: it is over the curvature."""
+        return False
 
-def _coarser(settings: RopeSettings) -> Iterator[Problem]:
-    scene = rope(settings).coarser()
-    while scene is not None:
-        yield scene.discretise()
-        scene = scene.coarser()
+    def check_together(self) -> None:
+        """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
+        super().check_together()
+        shared.refuse_negative(self, "tension_load", "tension", " N")
+        if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
+            raise SettingError(
+                "fall_off",
+                self.fall_off,
+                "a distance above 0, where there is no tension to tell it",
+                "give the fall-off, or a tension",
+            )
+
+    def falls_off(self) -> float:
+        """Distance over which the curvature falls to exp(-1), m."""
+        if self.fall_off:
+            return float(self.fall_off)
+        return float(np.sqrt(self.section.stuck_bending / self.path("tension_load").max()))
+
+    def structure(self) -> Rope:
+        """Make the strand.
+
+        Wires of a layer pass every fibre, one after the other: under a uniform curvature half a
+        turn of one of them, from the outermost fibre to the innermost, which do not slip, is all
+        there is.
+        """
+        curvature, tension = self.path("load"), self.path("tension_load")
+        below, above = self.section.line_pressures(tension)
+        bounds = self.friction * (below + above)
+        if self.tension_load == "steady":
+            bounds = bounds[:, :1]
+        wires = [
+            self._wire(layer, number, bounds[layer], curvature, tension)
+            for layer, own in enumerate(self.section.layers)
+            for number in range(own.wires if self.is_clamped else 1)
+        ]
+        rope = Rope(
+            wires=wires,
+            substructures=self.substructures,
+            tension=tension,
+            curvature=curvature,
+            is_clamped=self.is_clamped,
+            section=self.section,
+            instants=self.times(),
+            duration=self.duration,
+        )
+        return replace(rope, friction_law=self.law(rope.stiffness / rope.length**2))
+
+    def _wire(
+        self, layer: int, number: int, bound: Array, curvature: Array, tension: Array
+    ) -> RopeWire:
+        section, helix = self.section, self.section.helix(layer, number)
+        own, share = section.layers[layer], np.ones(self.elements + 1)
+        length = helix.half_pitch
+        if self.is_clamped:
+            length = self.length / float(np.cos(helix.lay))
+            share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
+        return RopeWire(
+            layer=layer,
+            number=number,
+            helix=helix,
+            diameter=own.diameter,
+            length=length,
+            bound=bound,
+            curvature=np.outer(share, curvature),
+            tension=section.wire_tension(layer, tension),
+            stands_for=1 if self.is_clamped else own.wires,
+        )
+
+    def sentence(self) -> str:
+        """The strand in a sentence."""
+        bent = acting(self.path("load"), "bent up", "bent down", "bent up and down")
+        where = "near a clamp" if self.is_clamped else "alike all along"
+        tension = "" if self.tension_load == "steady" else "; its tension changes"
+        wires = counted(self.section.wires)
+        return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
+
+    def coarser(self) -> Iterator[Rope]:
+        """Yield the same strand, uncut, on ever coarser meshes."""
+        return shared.ever_coarser(self.structure())
+
+    def bent_strand(self) -> BentStrand | None:
+        """Closed form of a strand that is bent alike all along, under a tension that stays."""
+        tension = self.path("tension_load")
+        is_known = not self.is_clamped and self.friction_law == "coulomb"
+        if not is_known or np.ptp(tension) or not tension[0] or not self.friction:
+            return None
+        return BentStrand(self.section, self.friction, float(tension[0]))
+
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Moment over the curvature, where a closed form is known."""
+        strand = self.bent_strand()
+        if strand is not None:
+            curvature = self.path("load")
+            yield ExactCurve("loop", curvature, strand.along(curvature))
 
 
 ROPE = Entry(
@@ -122,10 +294,6 @@ ROPE = Entry(
     ),
     settings=RopeSettings,
     kind="helices",
-    structure=rope,
-    words=_words,
     sizes={**shared.ROD_SIZES, "layers": (1, 2, 3, 4, 5)},
     grows=("layers",),
-    coarser=_coarser,
-    exact=_exact,
 )

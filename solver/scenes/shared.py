@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
 
-import numpy as np
 import param
 
-from solver.arrays import Array
 from solver.definitions import CurveParameter, SettingError, count, curve, quantity
+from solver.discrete.rods import Rods
+from solver.discrete.rope import Rope
 from solver.loads import PRESSURES
+from solver.settings import Settings
+
+S = TypeVar("S", Rods, Rope)
 
 ROD_SIZES = {
     "elements": (50, 100, 200, 400, 800),
@@ -109,34 +112,31 @@ def pressure_load() -> CurveParameter:
     )
 
 
-def check_pressure(settings: Any) -> None:
-    """Refuse a pressure that pulls.
+def refuse_negative(settings: Settings, name: str, what: str, unit: str = "") -> None:
+    """Refuse a table with values below zero.
+
+    Parameters
+    ----------
+    settings, name
+        Whose, and which of its curves.
+    what, unit
+        A value in words, and a blank and its unit.
 
     Raises
     ------
     SettingError
-        For a path that goes below zero.
+        For a table that goes below zero.
     """
-    path = settings.pressure_load
-    if not isinstance(path, str) and min(value for _, value in path) < 0.0:
-        raise SettingError(
-            "pressure_load", path, "pressures of at least 0 N/m", "raise the negative pressure"
-        )
+    table = getattr(settings, name)
+    if not isinstance(table, str) and min(value for _, value in table) < 0.0:
+        allowed = f"{what}s of at least 0{unit}"
+        raise SettingError(name, table, allowed, f"raise the negative {what}")
 
 
-def bound_of(settings: Any, density: Array) -> Array:
-    """Give the friction bound, shape (n_nodes,), or (n_nodes, n_instants) where it changes, N/m.
-
-    Parameters
-    ----------
-    settings
-        Of rods under a pressure.
-    density
-        Friction bound over that pressure at the nodes, shape (n_nodes,).
-    """
-    if settings.pressure_load == "steady":
-        return np.asarray(density * settings.pressure)
-    return np.outer(density, settings.path("pressure_load"))
+def ever_coarser(structure: S | None) -> Iterator[S]:
+    """Yield the same structure, uncut, on ever coarser meshes, the finest first."""
+    while structure is not None and (structure := structure.coarser()) is not None:
+        yield structure
 
 
 def size(

@@ -105,7 +105,7 @@ def _shapes(side: str, component: str) -> dict[str, Parameter]:
 class SideSettings(PlaneSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
-    def _candidates(self) -> Mapping[str, str]:
+    def _behind(self) -> Mapping[str, str]:
         found = {}
         for side in LOADED_SIDES:
             axes = "yx" if side == "top" else "xy"
@@ -118,7 +118,7 @@ class SideSettings(PlaneSettings):
         return PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
 
     def side(self, side: str) -> Side:
-        """Give what is given along a side, for x and y."""
+        """What is given along a side, for x and y."""
         normal, tangential = (self._given(side, component) for component in COMPONENTS)
         return Side(tangential, normal) if side == "top" else Side(normal, tangential)
 
@@ -140,7 +140,7 @@ class SideSettings(PlaneSettings):
         return "s", "m" if self._prescribes(side, component) else "Pa"
 
     def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
+        """Largest value that a preset of a path over time reaches."""
         side, component, _ = path.split("_")
         kind = "displacement" if self._prescribes(side, component) else "traction"
         return float(getattr(self, f"{side}_{component}_{kind}"))

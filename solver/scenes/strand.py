@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import ClassVar
 
 import numpy as np
@@ -13,11 +13,13 @@ from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.cut_rods import COARSEST
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods, neighbours
+from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.exact_rods import exact_strand
+from solver.scenes.exact import exact_strand
 from solver.scenes.words import acting, counted, is_steel
 
 
@@ -29,6 +31,8 @@ class StrandSettings(SceneSettings):
 
     scene = "strand"
     LOADS: ClassVar = ("peak",)
+    PEAKS: ClassVar = {"load": "peak", "pressure_load": "pressure"}
+    BEHIND: ClassVar = {"right x": "peak", "top y": "pressure", "break": "break_position"}
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
     SHAPES: ClassVar = PULLS
 
@@ -132,30 +136,10 @@ class StrandSettings(SceneSettings):
         """Number of nodes of all wires."""
         return self.wires * (self.elements + 1)
 
-    def _candidates(self) -> Mapping[str, str]:
-        return {"right x": "peak", "top y": "pressure", "break": "break_position"}
-
-    def size_of(self, path: str) -> float:
-        """Give the largest value that a preset of a path over time reaches."""
-        return float(self.pressure if path == "pressure_load" else self.peak)
-
-    def coarser(self) -> StrandSettings | None:
-        """Give the same strand uncut with half the elements.
-
-        None if its break, at the nearest node, left less than the tension to friction.
-        """
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        try:
-            return self.replace(elements=elements, substructures=1)
-        except SettingError:
-            return None
-
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
-        shared.check_pressure(self)
+        shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
         tension = self.path("load")
         if tension.min() < 0.0:
             raise SettingError(
@@ -164,76 +148,90 @@ class StrandSettings(SceneSettings):
                 "tensions of at least 0 N",
                 "wires cannot be pushed: raise the negative values",
             )
-        _check_equilibrium(self, tension)
+        self._check_equilibrium(tension)
 
+    def structure(self) -> Rods:
+        """Make the strand.
 
-def strand(settings: StrandSettings) -> Rods:
-    """Make the strand that the settings describe.
-
-    The wires are at rest and free of stress before the first instant.
-    """
-    stiffness = settings.young * settings.section
-    return Rods(
-        length=settings.length,
-        stiffness=stiffness,
-        elements=settings.elements,
-        substructures=settings.substructures,
-        bound=shared.bound_of(settings, np.full(settings.elements + 1, settings.friction)),
-        load=settings.path("load"),
-        instants=settings.times(),
-        duration=settings.duration,
-        pressure=settings.path("pressure_load"),
-        wires=settings.wires,
-        broken=(settings.broken, _break_node(settings)) if settings.broken else None,
-        rigid_grip=settings.grip == "displacement",
-        friction_law=settings.law(stiffness / settings.length**2),
-    )
-
-
-def _break_node(settings: StrandSettings) -> int:
-    node = round(settings.break_position * settings.elements)
-    return min(max(node, 1), settings.elements - 1)
-
-
-def _check_equilibrium(settings: StrandSettings, tension: Array) -> None:
-    """Refuse forces that pull the end of the broken wire out: friction alone holds it."""
-    if settings.grip != "force" or not settings.broken:
-        return
-    share = 1.0 - _break_node(settings) / settings.elements
-    sides = neighbours(settings.broken, settings.wires)
-    most = sides * settings.friction * share * settings.length * settings.path("pressure_load")
-    worst = int(np.argmax(tension - most))
-    largest, capacity = float(tension[worst]), float(most[worst])
-    if largest > capacity or largest == capacity > 0.0:
-        name = "peak" if isinstance(settings.load, str) else "load"
-        raise SettingError(
-            name,
-            getattr(settings, name),
-            f"tensions below {plain(capacity)} N, all that friction can hold of the broken wire "
-            "beyond its break"
-            if capacity > 0.0
-            else "no tension where no friction can hold the broken wire beyond its break",
-            "pull less, raise friction or pressure, move the break to the left, or take the grip "
-            "of given displacement",
+        The wires are at rest and free of stress before the first instant.
+        """
+        bound = np.full(self.elements + 1, self.friction * self.pressure)
+        if self.pressure_load != "steady":
+            pressure = self.path("pressure_load")
+            bound = np.tile(self.friction * pressure, (self.elements + 1, 1))
+        stiffness = self.young * self.section
+        return Rods(
+            length=self.length,
+            stiffness=stiffness,
+            elements=self.elements,
+            substructures=self.substructures,
+            bound=bound,
+            load=self.path("load"),
+            instants=self.times(),
+            duration=self.duration,
+            pressure=self.path("pressure_load"),
+            wires=self.wires,
+            broken=(self.broken, self._break_node()) if self.broken else None,
+            rigid_grip=self.grip == "displacement",
+            friction_law=self.law(stiffness / self.length**2),
         )
 
+    def coarser(self) -> Iterator[Rods]:
+        """Yield the same strand, uncut, on ever coarser meshes.
 
-def _words(settings: StrandSettings) -> str:
-    kind = "steel" if is_steel(settings.young) else "elastic"
-    wires = f"{counted(settings.wires).capitalize()} {kind} wires"
-    broken = f", number {settings.broken} broken," if settings.broken else ""
-    pulled = acting(settings.path("load"), "pulled", "pushed")
-    grip = " by one grip" if settings.grip == "displacement" else ""
-    if settings.pressure_load != "steady":
-        grip += "; what presses them together changes"
-    return f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
+        Until its break, at the nearest node, left less than the tension to friction.
+        """
+        coarse = self
+        while (elements := coarse.elements // 2) >= COARSEST:
+            try:
+                coarse = coarse.replace(elements=elements, substructures=1)
+            except SettingError:
+                return
+            yield coarse.structure()
 
+    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+        """Forces of the broken wire and of each neighbour, where they are known."""
+        return exact_strand(self.structure())
 
-def _coarser(settings: StrandSettings) -> Iterator[Problem]:
-    coarse = settings.coarser()
-    while coarse is not None:
-        yield strand(coarse).discretise()
-        coarse = coarse.coarser()
+    def sentence(self) -> str:
+        """The strand in a sentence."""
+        kind = "steel" if is_steel(self.young) else "elastic"
+        wires = f"{counted(self.wires).capitalize()} {kind} wires"
+        broken = f", number {self.broken} broken," if self.broken else ""
+        pulled = acting(self.path("load"), "pulled", "pushed")
+        grip = " by one grip" if self.grip == "displacement" else ""
+        if self.pressure_load != "steady":
+            grip += "; what presses them together changes"
+        return f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
+
+    def _break_node(self) -> int:
+        node = round(self.break_position * self.elements)
+        return min(max(node, 1), self.elements - 1)
+
+    def _check_equilibrium(self, tension: Array) -> None:
+        """Refuse forces that pull the end of the broken wire out: friction alone holds it."""
+        if self.grip != "force" or not self.broken:
+            return
+        share = 1.0 - self._break_node() / self.elements
+        sides = neighbours(self.broken, self.wires)
+        most = sides * self.friction * share * self.length * self.path("pressure_load")
+        worst = int(np.argmax(tension - most))
+        largest, capacity = float(tension[worst]), float(most[worst])
+        if largest > capacity or largest == capacity > 0.0:
+            name = self.peak_or_table("load")
+            allowed = "no tension where no friction can hold the broken wire beyond its break"
+            if capacity > 0.0:
+                allowed = (
+                    f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
+                    "wire beyond its break"
+                )
+            raise SettingError(
+                name,
+                getattr(self, name),
+                allowed,
+                "pull less, raise friction or pressure, move the break to the left, or take the "
+                "grip of given displacement",
+            )
 
 
 STRAND = Entry(
@@ -246,10 +244,6 @@ STRAND = Entry(
     ),
     settings=StrandSettings,
     kind="wires",
-    structure=strand,
-    words=_words,
     sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     grows=("wires",),
-    coarser=_coarser,
-    exact=lambda settings, problem, found: exact_strand(strand(settings)),
 )

@@ -38,7 +38,7 @@ def counted(number: int) -> str:
 def acting(
     path: Array, forward: str, backward: str, both: str = TO_AND_FRO, back: str = LET_GO
 ) -> str:
-    """Say what is done over time by a load: forward where it is positive, backward, or both.
+    """What is done over time by a load: forward where it is positive, backward, or both.
 
     It is said in other words that it is done both ways, and that it comes back.
     """
@@ -63,5 +63,5 @@ def listed(parts: Sequence[str]) -> str:
 
 
 def is_steel(young: float) -> bool:
-    """Tell whether something is about as stiff as steel."""
+    """Whether something is about as stiff as steel."""
     return 190e9 <= young <= 220e9

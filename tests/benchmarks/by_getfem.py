@@ -19,8 +19,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.elements import elastic_matrix
 from solver.reference.choice import reference_of
-from solver.scenes import CATALOGUE, discretise
-from solver.scenes.block import block
+from solver.scenes import CATALOGUE, discretise, structure_of
 
 PROGRAM = Path(__file__).with_name("getfem_block.py")
 VERSION = "import getfem; print(getfem.getfem_env('version'))"
@@ -60,7 +59,7 @@ def interpreter() -> str | None:
 
 def by_getfem(settings: Any, python: str) -> BlockFields:
     """Have it solve a block of bilinear elements on a support, moved at its top alone."""
-    body = block(settings)
+    body = structure_of(settings)
     assert body.support is not None
     top = body.sides["top"]
     asked = {

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from solver.discrete.cross_section import mooring
 from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
 from solver.reference.closed_forms.compliant_bar import cycled_compliant_bar, pulled_compliant_bar
 from solver.scenes import structure_of
-from solver.scenes.constructions import mooring
 from solver.study.proof.case import Answer, KnownCase, KnownNumber
 
 OWN = "solver/README.md, 6: equilibrium of the part that slips"

@@ -21,7 +21,7 @@ from solver.latin import judged
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.running.machine import machine
-from solver.scenes import discretise, entry_of
+from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.speed.timed import by_increments, nothing_collected
@@ -150,7 +150,7 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
 
 def forms_of(settings: Settings) -> dict[str, Settings]:
     """Settings of every form of LATIN that a scene has, by name; nested where it has a start so."""
-    is_nested = entry_of(settings).coarser is not None
+    is_nested = settings.applies("start")
     auto = {"search_direction": "auto", **({"start": "nested"} if is_nested else {})}
     anderson = {**auto, "acceleration": "anderson"}
     name = "LATIN auto k, nested" if is_nested else "LATIN auto k"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from solver.scenes.constructions import CONSTRUCTIONS
+from solver.discrete.cross_section import CONSTRUCTIONS
 from solver.scenes.sides import AT_REST, COMPONENTS, LOADED_SIDES, PRESCRIBED
 
 SMALLEST, LARGEST = 0.03, 10.0

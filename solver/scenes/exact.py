@@ -1,4 +1,4 @@
-"""Closed forms of bodies in the plane, as curves for their plots."""
+"""Closed forms of rods and of bodies in the plane, as curves for their plots."""
 
 from __future__ import annotations
 
@@ -9,12 +9,18 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import rigid_slide, wrench
+from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
 from solver.discrete.structure import LoopFields
-from solver.laws import FrictionLaw
+from solver.laws import FrictionLaw, Strength
+from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.closed_forms.cantilever import cantilever
+from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
+from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.reference.closed_forms.masing import masing
+from solver.reference.closed_forms.pulled_bar import closed_form
 
 SMALL = 0.12
 """Largest half-width of a contact, over the length and the height of its body, that is still that
@@ -27,10 +33,60 @@ STEADY = 0.01
 """Change of the pressing force, as a share, that is none."""
 
 
+def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
+    """Friction along the bar, and the loop of its end."""
+    closed, law = closed_form(bar), bar.friction_law
+    if closed is not None:
+        friction = problem.friction
+        density = closed.friction_force / friction.by_point(friction.weights)[:, None]
+        yield ExactCurve("friction", bar.nodes, density)
+        yield ExactCurve("loop", closed.end_displacement, bar.load)
+    elif _is_even(bar) and law == FrictionLaw(stiffness=law.stiffness):
+        given = bar.length, bar.stiffness, float(bar.bound[0]), law.stiffness
+        grown = masing(bar.load, lambda force: pulled_compliant_bar(force, *given)[0])
+        yield ExactCurve("loop", grown, bar.load)
+    elif _is_even(bar) and law.strength and law == FrictionLaw(strength=law.strength):
+        yield from _grown(bar, law.strength)
+
+
+def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
+    """Loop under a load that grows, as long as friction changes at every slipping point.
+
+    Where friction softens that ends where the load would be more than the bar can take.
+    """
+    (_, slip_length, *_), (_, ratio, *_) = strength.slips, strength.factors
+    bound, slope = float(bar.bound[0]), abs(ratio - 1.0) / slip_length
+    if not slope or np.any(np.diff(bar.load, prepend=0.0) < 0.0):
+        return
+    gamma = np.sqrt(bound * slope / bar.stiffness)
+    share = float(bar.load[-1]) * gamma / bound
+    zone = np.arcsinh(share) if ratio > 1.0 else np.arcsin(min(share, 1.0))
+    if (share >= 1.0 and ratio < 1.0) or zone > gamma * bar.length:
+        return
+    given = bar.stiffness, bound, ratio, slip_length
+    end = np.array([pulled_changing_bar(force, *given) for force in bar.load.tolist()])
+    if end[-1] <= slip_length:
+        yield ExactCurve("loop", end, bar.load)
+
+
+def exact_strand(strand: Rods) -> Iterator[ExactCurve]:
+    """Forces of the broken wire and of each neighbour."""
+    exact = broken_wire(strand)
+    if exact is not None:
+        for force in (exact.force, exact.neighbour_force):
+            yield ExactCurve("axial force", strand.nodes, force)
+
+
+def _is_even(bar: Rods) -> bool:
+    """Whether nothing but a force at its end moves the bar, which is the same throughout."""
+    absent = bar.support, bar.body_force, bar.section
+    return all(one is None for one in absent) and bar.bound.ndim == 1 and not np.ptp(bar.bound)
+
+
 def exact_parabola(
     body: Stack, radius: float, problem: Problem, found: LoopFields
 ) -> Iterator[ExactCurve]:
-    """Give pressure and friction of Hertz, Cattaneo and Mindlin, for the forces that are found."""
+    """Pressure and friction of Hertz, Cattaneo and Mindlin, for the forces that are found."""
     law, contact = problem.rubbing["support"], found.contact("support")
     assert contact.normal_force is not None
     assert body.support is not None
@@ -64,7 +120,7 @@ def exact_parabola(
 
 
 def _begins(shear: Array, total: Array, friction: float) -> int | None:
-    """Give the last instant before any shear, if a steady force presses from then on."""
+    """Last instant before any shear, if a steady force presses from then on."""
     acts = np.flatnonzero(np.abs(shear) > STEADY * friction * total.max())
     if not friction or not len(acts):
         return None
@@ -73,7 +129,7 @@ def _begins(shear: Array, total: Array, friction: float) -> int | None:
 
 
 def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
-    """Give the shear force of a block that a spring pulls back, where it slides like a rigid one.
+    """Shear force of a block that a spring pulls back, where it slides like a rigid one.
 
     It does where it slides much farther than it is deformed, and no side holds it.
     """
@@ -90,7 +146,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
 
 
 def exact_slope(body: Stack) -> Iterator[ExactCurve]:
-    """Give the force of the spring over the angle: what friction leaves to it, up and down."""
+    """Force of the spring over the angle: what friction leaves to it, up and down."""
     assert body.tilt is not None
     assert body.support is not None
     if body.body_force is None or body.friction_law != FrictionLaw():
@@ -107,7 +163,7 @@ def exact_slope(body: Stack) -> Iterator[ExactCurve]:
 
 
 def exact_layers(body: Stack, problem: Problem, found: LoopFields | None) -> Iterator[ExactCurve]:
-    """Give the force that bends beams, apart without friction, or as one where nothing slips."""
+    """Force that bends beams, apart without friction, or as one where nothing slips."""
     given = body.sides["right"].y
     if body.state != "stress" or (body.stiffness is not None and np.ptp(body.stiffness)):
         return

@@ -1,0 +1,114 @@
+"""What lies inside condensed substructures of bodies in the plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.discrete.plane_parts import Part
+
+
+class Inside:
+    """What lies inside condensed substructures, found when somebody looks.
+
+    Parameters
+    ----------
+    parts
+        All substructures, in order.
+    positions
+        Coordinates of all nodes, shape (n_nodes, 2), scaled.
+    skeleton
+        Degrees of freedom of the problem among those of all nodes.
+    length, young
+        One scaled unit of length, m, and of stress, Pa.
+    n_instants
+        Number of instants.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates of all nodes, shape (n_nodes, 2), m.
+    elements
+        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
+        as its four quarters.
+    bodies, parts
+        Body and substructure of every element, shape (n_elements,).
+    components
+        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
+    """
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        positions: Array,
+        skeleton: Indices,
+        *,
+        length: float,
+        young: float,
+        n_instants: int,
+    ) -> None:
+        self._parts, self._length, self._young = parts, length, young
+        self._size = len(skeleton), n_instants
+        self._dofs = [np.searchsorted(skeleton, part.dofs) for part in parts]
+        self.nodes: Array = positions * length
+        corners = [part.nodes.ravel()[part.rectangle.cells] for part in parts]
+        self.elements: Indices = np.concatenate(corners)
+        sizes = [len(own) for own in corners]
+        self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
+        self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
+        self.components: Indices = skeleton % 2
+
+    def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
+        """Displacement of all nodes, shape (n_nodes, 2, n), m.
+
+        Parameters
+        ----------
+        skeleton
+            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
+        instants
+            Which of them.
+        """
+        chosen = skeleton[:, instants] / self._length
+        whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
+        for part, dofs in zip(self._parts, self._dofs, strict=True):
+            force = None if part.force is None else part.force[:, instants]
+            whole[part.nodes.ravel()] = part.condensed.recover(chosen[dofs], force)
+        return whole * self._length
+
+    def adjoint(self, weights: Array) -> tuple[Array, Array]:
+        """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
+
+        Parameters
+        ----------
+        weights
+            Shape (n_nodes, 2).
+
+        Returns
+        -------
+        Weights of the problem's degrees of freedom, shape (n_dofs,), and what loads inside add,
+        shape (n_instants,), m.
+        """
+        total, constant = np.zeros(self._size[0]), np.zeros(self._size[1])
+        # Substructures share the nodes on their cuts.
+        counts = np.bincount(np.concatenate([part.nodes.ravel() for part in self._parts]))
+        shares = weights / counts[:, None]
+        for part, dofs in zip(self._parts, self._dofs, strict=True):
+            own = shares[part.nodes.ravel()].reshape(-1, 1)
+            if own.any():
+                np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
+                if part.force is not None:
+                    still = np.zeros((len(dofs), self._size[1]))
+                    inner = part.condensed.recover(still, part.force).reshape(len(own), -1)
+                    constant += own[:, 0] @ inner
+        return total, constant * self._length
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
+
+        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
+        """
+        scaled = displacement / self._length
+        parts = [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
+        return self._young * np.concatenate(parts)
