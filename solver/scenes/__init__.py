@@ -17,6 +17,7 @@ from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
 from solver.scenes.rope import ROPE
 from solver.scenes.strand import STRAND
+from solver.scenes.wall import WALL
 from solver.settings import Settings
 
 CATALOGUE: dict[str, Entry] = {
@@ -27,6 +28,7 @@ CATALOGUE: dict[str, Entry] = {
     "layers": LAYERS,
     "rope": ROPE,
     "strand": STRAND,
+    "wall": WALL,
 }
 
 
