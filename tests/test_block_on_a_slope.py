@@ -118,4 +118,4 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
     np.testing.assert_allclose(force[:3], overlap / spring.softness[:, None], atol=1e-12)
     assert not force[3:].any()
-    assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0) < 1e-10)
+    assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0, 1.0) < 1e-10)

@@ -175,7 +175,7 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
     assert np.all(np.abs(friction) <= bound + 1e-9)
     slips = np.abs(slip) > 1e-8
     np.testing.assert_allclose(friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-7)
-    assert law.behaviour(moved, force, 1e-14).violation(1.0).max() < 1e-6
+    assert law.behaviour(moved, force, 1e-14).violation(1.0, 1.0).max() < 1e-6
     if softness is not None:
         spring = (slider - law.tangent.jump(moved)) / along.softness[:, None]
         np.testing.assert_allclose(friction, spring, atol=1e-9)

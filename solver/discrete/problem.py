@@ -11,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
+from solver.discrete.contact_groups import ContactGroup, grouped
 from solver.discrete.inside import Inside
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, RowValues
@@ -120,8 +122,21 @@ class Problem:
         """All interfaces, those of one kind that may be treated as one joined: no macro bases."""
         kinds: dict[type[Interface], list[Interface]] = {}
         for law in self.interfaces.values():
-            kinds.setdefault(type(law), []).append(law)
-        return [law for kind, laws in kinds.items() for law in kind.together(laws)]
+            if not isinstance(law, Contact):
+                kinds.setdefault(type(law), []).append(law)
+        others = [law for kind, laws in kinds.items() for law in kind.together(laws)]
+        return [*(group.law for group in self.contact_groups), *others]
+
+    @cached_property
+    def contact_groups(self) -> list[ContactGroup]:
+        """Interfaces with friction, those of one law as one."""
+        return grouped(self.rubbing.values())
+
+    @cached_property
+    def contact_points(self) -> dict[str, slice]:
+        """Where the points of each interface stand among those of all, by name."""
+        ends = np.cumsum([0, *(len(law.positions) for law in self.rubbing.values())]).tolist()
+        return {name: slice(*span) for name, span in zip(self.rubbing, pairwise(ends), strict=True)}
 
     @cached_property
     def given_forces(self) -> list[RowValues]:

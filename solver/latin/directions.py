@@ -152,8 +152,8 @@ class Auto(SearchDirection):
         if not self.is_due(progress):
             return progress
         force = progress.k[:, None] * (displacement - incoming)
-        between = (law for law in problem.rubbing.values() if not law.is_on_support)
-        slips = any(bool((np.abs(law.status(displacement, force)) == 1).any()) for law in between)
+        between = (group for group in problem.contact_groups if not group.law.is_on_support)
+        slips = any(np.any(np.abs(group.status(displacement, force)) == 1) for group in between)
         return UpdateProgress("returned", progress.k) if slips else progress
 
     def update(
@@ -213,12 +213,15 @@ class FromStatus:
             return replace(progress, count=progress.count + 1)
         if progress.phase != "first":
             return progress
-        laws, force = problem.rubbing.values(), None
-        if any(law.tangential.softness is not None for law in laws):
+        groups, force = problem.contact_groups, None
+        if any(group.law.tangential.softness is not None for group in groups):
             # A point that gives way moves while it sticks: its force tells whether it slips.
             force = progress.k[:, None] * (displacement - incoming)
         # Creep counts as slip: what still changes has not settled.
-        status = np.concatenate([law.status(displacement, force) for law in laws])
+        n_points = sum(len(group.points) for group in groups)
+        status = np.empty((n_points, displacement.shape[1]), dtype=np.int8)
+        for group in groups:
+            status[group.points] = group.status(displacement, force)
         before = progress.status
         is_calm = before is not None and float(np.mean(status != before)) <= SETTLED
         return replace(progress, status=status, count=progress.count + 1 if is_calm else 0)

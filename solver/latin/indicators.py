@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
+from solver.discrete.contact_groups import ContactGroup
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
+from solver.laws.contact import Behaviour
 from solver.laws.interface import beyond, squared
 
 
@@ -59,18 +63,31 @@ def behaviour_indicator(iterate: Iterate) -> float:
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
     """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     noise = _rounding(displacement, force)
-    behaviours = [law.behaviour(displacement, force, noise) for law in problem.rubbing.values()]
+    groups = problem.contact_groups
+    behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]
     energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
         float(one.dissipated.sum()) for one in behaviours
     )
     allowance = sum(float(one.bound.sum()) for one in behaviours) or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
-    worst = max(float(one.violation(mean_slip).sum()) for one in behaviours)
+    worst = max(map(partial(_worst, mean_slip=mean_slip), groups, behaviours))
     # Against the mean energy per interface, so that many that hold do not hide one that does not.
-    total = ratio(len(behaviours) * worst, energy) + _gap_of_bonds(
+    total = ratio(len(problem.rubbing) * worst, energy) + _gap_of_bonds(
         problem, displacement, force, noise
     )
     return total / _share_of_friction(problem, force)
+
+
+def _worst(group: ContactGroup, behaviour: Behaviour, mean_slip: float) -> float:
+    """Violation of the law at that interface of a group where it is largest."""
+    mean_force: Array | float = 0.0
+    if behaviour.pressing is not None:
+        pressed = np.maximum(behaviour.pressing, 0.0).mean(axis=1)
+        pairs = group.interfaces[group.law.points]
+        means = group.sums(pressed) / group.sums(np.ones_like(pressed))
+        mean_force = means[pairs, None]
+    violation = behaviour.violation(mean_slip, mean_force)
+    return float(group.sums(violation.sum(axis=1)).max())
 
 
 def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:
@@ -100,7 +117,7 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     contact carries, unless that is a thousandth or more.
     """
     largest = float(np.abs(force).max())
-    laws = problem.rubbing.values()
+    laws = [group.law for group in problem.contact_groups]
     carried = max(law.carried(force) for law in laws)
     capacity = max(sum(law.capacity(problem.is_held) for law in laws), SMALL_CONTACT * carried)
     return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
-from solver.laws import Contact
 from solver.reduction.basis import Modes, Reduction
 
 CREEP = 1e-2
@@ -78,15 +77,6 @@ class Checkpoint:
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
     course: UpdateProgress | None = None
-
-
-class Stages(NamedTuple):
-    """Displacements and forces of the local and of the linear stage, (n_rows, n_instants) each."""
-
-    local_displacement: Array
-    local_force: Array
-    displacement: Array
-    force: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,38 +209,25 @@ class Iterate:
 
     def contact(self, name: str) -> ContactFields:
         """One interface with friction: forces of the linear stage, status of the local one."""
-        law = self.problem.rubbing[name]
-        return contact_fields(
-            self.problem,
-            name,
-            self.contact_force,
-            self.boundary_displacement,
-            self.status_at(law),
-        )
+        status = self.status[self.problem.contact_points[name]]
+        moved = self._moved_by_rows
+        return contact_fields(self.problem, name, self.contact_force, moved, status)
+
+    @cached_property
+    def _moved_by_rows(self) -> Array:
+        return self.boundary_displacement
 
     @cached_property
     def status(self) -> NDArray[np.int8]:
-        """Contact status of the local stage, shape (n_points, n_instants), as in `Contact.status`.
+        """Contact status of the local stage, shape (n_points, n_instants).
 
-        Points of all interfaces with friction, one interface after the other.
+        -1 is slip backward, 0 stick, +1 slip forward, `OPEN` without contact. Points of all
+        interfaces with friction, one interface after the other.
         """
-        stages = self.stages()
-        laws = self.problem.rubbing.values()
-        return np.concatenate([self.status_at(law, stages=stages) for law in laws])
+        return self.status_with(np.full(len(self.problem.rubbing), CREEP))
 
-    def stages(self) -> Stages:
-        """What a status is read from, for whoever reads it of one interface after another."""
-        return Stages(
-            self.local_displacement,
-            self.boundary_local_force,
-            self.boundary_displacement,
-            self.boundary_force,
-        )
-
-    def status_at(
-        self, law: Contact, creep: float = CREEP, stages: Stages | None = None
-    ) -> NDArray[np.int8]:
-        """Contact status at one interface, (n_points, n_instants).
+    def status_with(self, creep: Array) -> NDArray[np.int8]:
+        """Contact status, as `status`, with the `creep` of each interface, (n_interfaces,).
 
         A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
         no more than both stages still differ by (measured). So what counts as slip is more than
@@ -259,15 +236,21 @@ class Iterate:
         Bar of 50 elements at its end, with the paper's options: all statuses are right; with
         rounding alone as the limit 23.5 % are wrong.
         """
-        moved, force, *linear = self.stages() if stages is None else stages
-        slip = law.slip(moved, force)
-        apart = np.abs(slip - law.slip(*linear))
-        far = np.abs(slip)
-        if law.normal is not None:
-            touches = law.by_point(force[law.normal.component.above]) > 0.0
-            far, apart = far[touches], apart[touches]
-        still = min(apart.max(initial=0.0), creep * far.max(initial=0.0))
-        return law.status_of(slip, moved, force, float(still))
+        moved, force = self.local_displacement, self.boundary_local_force
+        linear = self.boundary_displacement, self.boundary_force
+        places = self.problem.contact_points.values()
+        n_points = max(place.stop for place in places)
+        status = np.empty((n_points, self.problem.n_instants), dtype=np.int8)
+        for group in self.problem.contact_groups:
+            slip = group.slip(moved, force)
+            apart, far, normal = np.abs(slip - group.slip(*linear)), np.abs(slip), group.law.normal
+            if normal is not None:
+                touches = group.law.by_point(force[normal.component.above]) > 0.0
+                far, apart = np.where(touches, far, 0.0), np.where(touches, apart, 0.0)
+            still = creep[group.numbers] * group.largest(far)
+            still = np.minimum(still, group.largest(apart))
+            status[group.points] = group.status(moved, force, slip=slip, still=still)
+        return status
 
 
 def read_only(field: Array) -> Array:

@@ -150,12 +150,13 @@ def states_of(iterate: Iterate) -> States:
     Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants): -1, 0, +1 of tangential
     components; of normal ones 0 where they are closed; `OPEN` of both where they are not.
     """
+    problem = iterate.problem
+    sizes = np.array([len(law.positions) for law in problem.rubbing.values()])
+    status = iterate.status_with(np.minimum(STILL, FRONT / sizes**2))
     states: list[States] = []
-    stages = iterate.stages()
-    for law in iterate.problem.rubbing.values():
-        creep = min(STILL, FRONT / len(law.positions) ** 2)
-        status = iterate.status_at(law, creep, stages)
+    for name, law in problem.rubbing.items():
+        own = status[problem.contact_points[name]]
         if law.normal is not None:
-            states.append(np.where(status == OPEN, OPEN, 0).astype(np.int8))
-        states.append(status)
+            states.append(np.where(own == OPEN, OPEN, 0).astype(np.int8))
+        states.append(own)
     return np.concatenate(states)

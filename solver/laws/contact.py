@@ -7,7 +7,7 @@ the jump is that of the body above over what is below.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
@@ -18,7 +18,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.laws.around import Around, Rod
-from solver.laws.friction import Friction, Strength
+from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
     Gaps,
@@ -30,8 +30,6 @@ from solver.laws.interface import (
 )
 from solver.laws.unilateral import ContactRule, Unilateral
 
-NO_SLIP = 1e-9
-"""Slip, as a share of the largest displacement, up to which a point counts as stuck."""
 OPEN = 2
 """Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
 
@@ -63,7 +61,7 @@ class Behaviour:
         """What full sliding along the way would dissipate."""
         return self.bound * np.abs(self.slip)
 
-    def violation(self, mean_slip: float) -> Array:
+    def violation(self, mean_slip: float, mean_force: Array | float) -> Array:
         """Violation of every pair and instant, an energy, scaled.
 
         With q|v| + F v, where F is cut to |F| <= q: it is nowhere negative and zero exactly where
@@ -76,7 +74,7 @@ class Behaviour:
         if self.pressing is not None and self.opening is not None:
             pressed, opened = np.maximum(self.pressing, 0.0), np.maximum(self.opening, 0.0)
             found += pressed * opened + (pressed - self.pressing) * mean_slip
-            found += pressed.mean() * (opened - self.opening)
+            found += mean_force * (opened - self.opening)
         return np.maximum(found, 0.0)
 
 
@@ -156,25 +154,24 @@ class Contact(Interface):
         """Law of some instants alone."""
         return replace(self, tangential=self.tangential.during(some))
 
-    @classmethod
-    def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join all that may be treated as one, without macro bases; a lone one stays."""
-        alike: dict[tuple[Strength | None, bool, bool, bool], list[Self]] = {}
-        for law in laws:
-            springs = law.normal is not None and law.normal.softness is not None
-            kind = law.tangential.strength, law.is_on_support, law.opens, springs
-            alike.setdefault(kind, []).append(law)
-        return [own[0] if len(own) == 1 else cls._joined(own) for own in alike.values()]
+    @property
+    def kind(self) -> Hashable:
+        """What interfaces have alike that may be treated as one."""
+        springs = self.normal is not None and self.normal.softness is not None
+        return self.tangential.strength, self.is_on_support, self.opens, springs
 
     @classmethod
-    def _joined(cls, laws: Sequence[Self]) -> Self:
+    def concatenated(cls, laws: Sequence[Self]) -> Self:
+        """Interfaces of one kind put one after the other, without macro bases."""
         normals = [law.normal for law in laws if law.normal is not None]
+        firsts = np.cumsum([0, *(len(law.positions) for law in laws[:-1])])
+        points = [first + law.points for first, law in zip(firsts, laws, strict=True)]
         return replace(
             laws[0],
-            tangential=Friction.joined([law.tangential for law in laws]),
-            normal=Unilateral.joined(normals) if normals else None,
-            points=np.arange(sum(len(law.points) for law in laws)),
-            positions=np.concatenate([law.positions[law.points] for law in laws]),
+            tangential=Friction.concatenated([law.tangential for law in laws]),
+            normal=Unilateral.concatenated(normals) if normals else None,
+            points=np.concatenate(points),
+            positions=np.concatenate([law.positions for law in laws]),
             weights=np.concatenate([law.weights for law in laws]),
             macro=None,
         )
@@ -270,49 +267,6 @@ class Contact(Interface):
         """Give the largest force on a pair where it may open, of that of all rows."""
         rows = [component.above for component in self.components if self.opens]
         return max((float(np.abs(force[own]).max()) for own in rows), default=0.0)
-
-    def status(
-        self, displacement: Array, force: Array | None = None, still: float = 0.0
-    ) -> NDArray[np.int8]:
-        """Give the contact status of a local stage, shape (n_points, n_instants).
-
-        The law repeats the position of a stuck point bit by bit, or up to rounding where both sides
-        move; a point that is just at its bound moves by rounding alone, and that is not called
-        slip. Where a cut ends at the interface both sides have their say, and the larger slip wins.
-
-        Parameters
-        ----------
-        displacement, force
-            W^ and F^ of all rows, shape (n_rows, n_instants); F^ where the status
-            shows in forces too.
-        still
-            Slip up to which a point counts as stuck, beside what is rounding, scaled.
-        """
-        return self.status_of(self.slip(displacement, force), displacement, force, still)
-
-    def status_of(
-        self, slip: Array, displacement: Array, force: Array | None, still: float
-    ) -> NDArray[np.int8]:
-        """Give the contact status, as `status`, where the slip is known."""
-        largest = max(np.abs(displacement[rows]).max(initial=0.0) for rows in self.tangent.sides)
-        if self.normal is not None and force is not None:
-            # A stuck contact moves by rounding alone; but a scaled structure's compliance is 1.
-            largest = max(np.abs(displacement).max(), np.abs(force).max())
-        found = np.sign(slip).astype(np.int8)
-        found[np.abs(slip) <= max(NO_SLIP * largest, still)] = 0
-        if self.normal is not None and force is not None:
-            found[self.by_point(force[self.normal.component.above]) <= 0.0] = OPEN
-        return found
-
-    def slip(self, displacement: Array, force: Array | None) -> Array:
-        """Give the slip of every point at every instant, (n_points, n_instants), as `status`.
-
-        It is the sum of its pairs'.
-        """
-        start = self.tangential.start
-        before = 0.0 if start is None else self.by_point(start)[:, None]
-        moved = self.by_point(self.tangential.slider(displacement, force))
-        return np.diff(moved, axis=1, prepend=before)
 
     @property
     def acts(self) -> bool:

@@ -290,7 +290,7 @@ class Friction:
         return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, some])
 
     @classmethod
-    def joined(cls, laws: Sequence[Friction]) -> Friction:
+    def concatenated(cls, laws: Sequence[Friction]) -> Friction:
         """Laws of one strength put one after the other, all on supports, or none."""
         below = [law.component.below for law in laws if law.component.below is not None]
         return replace(

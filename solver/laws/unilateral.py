@@ -50,7 +50,7 @@ class Unilateral:
         return np.asarray(opening)
 
     @classmethod
-    def joined(cls, laws: Sequence[Unilateral]) -> Unilateral:
+    def concatenated(cls, laws: Sequence[Unilateral]) -> Unilateral:
         """Laws put one after the other, all on supports, or none; all with a spring, or none."""
         below = [law.component.below for law in laws if law.component.below is not None]
         softness = [law.softness for law in laws if law.softness is not None]

@@ -53,6 +53,7 @@ class Response:
         alone = abs(condensed.ties) @ np.diagonal(self._stiffness)
         self.unit: Array = (alone / (1.0 + alone * rules.compliance))[:, None]
         self._alone = np.diagonal(self._stiffness)
+        self._pulls_of_gauge = self._of_unknowns[:, : len(self._base)] @ self._gauge
         self._is_plain = not self._soft.any() and not self._gauge.size
         self._states: States | None = None
         self._factors: Factors
@@ -219,11 +220,10 @@ class Response:
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
         if gauge.size:
-            shifts = np.zeros((len(self._of_unknowns), gauge.shape[1]))
-            shifts[self._kept] = -kept
-            pulls = self._forces(shifts, self._kept)
-            own = self._share_of_own * pulls[self._rows]
-            matrix[:n_rows, n_rows:] = own + self._slope * pulls[self._under]
+            own = self._share_of_own * self._pulls_of_motions(self._rows)
+            tied = np.flatnonzero(self._slope)
+            own[tied] += self._slope[tied] * self._pulls_of_motions(self._under[tied])
+            matrix[:n_rows, n_rows:] = own
             if self._grows:
                 matrix[:n_rows, n_rows:] += self._stiffer * (self._slips[:, free] @ gauge[free])
         if len(sprung):
@@ -235,6 +235,12 @@ class Response:
         matrix[n_rows:, :n_free] = -gauge[free].T
         matrix[n_rows:, n_rows:] = kept.T @ kept
         return matrix
+
+    def _pulls_of_motions(self, rows: Indices) -> Array:
+        """Forces at some jumps where the base is kept in place of each motion, (n, n_motions)."""
+        free = self._free
+        moved = self._of_unknowns[np.ix_(rows, free)] @ self._gauge[free]
+        return np.asarray(moved - self._pulls_of_gauge[rows])
 
     def _jumps_of(self, own: Indices) -> Array:
         """Give what some jumps are of those of the base, shape (n_own, n_base)."""

@@ -17,10 +17,12 @@ from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
 from solver.scenes.rope import ROPE
 from solver.scenes.strand import STRAND
+from solver.scenes.wall import WALL
 from solver.settings import Settings
 
 CATALOGUE: dict[str, Entry] = {
-    entry.settings.scene: entry for entry in (BAR, BLOCK, FAULT, INCLINE, LAYERS, ROPE, STRAND)
+    entry.settings.scene: entry
+    for entry in (BAR, BLOCK, FAULT, INCLINE, LAYERS, ROPE, STRAND, WALL)
 }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.contact import NO_SLIP
+from solver.discrete.contact_groups import NO_SLIP
 from solver.reference.closed_forms.slip_front import (
     front_over_diffusion,
     slip_under_growing_strength,

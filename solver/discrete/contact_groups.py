@@ -1,0 +1,121 @@
+"""Interfaces with friction that are alike, treated as one: a wall of bricks has thousands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array, Indices
+from solver.laws import OPEN, Contact
+
+NO_SLIP = 1e-9
+"""Slip, as a share of the largest displacement, up to which a point counts as stuck."""
+
+
+class ContactGroup:
+    """Interfaces with one law, put one after the other.
+
+    Parameters
+    ----------
+    laws
+        Of all interfaces with friction, in their order.
+    numbers
+        Which of them these are, ascending.
+
+    Attributes
+    ----------
+    law
+        The law of all of them; if there are several, without macro basis.
+    numbers
+        As above, shape (n_interfaces,).
+    points
+        Places of its points among those of all interfaces, shape (n_points,).
+    """
+
+    def __init__(self, laws: list[Contact], numbers: list[int]) -> None:
+        own = [laws[number] for number in numbers]
+        firsts = np.cumsum([0, *(len(law.positions) for law in laws)])
+        self.law = own[0] if len(own) == 1 else Contact.concatenated(own)
+        self.numbers: Indices = np.array(numbers)
+        self._sizes = [len(law.positions) for law in own]
+        self.points: Indices = np.concatenate(
+            [np.arange(firsts[number], firsts[number + 1]) for number in numbers]
+        )
+
+    @cached_property
+    def interfaces(self) -> Indices:
+        """Place in `numbers` of the interface of every point, shape (n_points,)."""
+        return np.repeat(np.arange(len(self.numbers)), self._sizes)
+
+    def largest(self, values: Array) -> Array:
+        """Largest value at any point and instant of each interface, shape (n_interfaces,)."""
+        starts = np.cumsum([0, *self._sizes[:-1]])
+        return np.asarray(np.maximum.reduceat(values.max(axis=1), starts))
+
+    def sums(self, values: Array) -> Array:
+        """Sums of values of the pairs, shape (n_pairs,), over each interface, (n_interfaces,)."""
+        pairs = self.interfaces[self.law.points]
+        return np.asarray(np.bincount(pairs, values, len(self.numbers)), dtype=float)
+
+    def slip(self, displacement: Array, force: Array | None) -> Array:
+        """Slip of every point at every instant, (n_points, n_instants): the sum of its pairs'.
+
+        `displacement` and `force` are those of all rows, shape (n_rows, n_instants), scaled.
+        """
+        law, start = self.law, self.law.tangential.start
+        before = 0.0 if start is None else law.by_point(start)[:, None]
+        moved = law.by_point(law.tangential.slider(displacement, force))
+        return np.diff(moved, axis=1, prepend=before)
+
+    def status(
+        self,
+        displacement: Array,
+        force: Array | None = None,
+        *,
+        slip: Array | None = None,
+        still: Array | float = 0.0,
+    ) -> NDArray[np.int8]:
+        """Contact status of a local stage, shape (n_points, n_instants).
+
+        The law repeats the position of a stuck point bit by bit, or up to rounding where both sides
+        move; a point that is just at its bound moves by rounding alone, and that is not called
+        slip. Where a cut ends at the interface both sides have their say, and the larger slip wins.
+
+        Parameters
+        ----------
+        displacement, force
+            W^ and F^ of all rows, shape (n_rows, n_instants); F^ where the status shows in forces.
+        slip
+            If it is known already.
+        still
+            Slip up to which a point counts as stuck, beside what is rounding, scaled: of each
+            interface, shape (n_interfaces,), or of all.
+        """
+        law = self.law
+        slip = self.slip(displacement, force) if slip is None else slip
+        largest: Array | float
+        if law.normal is not None and force is not None:
+            # A stuck contact moves by rounding alone; but a scaled structure's compliance is 1.
+            largest = max(float(np.abs(displacement).max()), float(np.abs(force).max()))
+        else:
+            largest = np.zeros(len(self.numbers))
+            for rows in law.tangent.sides:
+                moved = np.abs(displacement[rows]).max(axis=1)
+                np.maximum.at(largest, self.interfaces[law.points], moved)
+        least = np.broadcast_to(np.maximum(NO_SLIP * largest, still), len(self.numbers))
+        status = np.sign(slip).astype(np.int8)
+        status[np.abs(slip) <= least[self.interfaces, None]] = 0
+        if law.normal is not None and force is not None:
+            status[law.by_point(force[law.normal.component.above]) <= 0.0] = OPEN
+        return status
+
+
+def grouped(laws: Iterable[Contact]) -> list[ContactGroup]:
+    """Groups of all interfaces with friction."""
+    every, alike = list(laws), dict[object, list[int]]()
+    for number, law in enumerate(every):
+        alike.setdefault(law.kind, []).append(number)
+    return [ContactGroup(every, numbers) for numbers in alike.values()]

@@ -1,0 +1,121 @@
+"""Whether any contact forces balance the loads, and where along the path none do any more.
+
+An equilibrium of the discrete problem, whatever its elasticity, is one of nodal contact forces with
+N >= 0 and |T| <= r + mu N that balance the loads on every body that contact alone holds. The
+largest share of a step of the loads for which there are such forces is a linear program (R. K.
+Livesley, Int. J. Numer. Meth. Eng. 12, 1978, for rigid blocks). It is a bound: Coulomb's friction
+is not associated with slip, so a structure may fail before; it never fails after. The program's
+dual is the mechanism, by which it collapses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.optimize import linprog
+
+from solver.arrays import Array, at_instant
+from solver.discrete.problem import Problem
+from solver.reference.assembly import external_force
+from solver.reference.condensation import NoReferenceError
+from solver.reference.glued import jumps
+from solver.reference.rules import rules_of
+from solver.reference.solution import Interrupted
+
+WHOLE = 1.0 - 1e-9
+"""Share of a step of the loads from which on it is all of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Collapse:
+    """Where the loads go beyond all that contact can balance.
+
+    Attributes
+    ----------
+    time
+        From when on there is no equilibrium, s.
+    instant
+        The first instant without one.
+    mechanism
+        Rigid motions of all bodies in which they begin to move, shape (n_dofs,), the largest 1.
+    """
+
+    time: float
+    instant: int
+    mechanism: Array
+
+
+def collapse_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Collapse | None:
+    """Where a structure collapses on the path of its loads; None if it never does.
+
+    Parameters
+    ----------
+    problem
+        What is loaded.
+    stop
+        Called once per instant.
+
+    Raises
+    ------
+    NoReferenceError
+        If HiGHS finds no answer.
+    Interrupted
+        As soon as `stop` gives True.
+    """
+    if problem.motions is None:
+        return None
+    rules, motions = rules_of(problem), sparse.csc_array(problem.motions)
+    loads = motions.T @ external_force(problem)
+    unit = float(np.abs(loads).max(initial=0.0)) or 1.0
+    holds = sparse.csc_array((jumps(problem) @ motions).T)
+    size = len(rules.gap)
+    rubs = np.flatnonzero(~rules.normal)
+    rows, ones = np.arange(len(rubs)), np.ones(len(rubs))
+    along = sparse.csr_array((ones, (rows, rubs)), shape=(len(rubs), size))
+    friction = rules.friction[rubs]
+    across = sparse.csr_array((friction, (rows, rules.partner[rubs])), shape=(len(rubs), size))
+    caps = np.flatnonzero(np.isfinite(rules.cap[rubs]))
+    capped = np.tile(rules.cap[rubs][caps], 2) / unit
+    cone = sparse.vstack([along - across, -along - across, along[caps], -along[caps]])
+    none = sparse.csr_array((cone.shape[0], 1))
+    lows = np.where(rules.normal, 0.0, -np.inf)
+    bounds = np.stack([np.append(lows, 0.0), np.append(np.full(size, np.inf), 1.0)], axis=1)
+    before, times = np.zeros(len(loads)), problem.instants
+    for instant, now in enumerate(loads.T / unit):
+        if stop is not None and stop():
+            raise Interrupted
+        known = at_instant(rules.bound, instant)[rubs, 0] / unit
+        step = sparse.csr_array((now - before)[:, None])
+        if not step.nnz and instant:
+            continue
+        found = linprog(
+            np.append(np.zeros(size), -1.0),
+            A_ub=sparse.hstack([cone, none]),
+            b_ub=np.concatenate([known, known, capped]),
+            A_eq=sparse.hstack([holds, step]),
+            b_eq=-before,
+            bounds=bounds,
+            method="highs",
+        )
+        if found.status not in (0, 2):
+            raise NoReferenceError(f"limit analysis has no answer: {found.message}")
+        share = float(found.x[-1]) if found.status == 0 else 0.0
+        if share < WHOLE:
+            first = times[max(instant - 1, 0)]
+            time = float(first + share * (times[instant] - first))
+            return Collapse(time, instant, _mechanism(found, problem.motions))
+        before = now
+    return None
+
+
+def _mechanism(found: object, motions: Array) -> Array:
+    """Rigid motions that the dual of the program says, shape (n_dofs,)."""
+    marginals = getattr(getattr(found, "eqlin", None), "marginals", None)
+    if marginals is None:
+        return np.zeros(len(motions))
+    moved = -motions @ np.asarray(marginals)
+    largest = float(np.abs(moved).max(initial=0.0))
+    return np.asarray(moved / largest) if largest else moved

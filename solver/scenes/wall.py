@@ -1,0 +1,260 @@
+"""A wall of bricks that only touch: where many bodies pass a load on, the method is at home."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+import solver.scenes.shared as shared
+from solver.definitions import SettingError, choice, count, curve, quantity, redefined
+from solver.discrete.wall import Wall, bonded
+from solver.loads import PRESETS, load_path
+from solver.scenes.entry import Emblem, Entry
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.words import acting, counted
+
+MOST_BRICKS = 1500
+"""Bricks at most: with their joints they take some 2 GB."""
+
+
+class WallSettings(PlaneSettings):
+    """Settings of the wall; by default it is pressed from above, and its top moves to and fro."""
+
+    scene = "wall"
+    LOADS: ClassVar = ("displacement", "traction")
+    PATH = "top_load"
+    PARTS: ClassVar = {}
+    PEAKS: ClassVar = {"pressure_load": "pressure", "slope_load": "slope"}
+
+    bricks = count(8, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
+    courses = count(8, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
+    bond = choice(
+        "running",
+        ["running", "stack"],
+        "running: bricks lie over the joints of the course below, and every second course begins "
+        "and ends with a half. stack: joints lie one above the other.",
+        group="Body",
+        title="Bond",
+    )
+    length = shared.size(0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", "Body")
+    height = shared.size(0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", "Body")
+    pressure = quantity(
+        1e6,
+        (0.0, 1e15),
+        (0.0, 3e6),
+        "Pressure on the highest course.",
+        group="Load",
+        title="Pressure",
+        unit="Pa",
+        applies=lambda settings: isinstance(settings.pressure_load, str),
+    )
+    pressure_load = curve(
+        "hold",
+        PRESETS,
+        "time",
+        "pressure",
+        ("s", "Pa"),
+        "Pressure over time: a preset, or points (s, Pa).",
+        group="Load",
+        title="Path of the pressure",
+    )
+    top = choice(
+        "moved",
+        ["moved", "pulled"],
+        "What drives the top of the wall. moved: a displacement along it, with which all of it "
+        "goes. pulled: a traction along it.",
+        group="Load",
+        title="Top",
+    )
+    displacement = quantity(
+        5e-5,
+        (-1e6, 1e6),
+        (-2e-4, 2e-4),
+        "Largest displacement of the top along the wall.",
+        group="Load",
+        title="Displacement",
+        unit="m",
+        applies=lambda settings: settings.is_driven_by("moved"),
+    )
+    traction = quantity(
+        2e5,
+        (-1e15, 1e15),
+        (-1e6, 1e6),
+        "Largest traction on the top along the wall.",
+        group="Load",
+        title="Traction",
+        unit="Pa",
+        applies=lambda settings: settings.is_driven_by("pulled"),
+    )
+    top_load = curve(
+        "delayed",
+        PRESETS,
+        "time",
+        "value",
+        ("s", "m or Pa"),
+        "Displacement or traction of the top over time: a preset, or points (s, m or Pa).",
+        group="Load",
+        title="Path of the top",
+    )
+    slope = quantity(
+        0.0,
+        (-89.0, 89.0),
+        (-45.0, 45.0),
+        "Largest angle by which the ground is tilted, the right end upwards.",
+        group="Load",
+        title="Slope of the ground",
+        unit="°",
+        applies=lambda settings: isinstance(settings.slope_load, str),
+    )
+    slope_load = curve(
+        "delayed",
+        PRESETS,
+        "time",
+        "angle",
+        ("s", "°"),
+        "Angle over time: a preset, or points (s, °).",
+        group="Load",
+        title="Path of the slope",
+    )
+    unit_weight = quantity(
+        2e4,
+        (0.0, 1e12),
+        (0.0, 1e5),
+        "Weight per volume of the bricks, which begins to act in the first quarter.",
+        group="Load",
+        title="Unit weight",
+        unit="N/m^3",
+    )
+    friction = redefined(PlaneSettings.param["friction"], 0.6)
+    plane = redefined(PlaneSettings.param["plane"], "stress")
+    young = redefined(PlaneSettings.param["young"], 1e10)
+    poisson = redefined(PlaneSettings.param["poisson"], 0.2)
+    instants = redefined(PlaneSettings.param["instants"], 41)
+    elements = redefined(PlaneSettings.param["elements"], 6, title="Elements of a brick along")
+    elements_up = redefined(PlaneSettings.param["elements_up"], 3, title="Elements of a brick up")
+    macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
+    substructures = redefined(PlaneSettings.param["substructures"], 1, applies=lambda _: False)
+    substructures_up = redefined(
+        PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
+    )
+    interpolation = redefined(
+        PlaneSettings.param["interpolation"], "bilinear", applies=lambda _: False
+    )
+
+    @classmethod
+    def chief(cls) -> tuple[str, ...]:
+        """Settings that the scene is about; its substructures are the bricks."""
+        return (cls.PATH, *cls.LOADS, "pressure", "friction", "bricks", "courses", "multiscale")
+
+    def is_driven_by(self, kind: str) -> bool:
+        """Whether the top is driven so, as far as a preset and not a table says."""
+        return self.top == kind and isinstance(self.top_load, str)
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of bricks, halves among them."""
+        halves = self.courses // 2 if self.bond == "running" else 0
+        return int(self.bricks * self.courses + halves)
+
+    @property
+    def n_bodies(self) -> int:
+        """Number of bodies: each brick is one."""
+        return self.n_substructures
+
+    @property
+    def n_jumps(self) -> int:
+        """Components of all contacts, which a reference condenses: two bed nodes a joint more."""
+        beds = self.elements * self.bricks + 2 * self.bricks + 1
+        heads = self.bricks * (self.elements_up - 1)
+        return int(2 * self.courses * (beds + heads))
+
+    def _behind(self) -> Mapping[str, str]:
+        driven = "displacement" if self.top == "moved" else "traction"
+        return {"top x": driven, "top y": "pressure", "body": "unit_weight"}
+
+    def curve_units(self, name: str) -> tuple[str, str]:
+        """Units of a curve under the present values."""
+        if name != "top_load":
+            return super().curve_units(name)
+        return "s", "m" if self.top == "moved" else "Pa"
+
+    def size_of(self, path: str) -> float:
+        """Largest value that a preset of a path over time reaches."""
+        if path == "top_load":
+            return float(self.displacement if self.top == "moved" else self.traction)
+        return super().size_of(path)
+
+    def check_together(self) -> None:
+        """Refuse halves that no element fits, joints without a pair, and too many bricks."""
+        super().check_together()
+        if self.bond == "running" and self.courses > 1 and self.elements % 2:
+            remedy = "take an even number, or bond=stack"
+            raise SettingError(
+                "elements", self.elements, "an even number, as there are half bricks", remedy
+            )
+        if self.bricks > 1 and self.elements_up < 2:
+            raise SettingError(
+                "elements_up",
+                self.elements_up,
+                "at least 2, between bricks of a course",
+                "raise it",
+            )
+        if self.n_substructures > MOST_BRICKS:
+            raise SettingError(
+                "courses",
+                self.courses,
+                f"a wall of at most {MOST_BRICKS} bricks, of 2 GB",
+                f"these are {self.n_substructures}: take fewer courses, or bricks of a course",
+            )
+
+    def structure(self) -> Wall:
+        """Make the wall; one metre thick."""
+        times, size = self.times(), (self.elements, self.elements_up)
+        angle = np.radians(self.path("slope_load"))
+        weight = load_path("hold", times, self.duration, self.unit_weight, 1, PRESETS, 1)
+        driven = self.path("top_load")
+        return Wall(
+            bricks=bonded(self.bond, self.bricks, self.courses, size),
+            element=(self.length / size[0], self.height / size[1]),
+            young=self.young,
+            poisson=self.poisson,
+            state=self.plane,
+            friction=self.friction,
+            friction_law=self.law(self.young / self.length),
+            weight=-weight * np.stack([np.sin(angle), np.cos(angle)]),
+            pressure=self.path("pressure_load"),
+            moved=driven if self.top == "moved" else None,
+            shear=driven if self.top == "pulled" else None,
+            instants=times,
+            duration=self.duration,
+            macro_degree=self.macro_degree,
+            tilt=angle if np.any(angle) else None,
+        )
+
+    def sentence(self) -> str:
+        """The wall in a sentence."""
+        bond = "in running bond" if self.bond == "running" else "one above the other"
+        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}"
+        pressed = "pressed from above, only touch" if self.pressure else "only touch"
+        way = "moved" if self.top == "moved" else "pulled"
+        driven = acting(self.path("top_load"), f"{way} to the right", f"{way} to the left")
+        ground = "a tilted ground" if np.any(self.path("slope_load")) else "the ground"
+        return f"{bricks}, {pressed}, and rub on each other and on {ground}; the top is {driven}."
+
+
+WALL = Entry(
+    title="Wall of bricks",
+    source="R. K. Livesley, Int. J. Numer. Meth. Eng. 12, 1978: blocks that only touch",
+    emblem=Emblem(
+        ground="M3 29H45",
+        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 17H41V22H34Z"
+        "M7 11H23V16H7ZM25 11H41V16H25Z",
+        load="M14 6H34M30 3L34 6L30 9",
+    ),
+    settings=WallSettings,
+    kind="plane",
+    sizes={"courses": (2, 4, 8), "elements": (4, 6, 8), "instants": (21, 41, 81)},
+    grows=("bricks", "courses"),
+)

@@ -1,0 +1,135 @@
+"""A wall of bricks that only touch: equilibrium, symmetry, rigid limits, and who needs what."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver.discrete.wall import Wall, bonded
+from solver.latin import Ending, Latin, iterations, solve
+from solver.reference.choice import reference_of
+from solver.reference.distance import distance_to
+from solver.study.stability.residual import kkt_residual
+
+TIMES = np.linspace(0.0, 1.0, 21)
+PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))
+
+
+def wall(columns=4, courses=4, *, bond="running", size=(4, 2), moved=5e-5, pressure=1e6, **others):
+    """A wall that is pressed by a quarter of the interval, and then moved to and fro."""
+    down = np.minimum(TIMES / 0.25, 1.0)
+    return Wall(
+        bricks=bonded(bond, columns, courses, size),
+        element=(0.24 / size[0], 0.12 / size[1]),
+        young=1e10,
+        poisson=0.2,
+        state="stress",
+        friction=0.6,
+        weight=np.stack([0.0 * TIMES, -2e4 * down]),
+        pressure=pressure * down,
+        moved=None if moved is None else moved * PUSH,
+        instants=TIMES,
+        duration=1.0,
+        **others,
+    )
+
+
+def forces(found, names, component):
+    """Sums of forces at some interfaces, shape (n_instants,)."""
+    return sum(getattr(found.contact(name), component).sum(axis=0) for name in names)
+
+
+def on_ground(problem):
+    return [name for name in problem.rubbing if name.startswith("support")]
+
+
+@pytest.mark.parametrize("bond", ["running", "stack"])
+def test_latin_and_the_incremental_solver_come_to_one_solution(bond):
+    problem = wall(bond=bond).discretise()
+    reference = reference_of(problem)
+    assert reference.converged.all()
+    assert np.any(reference.status == 2)
+    assert np.any(np.abs(reference.status) == 1)
+    run = solve(problem, Latin(), distance=distance_to(reference, problem))
+    assert run.is_certified
+    assert run.records[-1].error_force < 1e-10
+    assert kkt_residual(run.iterate, problem) < 1e-10
+
+
+def test_the_ground_carries_what_weighs_and_presses():
+    made = wall()
+    problem = made.discretise()
+    run = solve(problem, Latin())
+    pressed = forces(run.iterate, on_ground(problem), "normal_force")
+    expected = made.length * (made.pressure - made.height * made.weight[1])
+    np.testing.assert_allclose(pressed, expected, rtol=1e-9)
+    shear = made.loop(problem).force(run.iterate)
+    rubbed = forces(run.iterate, on_ground(problem), "tangential_force")
+    np.testing.assert_allclose(shear, -rubbed, atol=1e-9 * np.abs(shear).max())
+
+
+def test_a_wall_that_is_moved_the_other_way_is_its_mirror_image():
+    first, second = (solve(wall(moved=way).discretise(), Latin()) for way in (5e-5, -5e-5))
+    shears = []
+    for run, sign in ((first, 1.0), (second, -1.0)):
+        names = on_ground(run.iterate.problem)
+        shears.append(sign * forces(run.iterate, names, "tangential_force"))
+    np.testing.assert_allclose(*shears, atol=1e-9 * np.abs(shears[0]).max())
+
+
+def test_the_order_of_the_bricks_changes_nothing():
+    made = wall()
+    order = np.random.default_rng(4).permutation(len(made.bricks))
+    mixed = replace(made, bricks=[made.bricks[number] for number in order])
+    sums = []
+    for each in (made, mixed):
+        problem = each.discretise()
+        run = solve(problem, Latin())
+        assert run.is_certified
+        sums.append(forces(run.iterate, on_ground(problem), "tangential_force"))
+    np.testing.assert_allclose(*sums, atol=1e-9 * np.abs(sums[0]).max())
+
+
+def column(shear, courses, *, friction):
+    """A pile of single bricks under a pressure, with a traction along its top that grows."""
+    made = wall(1, courses, bond="stack", size=(8, 4), moved=None, pressure=1e6)
+    grown = shear * np.clip((TIMES - 0.25) / 0.75, 0.0, 1.0)
+    return replace(made, weight=0.0 * made.weight, shear=grown, friction=friction)
+
+
+@pytest.mark.parametrize(
+    ("courses", "friction", "limit"),
+    [(1, 0.3, 0.3), (1, 0.6, 0.6), (2, 0.9, 0.5), (3, 0.6, 0.24 / 0.72), (3, 0.2, 0.2)],
+)
+def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, limit):
+    """It slides at mu p, and tips about its toe at p b / (2 h)."""
+    for share, stands in ((0.97, True), (1.03, False)):
+        made = column(share * limit * 1e6, courses, friction=friction)
+        found = reference_of(made.discretise())
+        assert bool(found.converged[-1]) is stands
+        assert found.converged[:5].all()
+
+
+def test_the_number_of_iterations_does_not_grow_with_the_bricks():
+    needed = {}
+    for multiscale in (True, False):
+        for count in (3, 7):
+            problem = wall(count, count).discretise()
+            distance = distance_to(reference_of(problem), problem)
+            for iterate in iterations(problem, Latin(finish=None, multiscale=multiscale)):
+                if distance.of_friction_force(iterate) < 0.01:
+                    break
+            needed[multiscale, count] = iterate.number
+    assert needed[True, 7] <= needed[True, 3] + 2
+    assert needed[False, 7] > 1.5 * needed[False, 3]
+    assert needed[False, 7] > 4 * needed[True, 7]
+
+
+def test_a_run_ends_by_itself_within_its_accuracy():
+    problem = wall(6, 6).discretise()
+    distance = distance_to(reference_of(problem), problem)
+    run = solve(problem, Latin(finish=None), distance=distance)
+    assert run.status.ending is Ending.CONVERGED
+    assert run.records[-1].error_force < 0.01
