@@ -8,17 +8,8 @@ import pytest
 from solver import Latin, solve
 from solver.discrete import Problem
 from solver.discrete.elements import elastic_matrix
-from solver.discrete.inside import Inside
 from solver.discrete.plane import Condensed, Rectangle
-from solver.discrete.plane_parts import (
-    Part,
-    Trace,
-    keep,
-    lined_up,
-    number_rows,
-    rigid_motions,
-    substructures_of,
-)
+from solver.discrete.plane_parts import Part, Trace, keep, lined_up, number_rows, problem_of
 from solver.discrete.problem import Scales
 from solver.latin import Ending
 from solver.laws import Bodies, Component, Contact, Dirichlet, FrictionLaw, Unilateral
@@ -62,29 +53,17 @@ def lintel_on_two_piers() -> Problem:
         up, along = np.indices(mesh.nodes.shape)
         positions.append(SIZE * np.stack([x + along.ravel(), y + up.ravel()], axis=1))
     skeleton = number_rows(parts)
-    places = np.concatenate(positions)[skeleton // 2]
     grounds = np.concatenate([part.rows["ground"].ravel() for part in parts[:2]])
     still = np.zeros((len(grounds), len(TIMES)))
     interfaces = {name: _contact(parts[2], parts[n], name) for n, name in enumerate(above)}
-    bodies = np.repeat(np.arange(3), [len(part.dofs) for part in parts])
-    return Problem(
-        substructures=substructures_of(parts, skeleton),
-        interfaces={**interfaces, "ground": Dirichlet(grounds, still)},
-        positions=places,
-        instants=TIMES,
+    return problem_of(
+        parts,
+        skeleton,
+        np.concatenate(positions),
+        {**interfaces, "ground": Dirichlet(grounds, still)},
         scales=Scales(1.0, 1.0, 1.0),
-        inside=Inside(
-            parts, np.concatenate(positions), skeleton, length=1.0, young=1.0, n_instants=5
-        ),
-        motions=rigid_motions(
-            places, skeleton % 2, bodies, skeleton.searchsorted(_held(parts[:2]))
-        ),
+        instants=TIMES,
     )
-
-
-def _held(piers: list[Part]) -> np.ndarray:
-    nodes = np.concatenate([part.nodes[0] for part in piers])
-    return np.concatenate([2 * nodes, 2 * nodes + 1])
 
 
 def _contact(lintel: Part, pier: Part, name: str) -> Contact:

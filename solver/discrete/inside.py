@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane_parts import Part
+
+if TYPE_CHECKING:
+    from solver.discrete.plane_parts import Part
 
 
 class Inside:

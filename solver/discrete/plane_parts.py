@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.discrete.inside import Inside
 from solver.discrete.plane import Condensed, Rectangle, dofs_of, side_basis
+from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Elasticity, Substructure
+from solver.laws import Interface
 
 HELD = 1e-9
 """Singular value, beside that of a translation, from which on what is prescribed hinders."""
@@ -121,16 +124,6 @@ def number_rows(parts: Iterable[Part]) -> Indices:
     return np.unique(np.concatenate(kept))
 
 
-def substructures_of(parts: Iterable[Part], skeleton: Indices) -> tuple[Substructure, ...]:
-    """Substructures of numbered parts; equal ones share their operator.
-
-    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
-    contacts and supports alike (the paper's ES / l_sub).
-    """
-    shared: dict[tuple[Hashable, ...], Elasticity] = {}
-    return tuple(_substructure(part, skeleton, shared) for part in parts)
-
-
 def _substructure(
     part: Part, skeleton: Indices, shared: dict[tuple[Hashable, ...], Elasticity]
 ) -> Substructure:
@@ -209,3 +202,53 @@ def rigid_motions(
         motions.append(whole)
     together = np.concatenate(motions, axis=1)
     return together if together.size else None
+
+
+def problem_of(
+    parts: Sequence[Part],
+    skeleton: Indices,
+    positions: Array,
+    interfaces: Mapping[str, Interface],
+    *,
+    scales: Scales,
+    instants: Array,
+    rest: Array | None = None,
+) -> Problem:
+    """Discrete problem of numbered parts, with what is inside them and how bodies move freely.
+
+    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
+    contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
+
+    Parameters
+    ----------
+    parts, skeleton
+        All substructures, body by body, and what `number_rows` returned for them.
+    positions
+        Coordinates of all nodes, shape (n_nodes, 2), scaled.
+    interfaces, scales, instants, rest
+        As of `Problem`.
+    """
+    shared: dict[tuple[Hashable, ...], Elasticity] = {}
+    places, length = positions[skeleton // 2], scales.displacement
+    bodies = np.empty(len(positions), dtype=np.intp)
+    for part in parts:
+        bodies[part.nodes] = part.body
+    problem = Problem(
+        substructures=tuple(_substructure(part, skeleton, shared) for part in parts),
+        interfaces=interfaces,
+        positions=places * length,
+        instants=instants,
+        scales=scales,
+        inside=Inside(
+            parts,
+            positions,
+            skeleton,
+            length=length,
+            young=scales.force / length,
+            n_instants=len(instants),
+        ),
+        rest=rest,
+    )
+    fixed = problem.prescribed[0]
+    motions = rigid_motions(places, skeleton % 2, bodies[skeleton // 2], fixed)
+    return replace(problem, motions=motions)

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +20,11 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.contact_groups import ContactGroup, grouped
-from solver.discrete.inside import Inside
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, RowValues
+
+if TYPE_CHECKING:
+    from solver.discrete.inside import Inside
 
 
 @dataclass(frozen=True)

@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.cut_stack import CutStack, Place
-from solver.discrete.inside import Inside
 from solver.discrete.plane import side_basis
-from solver.discrete.plane_parts import (
-    lined_up,
-    number_rows,
-    rigid_motions,
-    substructures_of,
-)
+from solver.discrete.plane_parts import lined_up, number_rows, problem_of
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rigid_stack import rigid_rest, rigid_slide
 from solver.laws import (
@@ -47,26 +40,15 @@ def discretise_stack(stack: Stack) -> Problem:
     cut = CutStack(stack)
     parts = list(cut.parts.values())
     skeleton = number_rows(parts)
-    positions, components = cut.positions[skeleton // 2], skeleton % 2
-    problem = Problem(
-        substructures=substructures_of(parts, skeleton),
-        interfaces=dict(_interfaces(cut)),
-        positions=positions * stack.length,
-        instants=stack.instants,
+    return problem_of(
+        parts,
+        skeleton,
+        cut.positions,
+        dict(_interfaces(cut)),
         scales=Scales(stack.length, stack.young * stack.length, stack.duration),
-        inside=Inside(
-            parts,
-            cut.positions,
-            skeleton,
-            length=stack.length,
-            young=stack.young,
-            n_instants=len(stack.instants),
-        ),
-        rest=_rest(stack, positions, components),
+        instants=stack.instants,
+        rest=_rest(stack, cut.positions[skeleton // 2], skeleton % 2),
     )
-    bodies = skeleton // 2 // cut.nodes[0].size
-    motions = rigid_motions(positions, components, bodies, problem.prescribed[0])
-    return replace(problem, motions=motions)
 
 
 def _rest(stack: Stack, positions: Array, components: Indices) -> Array | None:

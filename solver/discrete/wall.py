@@ -12,7 +12,7 @@ only sums are determined, and which of them slips would depend on how they share
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -20,16 +20,8 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete.elements import elastic_matrix
-from solver.discrete.inside import Inside
 from solver.discrete.plane import Condensed, Rectangle, side_basis
-from solver.discrete.plane_parts import (
-    Part,
-    Trace,
-    keep,
-    number_rows,
-    rigid_motions,
-    substructures_of,
-)
+from solver.discrete.plane_parts import Part, Trace, keep, number_rows, problem_of
 from solver.discrete.probes import reaction, side_mean
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
@@ -226,7 +218,7 @@ class Wall:
             length=self.length,
             height=self.height,
             instants=self.instants,
-            acts=tuple(act for act in acts if np.any(act.values)),
+            acts=acts,
             holds=(Hold("support", "bottom"),),
             tilt=self.tilt,
         )
@@ -308,25 +300,14 @@ class _Assembly:
                 for x, y, c, r in wall.bricks
             ]
         )
-        positions, components = places[skeleton // 2], skeleton % 2
-        bodies = np.repeat(np.arange(len(parts)), [len(part.dofs) for part in parts])
-        problem = Problem(
-            substructures=substructures_of(parts, skeleton),
-            interfaces=dict(self._interfaces()),
-            positions=positions * self.scale,
-            instants=wall.instants,
+        return problem_of(
+            parts,
+            skeleton,
+            places,
+            dict(self._interfaces()),
             scales=Scales(self.scale, wall.young * self.scale, wall.duration),
-            inside=Inside(
-                parts,
-                places,
-                skeleton,
-                length=self.scale,
-                young=wall.young,
-                n_instants=len(wall.instants),
-            ),
+            instants=wall.instants,
         )
-        motions = rigid_motions(positions, components, bodies, problem.prescribed[0])
-        return replace(problem, motions=motions)
 
     def _interfaces(self) -> Iterator[tuple[str, Interface]]:
         wall = self.wall
