@@ -18,11 +18,11 @@ from solver.discrete.stack.data import Given, Side, Support
 from solver.discrete.stack.stack import Stack
 from solver.latin import Auto, Ending, Latin, Stop, solve
 from solver.reference.choice import reference_of
-from solver.reference.closed_forms.diffusion import spread
-from solver.reference.closed_forms.slip_front import (
+from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     fronts,
     slip_under_growing_strength,
+    spread,
     stress_ahead,
 )
 from solver.reference.solution import Reference

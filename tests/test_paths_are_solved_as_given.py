@@ -11,7 +11,7 @@ from solver.definitions import SettingError
 from solver.latin import Ending, solve
 from solver.loads import PRESSURES
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.closed_forms.diffusion import spread
+from solver.reference.closed_forms.fluid_driven_slip import spread
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise, left_out, structure_of
 from solver.scenes.bar import BarSettings, bar

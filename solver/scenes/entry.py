@@ -9,7 +9,7 @@ from typing import Generic, Literal, NamedTuple, TypeVar
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.scenes.base import SceneSettings
 
 S = TypeVar("S", bound=SceneSettings)

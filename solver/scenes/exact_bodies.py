@@ -13,9 +13,8 @@ from solver.discrete.stack.equilibrium import wrench
 from solver.discrete.stack.rest import rigid_slide
 from solver.discrete.stack.stack import Stack
 from solver.laws import Coulomb
-from solver.reference.closed_forms.cantilever import cantilever
-from solver.reference.closed_forms.exact_curve import ExactCurve
-from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.reference.closed_forms import ExactCurve
+from solver.reference.closed_forms.elastic_bodies import HalfPlane, cantilever
 
 SMALL = 0.12
 """Largest half-width of a contact, over the length and the height of its body, that is still that

@@ -10,12 +10,14 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
 from solver.laws.compliant import Compliant
 from solver.laws.slip_dependent import SlipDependent
+from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.broken_wire import broken_wire
-from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
-from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
-from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.reference.closed_forms.masing import masing
-from solver.reference.closed_forms.pulled_bar import closed_form
+from solver.reference.closed_forms.pulled_bar import (
+    closed_form,
+    pulled_changing_bar,
+    pulled_compliant_bar,
+)
 
 
 def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:

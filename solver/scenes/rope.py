@@ -12,8 +12,8 @@ from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rope.data import RopeWire
 from solver.discrete.rope.rope import Rope
+from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
-from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.rope_settings import RopeSettings
 from solver.scenes.words import acting, counted

@@ -50,7 +50,7 @@ class BrokenWire:
 
 
 def broken_wire(scene: RodsData) -> BrokenWire | None:
-    """Solve a strand with a broken wire in closed form.
+    """Solution of a strand with a broken wire.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def broken_wire(scene: RodsData) -> BrokenWire | None:
 
 
 def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
-    """Give the bars left and right of the break, from their far ends to the break, if they can."""
+    """Bars left and right of the break, from their far ends to the break, if known."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
     found = []
@@ -101,7 +101,7 @@ def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | N
 
 
 def _tension(scene: RodsData) -> Array:
-    """Find T under a rigid grip: a neighbour's elongation is given.
+    """T under a rigid grip: a neighbour's elongation is given.
 
     It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second
     part grows with T, and no faster than the first, so halved steps halve the error at least.

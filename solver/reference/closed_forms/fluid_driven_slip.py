@@ -1,4 +1,9 @@
-"""Slip on a straight interface in an infinite body, under a strength that is given (published).
+"""Slip on a straight interface that a fluid drives: its pressure, and how far slip spreads.
+
+The excess of its pressure over what was there before obeys the diffusion equation on a half-line
+whose end has a pressure that is given. A steady one spreads as erfc(x / sqrt(4 alpha t)); a
+pressure that changes is a sum of such, begun one after the other (H. S. Carslaw, J. C. Jaeger,
+Conduction of Heat in Solids, 2nd ed., Oxford 1959, sections 2.4 and 2.5).
 
 Half spaces of one material rub on each other under a uniform shear stress. The strength is given
 over the interface; where it is below that stress, a zone slips whose shape is known: as long as it
@@ -10,6 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.optimize import brentq
+from scipy.signal import fftconvolve
 from scipy.special import erfc
 
 from solver.arrays import Array
@@ -19,10 +25,67 @@ WIDEST = 60.0
 """Front over diffusion length up to which a solution is sought: T down to 0.006."""
 SHARES = np.cos((np.arange(500) + 0.5) * np.pi / 1000)
 """Places in a zone, over its half-length, of one weight in integrals over ds / sqrt(a^2 - s^2)."""
+DRY = 30.0
+"""Diffusion lengths beyond which erfc has no digit."""
+EVEN = 1e-12
+"""Share of the interval, or of the largest bend, that rounding may make of none."""
+
+
+def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> Array:
+    """Pressure of the fluid along the line, Pa.
+
+    Parameters
+    ----------
+    place
+        Distance from the end, shape (n_places,), m; not negative.
+    instants
+        From 0 on, shape (n_instants,), s; at least two. Where they are not evenly spaced, each bend
+        of what is given is added on its own.
+    given
+        Pressure at the end, shape (n_instants,), Pa: its first value from the very beginning, and
+        linear in between.
+    diffusivity
+        Alpha, m^2/s; positive.
+
+    Returns
+    -------
+    Shape (n_places, n_instants), Pa; at the first instant nothing has spread yet.
+    """
+    steps, later = np.diff(instants), instants[1:] - instants[0]
+    bends = np.diff(np.diff(given) / steps, prepend=0.0)
+    found = given[0] * _steady(place, later, diffusivity)
+    if np.ptp(steps) <= EVEN * later[-1]:
+        risen = _risen(place, later, diffusivity)
+        found += fftconvolve(risen, bends[None], axes=1)[:, : len(later)]
+    else:
+        for number in np.flatnonzero(np.abs(bends) > EVEN * np.abs(bends).max()):
+            after = instants[number + 1 :] - instants[number]
+            found[:, number:] += bends[number] * _risen(place, after, diffusivity)
+    # At the end itself it is what is given, to the last digit.
+    found[place == 0.0] = given[1:]
+    return np.concatenate([np.zeros((len(place), 1)), found], axis=1)
+
+
+def _steady(place: Array, later: Array, diffusivity: float) -> Array:
+    """What a pressure of 1 Pa has done after some times, shape (n_places, n_times)."""
+    return np.asarray(erfc(_far(place, later, diffusivity)))
+
+
+def _risen(place: Array, later: Array, diffusivity: float) -> Array:
+    """What a pressure that rises by 1 Pa/s has done: the integral of `_steady`."""
+    far = _far(place, later, diffusivity)
+    steady = erfc(far)
+    return np.asarray(
+        later * ((1.0 + 2.0 * far**2) * steady - 2.0 / np.sqrt(np.pi) * far * np.exp(-(far**2)))
+    )
+
+
+def _far(place: Array, later: Array, diffusivity: float) -> Array:
+    return np.minimum(place[:, None] / np.sqrt(4.0 * diffusivity * later), DRY)
 
 
 def front_over_diffusion(stress: float) -> float:
-    """Give lambda of the front a = lambda sqrt(4 alpha t) of slip that a fluid drives.
+    """Lambda of the front a = lambda sqrt(4 alpha t) of slip that a fluid drives.
 
     The pressure of the fluid over the interface is DP erfc(|x| / sqrt(4 alpha t)) from the place
     where it is let in. The front runs as it does because nothing is singular there: the mean of
@@ -40,7 +103,7 @@ def front_over_diffusion(stress: float) -> float:
 
 
 def fronts(place: Array, lack: Array) -> Array:
-    """Give how far from its middle a zone slips that grows in both directions alike.
+    """How far from its middle a zone slips that grows in both directions alike.
 
     Nothing is singular at its ends: there what the stress lacks to the strength, times
     ds / sqrt(a^2 - s^2), sums up to nothing over the zone.
@@ -70,7 +133,7 @@ def fronts(place: Array, lack: Array) -> Array:
 
 
 def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -> Array:
-    """Give how much such a zone adds to the stress ahead of it.
+    """How much such a zone adds to the stress ahead of it.
 
     Parameters
     ----------
@@ -94,7 +157,7 @@ def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -
 def slip_under_growing_strength(
     place: Array, half_length: float, drop: float, stiffness: float
 ) -> Array:
-    """Give the slip of a zone of given length, whose strength grows evenly from its middle.
+    """Slip of a zone of given length, whose strength grows evenly from its middle.
 
     Stress drops by `drop` in the middle and by nothing at both ends, beyond which nothing slips
     (R. Buergmann, D. D. Pollard, S. J. Martel, Slip distributions on faults, J. Struct. Geol. 16,
