@@ -92,14 +92,6 @@ class Clips:
         places = np.arange(len(left), dtype=float)
         return decompose(left, self.space_weights, self.time_weights, places)
 
-    def reconstruct(self, modes: int = 0) -> Array:
-        """Give the field of the clips and so many singular vectors of what they leave, N/m."""
-        rest = self.rest
-        return np.asarray(
-            self.field
-            + (rest.space_modes[:, :modes] * rest.values[:modes]) @ rest.time_modes[:modes]
-        )
-
     @cached_property
     def errors(self) -> Array:
         """Error of the clips with every number of modes from 0 on, shape (n_modes + 1,).
@@ -122,7 +114,7 @@ class Clips:
 def clips_of(
     field: Array, bound: Array, load: Array, space_weights: Array, time_weights: Array
 ) -> Clips:
-    """Fit clips with memory to a friction field.
+    """Clips with memory fitted to a friction field.
 
     Its branches are those of the load over the size of the bound; the arguments are fitted to the
     entries that are not clipped, point by point. Of a rod whose friction bound stays the same, and
@@ -157,7 +149,7 @@ def clips_of(
 
 
 def monotone(load: Array) -> Iterator[slice]:
-    """Cut a load into its branches, each as far as it goes one way; it starts from zero.
+    """Yield the branches of a load, each as far as it goes one way; it starts from zero.
 
     Parameters
     ----------
@@ -179,7 +171,7 @@ def _fitted(
     before: float,
     weights: Array,
 ) -> Branch:
-    """Fit the argument of one branch, each point counted in the way that its friction goes."""
+    """Branch whose argument is fitted, each point counted in the way that its friction goes."""
     way = 1.0 if load[some.stop - 1] >= before else -1.0
     up = np.where((field - held[:, None]) @ weights < 0.0, -1.0, 1.0)
     limit = np.where(bound > 0.0, bound, np.inf)
@@ -190,7 +182,7 @@ def _fitted(
 
 
 def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:
-    """Clip the argument of a branch, shape (n_points, n_instants of it), N/m.
+    """Clipped argument of a branch, shape (n_points, n_instants of it), N/m.
 
     What was held is within a bound that has fallen since.
     """
@@ -207,7 +199,7 @@ def _during(bound: Array, some: slice) -> Array:
 
 
 def _numbers_of(bound: Array) -> int:
-    """Count the numbers of a bound: fewer if it changes in size alone."""
+    """How many numbers a bound takes: fewer if it changes in size alone."""
     sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
     shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
     is_product = np.abs(bound - shape * sizes).max() <= SAME_SHAPE * most

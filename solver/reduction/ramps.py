@@ -55,17 +55,17 @@ class Seen:
     weights: Array
 
     def clipped(self, slope: Array, offset: Array) -> Array:
-        """Clip lines, shapes (n_points,), between both stops, (n_points, n_instants)."""
+        """Lines, shapes (n_points,), clipped between both stops, (n_points, n_instants)."""
         line = slope[:, None] * self.load + offset[:, None]
         return np.minimum(1.0, np.maximum(self.low, line))
 
     def miss(self, slope: Array, offset: Array) -> Array:
-        """Give the squared error of clipped lines, shape (n_points,)."""
+        """Squared error of clipped lines, shape (n_points,)."""
         return np.asarray((self.clipped(slope, offset) - self.shares) ** 2 @ self.weights)
 
 
 def fitted(seen: Seen) -> tuple[Array, Array]:
-    """Fit a clipped line to every point: its slope and offset, (n_points,) each.
+    """Slope and offset of the line fitted to every point, (n_points,) each.
 
     A point that keeps what it has gets a slope of 0, and all others one above.
     """
@@ -94,12 +94,12 @@ def fitted(seen: Seen) -> tuple[Array, Array]:
 
 
 def _with_before(seen: Seen) -> tuple[Array, Array]:
-    """Give shares and loads with those at the branch's beginning in front."""
+    """Shares and loads with those at the branch's beginning in front."""
     return np.hstack([seen.low[:, :1], seen.shares]), np.append(seen.before, seen.load)
 
 
 def _through_one(seen: Seen, depth: Array) -> list[tuple[Array, Array]]:
-    """Draw lines through the entry that lies deepest between the stops, or the first at the upper.
+    """Lines through the entry that lies deepest between the stops, or the first at the upper.
 
     They are as steep as the point ever is, which is exact where the clip shows the line at one
     instant, or at none; as steep as on its way there; and on its way from there.
@@ -118,7 +118,7 @@ def _through_one(seen: Seen, depth: Array) -> list[tuple[Array, Array]]:
 
 
 def _between_quarters(seen: Seen) -> tuple[Array, Array]:
-    """Draw lines through the places where the friction crosses two shares of its way to the bound.
+    """Lines through the places where the friction crosses two shares of its way to the bound.
 
     Noise at the stops does not move these.
     """
@@ -129,7 +129,7 @@ def _between_quarters(seen: Seen) -> tuple[Array, Array]:
 
 
 def _crossing(seen: Seen, quarter: float) -> tuple[Array, Array]:
-    """Find the load at which a share of the way is first exceeded, and the friction there."""
+    """Load at which a share of the way is first exceeded, and the friction there."""
     shares, loads = _with_before(seen)
     levels = np.broadcast_to(seen.low + quarter * (1.0 - seen.low), seen.shares.shape)
     above = seen.shares >= levels
@@ -142,7 +142,7 @@ def _crossing(seen: Seen, quarter: float) -> tuple[Array, Array]:
 
 
 def _regression(seen: Seen, free: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Fit lines to some of the entries; where these are fewer than two, it is not a number."""
+    """Lines fitted to some of the entries; where these are fewer than two, not a number."""
     weights = free * seen.weights
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = weights.sum(axis=1)

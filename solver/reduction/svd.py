@@ -90,11 +90,11 @@ class Decomposition:
         return errors
 
     def modes_for(self, share: float) -> int:
-        """Count the modes that bring the error down to a share of the field's norm."""
+        """Number of modes that bring the error down to a share of the field's norm."""
         return int(np.argmax(self.errors <= share))
 
     def correlations(self, modes: Array) -> Array:
-        """Give the cosines between modes and the space modes of the same place in the order.
+        """Cosines between modes and the space modes of the same place in the order.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class Decomposition:
 def decompose(
     field: Array, space_weights: Array, time_weights: Array, positions: Array
 ) -> Decomposition:
-    """Decompose a space-time field in weighted inner products.
+    """Decomposition of a space-time field in weighted inner products.
 
     Parameters
     ----------
@@ -138,58 +138,48 @@ def decompose(
     )
 
 
-def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
-    """Decompose one interface field in every substructure (paper, section 3.2).
+def singular_values(field: Array, space_weights: Array, time_weights: Array) -> Array:
+    """Singular values of `decompose` alone, descending, shape (n_modes,)."""
+    weighted = np.sqrt(space_weights)[:, None] * field * np.sqrt(time_weights)
+    return np.asarray(np.linalg.svd(weighted, compute_uv=False))
 
-    Returns
-    -------
-    One decomposition in SI units per substructure, numbered from the clamp.
-    """
+
+def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
+    """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
     problem = fields.problem
     field, weights = _field_and_weights(fields, name)
-    own = friction_rows(problem)
     time_weights = problem.time_weights * problem.scales.time
     places = problem.positions[problem.row_dofs]
-    return [decompose(field[rows], weights[rows], time_weights, places[rows]) for rows in own]
+    return [
+        decompose(field[rows], weights[rows], time_weights, places[rows])
+        for rows in friction_rows(problem)
+    ]
 
 
 def friction_spectra(fields: InterfaceFields) -> list[Array]:
-    """Compute the singular values of the friction force in every substructure.
-
-    The values of `decompositions`, without their modes and for substructures of one size at once.
-
-    Returns
-    -------
-    One array of descending singular values per substructure, numbered from the clamp, N sqrt(s/m).
-    """
+    """Singular values of the friction force in every substructure, N sqrt(s/m), as above."""
     problem = fields.problem
-    field, lengths = _field_and_weights(fields, InterfaceField.FRICTION_FORCE)
-    time_root = np.sqrt(problem.time_weights * problem.scales.time)
-    weighted = field * np.sqrt(lengths)[:, None] * time_root
-    own = friction_rows(problem)
-    values: dict[int, Array] = {}
-    for size in sorted({len(rows) for rows in own}):
-        alike = [number for number, rows in enumerate(own) if len(rows) == size]
-        stack = weighted[np.stack([own[number] for number in alike])]
-        found = np.linalg.svd(stack, compute_uv=False)
-        values.update(zip(alike, found, strict=True))
-    return [values[number] for number in range(len(own))]
+    field, weights = _field_and_weights(fields, InterfaceField.FRICTION_FORCE)
+    time_weights = problem.time_weights * problem.scales.time
+    return [
+        singular_values(field[rows], weights[rows], time_weights) for rows in friction_rows(problem)
+    ]
 
 
 def friction_rows(problem: Problem) -> list[Indices]:
-    """Give the boundary rows that rub, per substructure, in the order of its own rows."""
+    """Boundary rows that rub, per substructure, in the order of its own rows."""
     rubs = np.zeros(problem.n_rows, dtype=bool)
     rubs[problem.sliding[0]] = True
     return [part.rows[rubs[part.rows]] for part in problem.substructures]
 
 
 def front_decay(count: int) -> Array:
-    """Give sigma_n/sigma_1 of a constant-speed front (solver/README.md, 3), shape (count,)."""
+    """Decay sigma_n/sigma_1 of a constant-speed front (solver/README.md, 3), shape (count,)."""
     return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
 
 
 def against_front(values: Array) -> Array:
-    """Divide the decay of singular values by that of a constant-speed front.
+    """Decay of singular values over that of a constant-speed front.
 
     Parameters
     ----------
@@ -203,8 +193,7 @@ def against_front(values: Array) -> Array:
     """
     if values[0] == 0.0:
         return np.zeros_like(values)
-    found: Array = values / values[0] / front_decay(len(values))
-    return found
+    return np.asarray(values / values[0] / front_decay(len(values)))
 
 
 def _signs(modes: Array) -> Array:
@@ -214,7 +203,7 @@ def _signs(modes: Array) -> Array:
 
 
 def _field_and_weights(fields: InterfaceFields, name: InterfaceField) -> tuple[Array, Array]:
-    """Give a field in SI and the weights of its rows; rows beyond it have no meaning."""
+    """A field in SI and the weights of its rows; rows beyond it have no meaning."""
     problem, scales = fields.problem, fields.problem.scales
     sliding, weights = problem.sliding
     lengths = np.ones(problem.n_rows)
