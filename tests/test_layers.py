@@ -28,7 +28,6 @@ LAYERS = [
     ["tables"],
     ["checked"],
     ["settings"],
-    ["instants"],
     ["loads"],
     ["profiles"],
     ["scenes"],

@@ -11,10 +11,23 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, quantity
-from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning_knots
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
-from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
+from solver.loads import (
+    BEGINS,
+    NO_KNOTS,
+    PRESETS,
+    PRESSURES,
+    SAME,
+    Preset,
+    apart,
+    instants_of,
+    interpolate,
+    knots_of,
+    load_path,
+    thinned,
+    turning_knots,
+)
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000

@@ -17,9 +17,8 @@ from solver.definitions import Pairs, SettingError, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Support
 from solver.discrete.stack.fault import Fault, sheared
-from solver.instants import instants_of
 from solver.laws import Coulomb
-from solver.loads import INJECTIONS, interpolate
+from solver.loads import INJECTIONS, instants_of, interpolate
 from solver.profiles import means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
