@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.columns import TableColumn
+from solver.columns import TableColumn, examples_of
 from solver.definitions import CurveParameter, SettingError, allowed
 from solver.disk import read_bytes, why
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import Table, read_table
-from solver.units import examples_of
 
 _BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment"}
 """Quantities of settings whose ordinate is called value."""

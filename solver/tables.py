@@ -32,9 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import Refuse, TableColumn, are_units, column_of
+from solver.columns import Refuse, TableColumn, are_units, column_of, is_spelt_as_unit, size_in
 from solver.disk import LARGEST, TOO_LARGE
-from solver.units import is_spelt_as_unit, size_in
 
 Row = tuple[int, list[str]]
 """Number of a line, and its cells."""

@@ -23,7 +23,6 @@ LAYERS = [
     ["latin"],
     ["definitions"],
     ["disk"],
-    ["units"],
     ["columns"],
     ["tables"],
     ["checked"],

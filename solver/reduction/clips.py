@@ -57,7 +57,7 @@ class Clips:
     given
         The field, shape (n_points, n_instants), N/m.
     bound
-        Largest friction, same shape, or (n_points, 1) where it stays the same, N/m.
+        Largest friction, same shape, N/m.
     load
         What drives it, over the size of the bound at every instant as a share of its largest,
         shape (n_instants,).
@@ -81,7 +81,7 @@ class Clips:
         held = np.zeros(len(found))
         for branch in self.branches:
             some = branch.instants
-            found[:, some] = _clipped(branch, held, _during(self.bound, some), self.load)
+            found[:, some] = _clipped(branch, held, self.bound[:, some], self.load)
             held = found[:, some.stop - 1]
         return found
 
@@ -131,7 +131,7 @@ def clips_of(
     space_weights, time_weights
         Shapes (n_points,) and (n_instants,), positive.
     """
-    bound = bound.reshape(len(field), -1)
+    bound = np.broadcast_to(bound.reshape(len(field), -1), field.shape)
     size = bound.max(axis=0)
     most = float(size.max(initial=0.0)) or 1.0
     share = np.maximum(size / most, FADED)
@@ -140,7 +140,7 @@ def clips_of(
     held, before = np.zeros(len(field)), 0.0
     found: list[Branch] = []
     for some in monotone(driving):
-        limit = _during(bound, some)
+        limit = bound[:, some]
         branch = _fitted(field[:, some], held, limit, driving, some, before, weights[some])
         held = _clipped(branch, held, limit, driving)[:, -1]
         before = float(driving[some.stop - 1])
@@ -194,10 +194,6 @@ def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:
     return np.where(is_up, up, down)
 
 
-def _during(bound: Array, some: slice) -> Array:
-    return bound if bound.shape[1] == 1 else bound[:, some]
-
-
 def _numbers_of(bound: Array) -> int:
     """How many numbers a bound takes: fewer if it changes in size alone."""
     sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
@@ -205,5 +201,4 @@ def _numbers_of(bound: Array) -> int:
     is_product = np.abs(bound - shape * sizes).max() <= SAME_SHAPE * most
     if not is_product:
         return int(bound.size)
-    points, instants = bound.shape
-    return int(points + instants if instants > 1 else points)
+    return int(len(bound) + (bound.shape[1] if np.ptp(sizes) else 0))
