@@ -81,7 +81,7 @@ class Checked(param.Parameterized):
         return values
 
     @classmethod
-    def usual(cls, method: str) -> dict[str, Any]:
+    def defaults(cls, method: str) -> dict[str, Any]:
         """Value of every setting where only the method is given."""
         return {**cls._defaults(), **cls.of_method(method)}
 
@@ -102,10 +102,10 @@ class Checked(param.Parameterized):
 
         Where the method differs too, those that it sets are compared with what it says.
         """
-        usual = base.values() if base else self.usual(self.method)
+        defaults = base.values() if base else self.defaults(self.method)
         if base and base.method != self.method:
-            usual.update(self.of_method(self.method))
-        return {name: value for name, value in self._values.items() if value != usual[name]}
+            defaults.update(self.of_method(self.method))
+        return {name: value for name, value in self._values.items() if value != defaults[name]}
 
     def replace(self, /, **changes: object) -> Self:
         """New settings with some values changed, checked as a whole.

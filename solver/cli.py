@@ -254,13 +254,13 @@ def _scenes(_chosen: argparse.Namespace) -> int:
 
 def _settings(chosen: argparse.Namespace) -> int:
     kind = scene_settings(chosen.scene)
-    definitions, usual = kind.definitions(), kind.usual("paper")
+    definitions, papers = kind.definitions(), kind.defaults("paper")
     width = max(map(len, definitions)) + 1
     for name, definition in definitions.items():
         unit = about(definition).unit or "-"
         default = json.dumps(definition.default)
-        if usual[name] != definition.default:
-            default += f" (method=paper: {json.dumps(usual[name])})"
+        if papers[name] != definition.default:
+            default += f" (method=paper: {json.dumps(papers[name])})"
         print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
         print(f"{'':<{width}} {definition.doc}")
     return 0

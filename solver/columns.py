@@ -124,14 +124,14 @@ class TableColumn:
         return frozenset(), False
 
     def size(self, unit: str, refuse: Refuse) -> float:
-        """Return the size of its unit in another; refuse one that measures something else."""
+        """Size of its unit in another; refuse one that measures something else."""
         size = size_in(self.unit, unit) if self.unit else 1.0
         if size is None:
             raise refuse(f"line {self.line} says {self.unit}: give it in {examples_of(unit)}")
         return size
 
     def with_units(self, line: int, cells: list[str], refuse: Refuse) -> TableColumn:
-        """Return the column with what a line of units says of it."""
+        """The column with what a line of units says of it."""
         unit = cells[self.place].strip("()[]") if self.place < len(cells) else ""
         if not unit:
             return self

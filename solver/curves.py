@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -92,18 +93,18 @@ def _chosen(
             both = f"{definition.abscissa} and {definition.ordinate}"
             raise table.refuse(f"it has {len(columns)} columns: name {both} in its first line")
         return columns[0], columns[1]
-    own = [column for column in columns if column.key == name or column.key not in _SETTINGS]
+    likely = [column for column in columns if column.key == name or column.key not in _SETTINGS]
     kinds: Collection[str] = TableColumn(0, name=definition.ordinate).quantities[0]
     kinds = kinds or {_BY_UNIT[unit] for unit in units[1].split(" or ")}
     names = ", ".join(repr(column.name) for column in columns)
-    first = table.find(own, {definition.abscissa}, units[0])
+    first = table.find(likely, {definition.abscissa}, units[0])
     if first is None:
         loop = ": a loop, as force over displacement, is no path over time"
         raise table.refuse(
             f"its head names no {definition.abscissa} (it has {names})"
             f"{loop if definition.abscissa == 'time' else ''}; add that column"
         )
-    rest = [column for column in own if column is not first]
+    rest = [column for column in likely if column is not first]
     second = table.find(rest, kinds, units[1], name)
     if second is None and len(columns) == 2 and rest:
         second = None if rest[0].quantities[0] else rest[0]
@@ -115,7 +116,7 @@ def _chosen(
 
 
 def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -> dict[str, Table]:
-    """Read the CSV files that curves name, put their points into the values, and give them.
+    """Tables in the CSV files that curves name, whose points replace the names in the values.
 
     Reading files is for fronts whose user owns the machine, so nothing else does it.
     """
@@ -138,12 +139,11 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     SettingError
         Where the other settings want another quantity than a table has.
     """
-    found = {}
-    for name, table in tables.items():
-        definition, units = settings.definitions()[name], settings.curve_units(name)
-        if isinstance(definition, CurveParameter):
-            found[name] = curve_of(table, definition, name, units).message
-    return found
+    definitions: Mapping[str, Any] = settings.definitions()
+    return {
+        name: curve_of(table, definitions[name], name, settings.curve_units(name)).message
+        for name, table in tables.items()
+    }
 
 
 def _read_file(path: Path, definition: CurveParameter, name: str) -> Table:

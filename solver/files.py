@@ -193,7 +193,7 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
             continue
         fields = iterate.contact(name)
         *_, tangential = iterate.problem.contact_places[name]
-        own = {
+        entries = {
             "points": law.positions,
             "determinate": determinate[tangential],
             "normal_force": fields.normal_force,
@@ -203,7 +203,7 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
             "status": fields.status,
         }
         arrays |= {
-            f"interface/{name}/{key}": field for key, field in own.items() if field is not None
+            f"interface/{name}/{key}": field for key, field in entries.items() if field is not None
         }
     return arrays
 

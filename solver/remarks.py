@@ -59,7 +59,7 @@ def prepared(settings: Settings, assignments: Sequence[str], tables: Mapping[str
 
 def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
     """Sentences on what a run does not heed: idle settings, and load tables that go on."""
-    idle, duration = settings.usual("paper"), settings.duration
+    idle, duration = settings.defaults("paper"), settings.duration
     names = dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
     remarks = [
         f"{name} does nothing with the other settings as they are"

@@ -62,7 +62,7 @@ class Table:
 
         `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named.
         """
-        said = [
+        parts = [
             column.message(name, unit)
             for column, name, unit in zip(columns, names, units, strict=True)
         ]
@@ -71,12 +71,12 @@ class Table:
         ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
         others = [repr(column.name) for column in self.columns if column not in columns]
         passed = f"; passed over: {', '.join(others)}" if others else ""
-        return f"{', '.join(said)}, {numbers.shape[1]} points, {ends}{passed}"
+        return f"{', '.join(parts)}, {numbers.shape[1]} points, {ends}{passed}"
 
     def find(
         self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
     ) -> TableColumn | None:
-        """Find the column of a quantity among some, as described above.
+        """Column of a quantity among some, as described above.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class Table:
         return None
 
     def numbers(self, columns: Sequence[TableColumn]) -> Array:
-        """Return the numbers of some columns as they are written, shape (n_columns, n_rows).
+        """Numbers of some columns as they are written, shape (n_columns, n_rows).
 
         Raises
         ------
@@ -130,7 +130,7 @@ class Table:
         """Cells with decimal points; of both signs the rarer one is refused, with its line."""
         signs = Counter(sign for row in cells for text in row for sign in ",." if sign in text)
         if signs["."] and signs[","]:
-            (usual, _), (rare, _) = signs.most_common()
+            (common, _), (rare, _) = signs.most_common()
             line, text = next(
                 (line, text)
                 for (line, _), row in zip(self.rows, cells, strict=True)
@@ -140,13 +140,13 @@ class Table:
             names = {",": "comma", ".": "point"}
             raise self.refuse(
                 f"line {line} has {text!r}, with a decimal {names[rare]} where others have a "
-                f"{names[usual]}: write all of them alike, and thousands without a sign"
+                f"{names[common]}: write all of them alike, and thousands without a sign"
             )
         return [[text.replace(",", ".") for text in row] for row in cells] if signs[","] else cells
 
 
 def read_table(data: bytes | str, refuse: Refuse) -> Table:
-    """Read a table, as described above.
+    """Table as it is read, as described above.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _number(cell: str) -> float:
-    """Return a number; NaN for what is none."""
+    """Number of a cell; NaN for what is none."""
     try:
         return float(cell)
     except ValueError:

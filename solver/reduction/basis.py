@@ -108,7 +108,7 @@ class SeparatedBasis:
         return mode
 
     def downsize(self, tolerance: float, largest: int) -> float:
-        """Make the modes those of the field's singular values, sorted, and drop the smallest.
+        """Turn the modes into those of the field's singular values, sorted, and drop the smallest.
 
         As the modes are orthonormal, the singular values of the field are those of the small
         matrix of time functions.
@@ -268,7 +268,7 @@ class Reduction:
     @property
     def at_rest(self) -> Reduction:
         """The same bases, after an iteration that did nothing to them."""
-        idle = (ReductionRecord.idle(own.n_modes) for own in self.modes)
+        idle = (ReductionRecord.idle(shown.n_modes) for shown in self.modes)
         return Reduction(self.modes, tuple(idle))
 
     @property

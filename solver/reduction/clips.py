@@ -77,13 +77,13 @@ class Clips:
     @cached_property
     def field(self) -> Array:
         """What the clips are, shape (n_points, n_instants), N/m."""
-        found = np.empty_like(self.given)
-        held = np.zeros(len(found))
+        field = np.empty_like(self.given)
+        held = np.zeros(len(field))
         for branch in self.branches:
             some = branch.instants
-            found[:, some] = _clipped(branch, held, self.bound[:, some], self.load)
-            held = found[:, some.stop - 1]
-        return found
+            field[:, some] = _clipped(branch, held, self.bound[:, some], self.load)
+            held = field[:, some.stop - 1]
+        return field
 
     @cached_property
     def rest(self) -> Decomposition:
@@ -138,14 +138,14 @@ def clips_of(
     driving = np.asarray(load / share)
     weights = time_weights * share**2
     held, before = np.zeros(len(field)), 0.0
-    found: list[Branch] = []
+    branches: list[Branch] = []
     for some in monotone(driving):
         limit = bound[:, some]
         branch = _fitted(field[:, some], held, limit, driving, some, before, weights[some])
         held = _clipped(branch, held, limit, driving)[:, -1]
         before = float(driving[some.stop - 1])
-        found.append(branch)
-    return Clips(field, bound, driving, tuple(found), space_weights, time_weights)
+        branches.append(branch)
+    return Clips(field, bound, driving, tuple(branches), space_weights, time_weights)
 
 
 def monotone(load: Array) -> Iterator[slice]:
@@ -186,8 +186,7 @@ def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:
 
     What was held is within a bound that has fallen since.
     """
-    own = load[branch.instants]
-    line = (branch.slope[:, None] * own + branch.offset[:, None]) * bound
+    line = (branch.slope[:, None] * load[branch.instants] + branch.offset[:, None]) * bound
     kept = np.clip(held[:, None], -bound, bound)
     is_up = (branch.way * branch.slope >= 0.0)[:, None]
     up, down = np.minimum(bound, np.maximum(kept, line)), np.maximum(-bound, np.minimum(kept, line))

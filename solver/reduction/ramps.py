@@ -1,6 +1,6 @@
 """Ramps between two stops: what the friction of a point is, as long as the load goes one way.
 
-Inside one monotone branch of the load, a point keeps the friction that the branch found, then
+Inside one monotone branch of the load, a point keeps the friction that it had before, then
 follows the load in proportion, then slips at its bound (solver/README.md, 16). So its friction is
 min(1, max(low, a g + b)), as a share of its bound, with the load g counted in the branch's way:
 what is clipped is a straight line. Where the clip shows the line at one instant, or at none, many
@@ -76,9 +76,9 @@ def fitted(seen: Seen) -> tuple[Array, Array]:
     def keep(line: tuple[Array, Array]) -> None:
         usable = np.isfinite(line[0]) & np.isfinite(line[1]) & (line[0] > 0.0)
         tried = np.where(usable, line[0], 0.0), np.where(usable, line[1], BELOW)
-        found = seen.miss(*tried)
-        better = found < missed
-        for kept, new in ((missed, found), (slope, tried[0]), (offset, tried[1])):
+        misses = seen.miss(*tried)
+        better = misses < missed
+        for kept, new in ((missed, misses), (slope, tried[0]), (offset, tried[1])):
             kept[better] = new[better]
 
     depth = np.minimum(seen.shares - seen.low, 1.0 - seen.shares)

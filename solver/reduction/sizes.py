@@ -55,9 +55,9 @@ def in_pieces(fields: InterfaceFields) -> Sizes:
     values = [singular_values(field, weights, time_weights) for *_, field, weights in pieces]
     most = max(map(len, values))
     left, numbers = np.zeros(most + 1), np.zeros(most + 1, dtype=int)
-    for (*_, field, _), own in zip(pieces, values, strict=True):
-        left[: len(own)] += np.cumsum(own[::-1] ** 2)[::-1]
-        numbers += sum(field.shape) * np.minimum(np.arange(most + 1), len(own))
+    for (*_, field, _), singular in zip(pieces, values, strict=True):
+        left[: len(singular)] += np.cumsum(singular[::-1] ** 2)[::-1]
+        numbers += sum(field.shape) * np.minimum(np.arange(most + 1), len(singular))
     return Sizes(numbers, _relative(left))
 
 

@@ -107,9 +107,8 @@ class Decomposition:
         the modes point the same way.
         """
         lengths = np.sqrt(self.space_weights @ modes**2)
-        own = self.space_modes[:, : modes.shape[1]]
-        cosines: Array = self.space_weights @ (own * modes) / lengths
-        return cosines
+        space_modes = self.space_modes[:, : modes.shape[1]]
+        return np.asarray(self.space_weights @ (space_modes * modes) / lengths)
 
 
 def decompose(

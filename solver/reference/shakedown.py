@@ -134,8 +134,8 @@ def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
             sparse.kron(rings, sparse.eye_array(count)),
         ]
     )
-    found = _largest(size, sparse.vstack([within, -within]), np.tile(bound.ravel(), 2))
-    return np.inf if found.status == UNBOUNDED else float(found.x[size])
+    solution = _largest(size, sparse.vstack([within, -within]), np.tile(bound.ravel(), 2))
+    return np.inf if solution.status == UNBOUNDED else float(solution.x[size])
 
 
 def _largest(place: int, matrix: Array | sparse.sparray, limit: Array) -> OptimizeResult:
@@ -150,10 +150,10 @@ def _largest(place: int, matrix: Array | sparse.sparray, limit: Array) -> Optimi
     bounds[place, 0] = 0.0
     aim = np.zeros(matrix.shape[1])
     aim[place] = -1.0
-    found = linprog(aim, A_ub=matrix, b_ub=limit, bounds=bounds, method="highs")
-    if not found.success and found.status != UNBOUNDED:
-        raise NoReferenceError(f"No slip could stay: {found.message}")
-    return found
+    solution = linprog(aim, A_ub=matrix, b_ub=limit, bounds=bounds, method="highs")
+    if not solution.success and solution.status != UNBOUNDED:
+        raise NoReferenceError(f"No slip could stay: {solution.message}")
+    return solution
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,10 +244,10 @@ def largest_swing(space: SlipSpace, some: slice) -> tuple[float, Array]:
     unit, scale = float(np.abs(space.matrix).max()), float(np.abs(limit).max()) or 1.0
     size = space.matrix.shape[1]
     matrix = np.column_stack([space.matrix / unit, -least / scale])
-    found = _largest(size, matrix, mean / scale)
-    if found.status == UNBOUNDED:
+    solution = _largest(size, matrix, mean / scale)
+    if solution.status == UNBOUNDED:
         return np.inf, np.zeros(size)
-    return float(found.x[size]), found.x[:size] * scale / unit
+    return float(solution.x[size]), solution.x[:size] * scale / unit
 
 
 def room_of_two(space: SlipSpace, some: slice) -> Array:
@@ -259,15 +259,14 @@ def room_of_two(space: SlipSpace, some: slice) -> Array:
     """
     matrix, limit = space.matrix, space.limit[:, some].min(axis=1)
     slack = SLACK * float(np.abs(space.limit).max(initial=0.0))
-    found = []
+    corners = []
     for pair in combinations(range(len(matrix)), 2):
         lines = matrix[list(pair)]
         if abs(np.linalg.det(lines)) > SLACK * np.abs(lines).max() ** 2:
             corner = np.linalg.solve(lines, limit[list(pair)])
             if np.all(matrix @ corner <= limit + slack):
-                found.append(corner)
-    if not found:
+                corners.append(corner)
+    if not corners:
         return np.zeros((0, 2))
-    corners = np.array(found)
-    away = corners - corners.mean(axis=0)
-    return np.asarray(corners[np.argsort(np.arctan2(away[:, 1], away[:, 0]))])
+    away = (corners - np.mean(corners, axis=0)).T
+    return np.array(corners)[np.argsort(np.arctan2(away[1], away[0]))]

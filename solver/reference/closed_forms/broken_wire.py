@@ -20,7 +20,7 @@ from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 
 STEPS = 100
 PRECISION = 1e-13
-"""Change of the tension, as a share of the largest, at which it is found."""
+"""Change of the tension, as a share of the largest, at which it is accepted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | N
     """Bars left and right of the break, from their far ends to the break, if known."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
-    found = []
+    bars = []
     for elements in (node, scene.elements - node):
         side = RodsData(
             length=scene.length * elements / scene.elements,
@@ -95,8 +95,8 @@ def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | N
             load=tension,
             bound=sides * scene.bound[: elements + 1],
         )
-        found.append(closed_form(side))
-    left, right = found
+        bars.append(closed_form(side))
+    left, right = bars
     return None if left is None or right is None else (left, right)
 
 

@@ -53,17 +53,17 @@ def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> A
     """
     steps, later = np.diff(instants), instants[1:] - instants[0]
     bends = np.diff(np.diff(given) / steps, prepend=0.0)
-    found = given[0] * _steady(place, later, diffusivity)
+    pressure = given[0] * _steady(place, later, diffusivity)
     if np.ptp(steps) <= EVEN * later[-1]:
         risen = _risen(place, later, diffusivity)
-        found += fftconvolve(risen, bends[None], axes=1)[:, : len(later)]
+        pressure += fftconvolve(risen, bends[None], axes=1)[:, : len(later)]
     else:
         for number in np.flatnonzero(np.abs(bends) > EVEN * np.abs(bends).max()):
             after = instants[number + 1 :] - instants[number]
-            found[:, number:] += bends[number] * _risen(place, after, diffusivity)
+            pressure[:, number:] += bends[number] * _risen(place, after, diffusivity)
     # At the end itself it is what is given, to the last digit.
-    found[place == 0.0] = given[1:]
-    return np.concatenate([np.zeros((len(place), 1)), found], axis=1)
+    pressure[place == 0.0] = given[1:]
+    return np.concatenate([np.zeros((len(place), 1)), pressure], axis=1)
 
 
 def _steady(place: Array, later: Array, diffusivity: float) -> Array:
@@ -120,16 +120,16 @@ def fronts(place: Array, lack: Array) -> Array:
     -------
     Half-length a, shape (n_instants,), m; 0 where nothing slips, infinite where all does.
     """
-    found = np.zeros(lack.shape[1])
-    for instant, own in enumerate(lack.T):
+    half_lengths = np.zeros(lack.shape[1])
+    for instant, lacking in enumerate(lack.T):
 
-        def left(half: float, own: Array = own) -> float:
-            return float(np.interp(half * SHARES, place, own).mean())
+        def left(half: float, lacking: Array = lacking) -> float:
+            return float(np.interp(half * SHARES, place, lacking).mean())
 
-        if own[0] < 0.0:
+        if lacking[0] < 0.0:
             last = float(place[-1])
-            found[instant] = np.inf if left(last) < 0.0 else brentq(left, 0.0, last)
-    return found
+            half_lengths[instant] = np.inf if left(last) < 0.0 else brentq(left, 0.0, last)
+    return half_lengths
 
 
 def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -> Array:
@@ -148,10 +148,10 @@ def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -
     -------
     Shape (m,), Pa.
     """
-    own = np.interp(half_length * SHARES, place, lack)
+    lacking = np.interp(half_length * SHARES, place, lack)
     square = beyond**2 - half_length**2
     near = square[:, None] + (half_length**2) * (1.0 - SHARES**2)
-    return np.asarray(np.sqrt(square) * beyond * (own / near).mean(axis=1))
+    return np.asarray(np.sqrt(square) * beyond * (lacking / near).mean(axis=1))
 
 
 def slip_under_growing_strength(

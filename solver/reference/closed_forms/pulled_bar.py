@@ -28,7 +28,7 @@ from solver.reference.closed_forms.masing import energy_of_cycle
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""
 AT_ONCE = 60_000
-"""Forces, at sections and instants, that are found in one go: few enough to stay in a cache."""
+"""Forces, at sections and instants, that are computed in one go: few enough to stay in a cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +57,7 @@ class ClosedForm:
     @property
     def end_displacement(self) -> Array:
         """Displacement of the free end, shape (n_instants,), m."""
-        found: Array = self.displacement[-1]
-        return found
+        return np.asarray(self.displacement[-1])
 
 
 def closed_form(scene: RodsData) -> ClosedForm | None:
@@ -189,7 +188,7 @@ def pulled_changing_bar(
     ratio
         Last bound over the first, not 1.
     slip_length
-        Slip s_0 at which the bound is the last, m: more than what is found.
+        Slip s_0 at which the bound is the last, m: more than what is returned.
     """
     slope = bound * (ratio - 1.0) / slip_length
     gamma = np.sqrt(abs(slope) / stiffness)
