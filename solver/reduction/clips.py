@@ -27,6 +27,8 @@ STEPS = 6
 """Passes in which a line is fitted again to the instants at which its own clip shows it. With 2 the
 error where friction changes with slip is a sixth larger, on iterates of bar and strand the same
 (measured)."""
+ENTRIES = 64
+"""Instants of a branch, at most, at which lines are drawn through the entries of all points."""
 SAME_SHAPE = 1e-9
 """Share of the largest bound by which one that changes in size alone may differ from that."""
 
@@ -217,9 +219,10 @@ class _Ramps:
     def fitted(self) -> tuple[Array, Array]:
         """Slope and offset of the line fitted to every point, (n_points,) each.
 
-        Of lines through each entry, as steep as the point is before it or after it, the nearest
-        is taken: it is exact where the clip shows the line at one instant, or at none. Then lines
-        are fitted to the instants at which its clip shows it. A point that keeps what it has gets a
+        Of lines through entries, as steep as the point is before them or after them, the nearest is
+        taken. With the ones through the entry farthest from both stops, and the first above their
+        middle, it is exact where the clip shows the line at one instant, or at none. Then lines are
+        fitted to the instants at which its clip shows it. A point that keeps what it has gets a
         slope of 0, and all others one above.
         """
         slope, offset = np.zeros(len(self.shares)), np.full(len(self.shares), BELOW)
@@ -237,8 +240,13 @@ class _Ramps:
         rises = np.diff(loads)
         slopes = np.diff(shares) / np.where(rises > 0.0, rises, np.inf)
         steepest = np.maximum(slopes, np.hstack([slopes[:, 1:], slopes[:, -1:]]))
-        for steep, share, force in zip(steepest.T, self.shares.T, self.load, strict=True):
-            keep(steep, share - steep * force)
+        deepest = np.argmax(np.minimum(self.shares - self.low, 1.0 - self.shares), axis=1)
+        slid = np.argmax(self.shares >= 0.5 * (self.low + 1.0), axis=1)
+        points, count = np.arange(len(slid)), len(self.load)
+        evenly = np.linspace(0, count - 1, min(count, ENTRIES)).astype(int)
+        for entry in [slid, deepest, *evenly]:
+            steep = steepest[points, entry]
+            keep(steep, self.shares[points, entry] - steep * self.load[entry])
         for _ in range(STEPS):
             line = slope[:, None] * self.load + offset[:, None]
             keep(*self._regression((line > self.low) & (line < 1.0)))
