@@ -125,9 +125,9 @@ def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -
         value = values.get(name)
         if not isinstance(definition, CurveParameter) or not isinstance(value, str):
             continue
-        if value and value not in definition.presets:
-            tables[name] = _read_file(folder / value, definition, name)
-            values[name] = curve_of(tables[name], definition, name, definition.units).points
+        if value not in ("", *definition.presets):
+            table = tables[name] = _read_file(folder / value, definition, name)
+            values[name] = curve_of(table, definition, name, definition.units).points
     return tables
 
 

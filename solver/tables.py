@@ -38,7 +38,6 @@ from solver.disk import LARGEST, TOO_LARGE
 Row = tuple[int, list[str]]
 """Number of a line, and its cells."""
 SEPARATORS = "\t;, "
-NO_TEXT = "it is no text: save the table as CSV"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|\d+,\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I)
 
 
@@ -180,22 +179,22 @@ def read_table(data: bytes | str, refuse: Refuse) -> Table:
 
 
 def _text(data: bytes | str, refuse: Refuse) -> str:
-    text = data
-    if isinstance(data, bytes):
-        encodings = ["utf-8-sig", "cp1252"]
-        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            encodings = ["utf-16"]
-        elif data and 0.4 < data.count(0) / len(data) <= 0.5:
-            encodings = ["utf-16-be" if data[0] == 0 else "utf-16-le"]
-        for encoding in encodings:
-            try:
-                text = data.decode(encoding)
-                break
-            except UnicodeDecodeError:
-                continue
-    if not isinstance(text, str) or "\0" in text:
-        raise refuse(NO_TEXT)
+    text = data if isinstance(data, str) else _decoded(data)
+    if "\0" in text:
+        raise refuse("it is no text: save the table as CSV")
     return text.removeprefix("\ufeff")
+
+
+def _decoded(data: bytes) -> str:
+    encoding = "utf-8-sig"
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        encoding = "utf-16"
+    elif data and 0.4 < data.count(0) / len(data) <= 0.5:
+        encoding = "utf-16-be" if data[0] == 0 else "utf-16-le"
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")
 
 
 def _is_number(cell: str) -> bool:
