@@ -6,6 +6,7 @@ the friction rows and trapezoidal weights of the instants.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -13,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
@@ -145,31 +146,31 @@ def singular_values(field: Array, space_weights: Array, time_weights: Array) -> 
 
 def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
     """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
-    problem = fields.problem
-    field, weights = _field_and_weights(fields, name)
-    time_weights = problem.time_weights * problem.scales.time
-    places = problem.positions[problem.row_dofs]
-    return [
-        decompose(field[rows], weights[rows], time_weights, places[rows])
-        for rows in friction_rows(problem)
-    ]
+    return [decompose(*part) for part in _parts(fields, name)]
 
 
 def friction_spectra(fields: InterfaceFields) -> list[Array]:
     """Singular values of the friction force in every substructure, N sqrt(s/m), as above."""
-    problem = fields.problem
-    field, weights = _field_and_weights(fields, InterfaceField.FRICTION_FORCE)
-    time_weights = problem.time_weights * problem.scales.time
-    return [
-        singular_values(field[rows], weights[rows], time_weights) for rows in friction_rows(problem)
-    ]
+    parts = _parts(fields, InterfaceField.FRICTION_FORCE)
+    return [singular_values(field, *weights) for field, *weights, _ in parts]
 
 
-def friction_rows(problem: Problem) -> list[Indices]:
-    """Boundary rows that rub, per substructure, in the order of its own rows."""
-    rubs = np.zeros(problem.n_rows, dtype=bool)
-    rubs[problem.sliding[0]] = True
-    return [part.rows[rubs[part.rows]] for part in problem.substructures]
+def _parts(
+    fields: InterfaceFields, name: InterfaceField
+) -> Iterator[tuple[Array, Array, Array, Array]]:
+    """Yield a field of every substructure on its rows that rub, its weights and its positions."""
+    problem, scales = fields.problem, fields.problem.scales
+    sliding, weights = problem.sliding
+    lengths = np.zeros(problem.n_rows)
+    lengths[sliding] = weights
+    positions = problem.positions[problem.row_dofs]
+    for part in problem.substructures:
+        rows = part.rows[lengths[part.rows] > 0.0]
+        if name is InterfaceField.FRICTION_FORCE:
+            field = fields.boundary_force[rows] * scales.force / lengths[rows, None]
+        else:
+            field = fields.boundary_displacement[rows] * scales.displacement
+        yield field, lengths[rows], problem.time_weights * scales.time, positions[rows]
 
 
 def front_decay(count: int) -> Array:
@@ -199,14 +200,3 @@ def _signs(modes: Array) -> Array:
     size = np.abs(modes)
     largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)
     return np.where(modes[largest, np.arange(modes.shape[1])] < 0.0, -1.0, 1.0)
-
-
-def _field_and_weights(fields: InterfaceFields, name: InterfaceField) -> tuple[Array, Array]:
-    """A field in SI and the weights of its rows; rows beyond it have no meaning."""
-    problem, scales = fields.problem, fields.problem.scales
-    sliding, weights = problem.sliding
-    lengths = np.ones(problem.n_rows)
-    lengths[sliding] = weights
-    if name is InterfaceField.FRICTION_FORCE:
-        return fields.boundary_force * scales.force / lengths[:, None], lengths
-    return fields.boundary_displacement * scales.displacement, lengths
