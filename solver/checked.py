@@ -31,15 +31,14 @@ class Checked(param.Parameterized):
     @cache
     def definitions(cls) -> Mapping[str, Parameter]:
         """Definition of every setting, by name, in the order of their groups."""
-        definitions = {name: cls.param[name] for name in cls.param}
+        parameters = {name: cls.param[name] for name in cls.param}
         return MappingProxyType(
-            {name: one for name, one in definitions.items() if "about" in (one.metadata or {})}
+            {
+                name: parameter
+                for name, parameter in parameters.items()
+                if "about" in (parameter.metadata or {})
+            }
         )
-
-    @classmethod
-    @cache
-    def _defaults(cls) -> Mapping[str, Any]:
-        return {name: definition.default for name, definition in cls.definitions().items()}
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
@@ -56,17 +55,16 @@ class Checked(param.Parameterized):
             For an unknown name, a wrong type, a value out of range, or values that do not fit
             together.
         """
-        definitions, defaults = cls.definitions(), cls._defaults()
+        definitions = cls.definitions()
         clean = {}
         for name, value in values.items():
             if name not in definitions:
                 raise unknown(name, value, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        values = {**cls.of_method(clean.get("method", defaults["method"])), **clean}
+        values = {**cls.of_method(clean.get("method", definitions["method"].default)), **clean}
         # A default that is given takes param as long as anything else.
-        settings = cls(
-            **{name: value for name, value in values.items() if value is not defaults[name]}
-        )
+        others = {n: value for n, value in values.items() if value is not definitions[n].default}
+        settings = cls(**others)
         settings.check_together()
         return settings
 
@@ -83,7 +81,8 @@ class Checked(param.Parameterized):
     @classmethod
     def defaults(cls, method: str) -> dict[str, Any]:
         """Value of every setting where only the method is given."""
-        return {**cls._defaults(), **cls.of_method(method)}
+        values = {name: definition.default for name, definition in cls.definitions().items()}
+        return {**values, **cls.of_method(method)}
 
     def check_together(self) -> None:
         """Check what no setting can check alone; a scene extends this."""

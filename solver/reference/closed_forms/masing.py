@@ -13,9 +13,6 @@ from scipy.integrate import quad
 
 from solver.arrays import Array
 
-Turn = tuple[float, float]
-"""A load, and the answer at it."""
-
 
 def masing(load: Array, grown: Callable[[float], float]) -> Array:
     """Answer to a load from rest on, shape (n_instants,).
@@ -27,8 +24,8 @@ def masing(load: Array, grown: Callable[[float], float]) -> Array:
     grown
         The answer to a load that has grown from rest to a value, which is not negative.
     """
-    turns: list[Turn] = [(0.0, 0.0)]
-    now: Turn = turns[0]
+    turns = [(0.0, 0.0)]  # loads, and the answers at them
+    now = turns[0]
     answers = np.zeros_like(load)
     for instant, value in enumerate(load.tolist()):
         if (value - now[0]) * (now[0] - turns[-1][0]) < 0.0:
@@ -43,7 +40,7 @@ def masing(load: Array, grown: Callable[[float], float]) -> Array:
     return answers
 
 
-def _closes(value: float, turns: list[Turn]) -> bool:
+def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
     """Whether a load has come back to where the turn before the last one was, or beyond.
 
     Where that is rest, the first curve goes on at the opposite of the last one.
