@@ -243,18 +243,18 @@ def _heads(rows: Sequence[Row]) -> tuple[Sequence[Row], int]:
         cells = rows[place][1]
         return len(cells) > 1 and (are_units(cells) or not any(map(_is_number, cells)))
 
-    for place, (_, cells) in enumerate(rows):
+    def is_first(place: int) -> bool:
+        cells = rows[place][1]
         numbers = sum(map(_is_number, cells))
-        if numbers > 1 and (numbers == len(cells) or (place > 0 and is_head(place - 1))):
-            first = place
-            while first > 0 and is_head(first - 1):
-                first -= 1
-            if first < place:
-                return rows[first:place], place
-            break
-    start = (place for place, (_, cells) in enumerate(rows) if any(map(_is_number, cells)))
-    place = next(start, len(rows))
-    return rows[:place], place
+        return numbers > 1 and (numbers == len(cells) or (place > 0 and is_head(place - 1)))
+
+    first = start = next(filter(is_first, range(len(rows))), 0)
+    while first > 0 and is_head(first - 1):
+        first -= 1
+    if first == start:
+        numbers = (place for place, (_, cells) in enumerate(rows) if any(map(_is_number, cells)))
+        first, start = 0, next(numbers, len(rows))
+    return rows[first:start], start
 
 
 def _columns(
