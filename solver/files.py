@@ -20,17 +20,11 @@ from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-HISTORY = (
-    "indicator",
-    "behaviour",
-    "estimated_error",
-    "seconds",
-    "error_displacement",
-    "error_force",
-)
-"""What a result has of every iteration."""
+INDICATORS = "indicator", "behaviour", "estimated_error"
+ERRORS = "error_displacement", "error_force"
+"""What is known of every iteration, beside its time; errors where there is a reference."""
 OF_BASES = "modes", "added", "updated", "enriched", "dropped"
-"""The same of every separated basis."""
+"""What is known of every separated basis at every iteration."""
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
@@ -120,13 +114,10 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "advice": solution.status.advice,
         "remarks": remarks_on(settings, solution.iterate),
         "iterations": solution.iterate.iterations,
-        "indicator": last.indicator if last else None,
-        "behaviour": last.behaviour if last else None,
-        "estimated_error": last.estimated_error if last else None,
+        **{name: getattr(last, name, None) for name in INDICATORS},
         "certified": solution.is_certified,
         "residual": solution.iterate.residual,
-        "error_displacement": last.error_displacement if last else None,
-        "error_force": last.error_force if last else None,
+        **{name: getattr(last, name, None) for name in ERRORS},
         "seconds": last.seconds if last else solution.iterate.seconds,
         **bases,
     }
@@ -146,7 +137,10 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     shape (n_iterations, n_substructures), as in `ReductionRecord`.
     """
     iterate, problem = solution.iterate, solution.iterate.problem
-    history = {name: [getattr(entry, name) for entry in solution.records] for name in HISTORY}
+    history = {
+        name: [getattr(entry, name) for entry in solution.records]
+        for name in (*INDICATORS, *ERRORS, "seconds")
+    }
     if iterate.reduction is not None:
         for name in OF_BASES:
             history[f"pgd_{name}"] = [

@@ -53,7 +53,7 @@ def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> A
     """
     steps, later = np.diff(instants), instants[1:] - instants[0]
     bends = np.diff(np.diff(given) / steps, prepend=0.0)
-    pressure = given[0] * _steady(place, later, diffusivity)
+    pressure = given[0] * erfc(_far(place, later, diffusivity))
     if np.ptp(steps) <= EVEN * later[-1]:
         risen = _risen(place, later, diffusivity)
         pressure += fftconvolve(risen, bends[None], axes=1)[:, : len(later)]
@@ -66,13 +66,8 @@ def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> A
     return np.concatenate([np.zeros((len(place), 1)), pressure], axis=1)
 
 
-def _steady(place: Array, later: Array, diffusivity: float) -> Array:
-    """What a pressure of 1 Pa has done after some times, shape (n_places, n_times)."""
-    return np.asarray(erfc(_far(place, later, diffusivity)))
-
-
 def _risen(place: Array, later: Array, diffusivity: float) -> Array:
-    """What a pressure that rises by 1 Pa/s has done: the integral of `_steady`."""
+    """What a pressure that rises by 1 Pa/s has done, shape (n_places, n_times)."""
     far = _far(place, later, diffusivity)
     steady = erfc(far)
     return np.asarray(
@@ -81,6 +76,7 @@ def _risen(place: Array, later: Array, diffusivity: float) -> Array:
 
 
 def _far(place: Array, later: Array, diffusivity: float) -> Array:
+    """Places over the diffusion length."""
     return np.minimum(place[:, None] / np.sqrt(4.0 * diffusivity * later), DRY)
 
 
