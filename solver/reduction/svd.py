@@ -163,14 +163,18 @@ def _parts(
     sliding, weights = problem.sliding
     lengths = np.zeros(problem.n_rows)
     lengths[sliding] = weights
-    positions = problem.positions[problem.row_dofs]
+    positions, time_weights = (
+        problem.positions[problem.row_dofs],
+        problem.time_weights * scales.time,
+    )
+    if name is InterfaceField.FRICTION_FORCE:
+        whole = fields.boundary_force * scales.force
+        whole[sliding] /= weights[:, None]
+    else:
+        whole = fields.boundary_displacement * scales.displacement
     for part in problem.substructures:
         rows = part.rows[lengths[part.rows] > 0.0]
-        if name is InterfaceField.FRICTION_FORCE:
-            field = fields.boundary_force[rows] * scales.force / lengths[rows, None]
-        else:
-            field = fields.boundary_displacement[rows] * scales.displacement
-        yield field, lengths[rows], problem.time_weights * scales.time, positions[rows]
+        yield whole[rows], lengths[rows], time_weights, positions[rows]
 
 
 def front_decay(count: int) -> Array:
