@@ -12,7 +12,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.files import settings_from_command
-from solver.prepared import print_tables
+from solver.remarks import print_tables
 from solver.report_commands import writing
 from solver.running.executors import FORMS, opened
 from solver.running.pool import GoneError
