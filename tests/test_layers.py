@@ -37,7 +37,7 @@ LAYERS = [
     ["curves"],
     ["files"],
     ["prepared"],
-    ["running"],
+    ["executors"],
     ["study"],
     ["lessons", "mesh_command", "report_commands", "compare_command"],
     ["sweep_command"],

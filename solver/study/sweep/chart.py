@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.study.chart import Chart, Map, Panel, PanelAxis, PanelCurve, Runs
 from solver.study.sweep.plan import Plan, Varied
-from solver.study.sweep.point import Row
+from solver.study.sweep.run import Row
 
 MOST_CURVES = 6
 """Numbers of a second setting that have a curve each; more of them make a map."""

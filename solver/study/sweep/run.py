@@ -1,0 +1,290 @@
+"""The runs of a sweep: what a process does for one point, and rows as they come."""
+
+from __future__ import annotations
+
+import math
+import platform
+import queue
+import time
+import uuid
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from solver.files import save_result
+from solver.latin import Ending
+from solver.reference.solution import States
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
+from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run
+from solver.study.quantities.memory import settle
+from solver.study.quantities.quantities import reading
+from solver.study.sweep.plan import Plan
+
+STUCK, LOST = "stuck", "lost"
+"""How a run ends whose process was ended: by its time limit, or by something else."""
+TOO_LONG = "It took longer than a run may; allow more with --limit."
+KEPT = 500
+"""Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41. Of the
+scenes as they are each takes 5 to 30 kB."""
+_runs: dict[str, dict[tuple[float, ...], States]] = {}
+"""What stuck, slipped and opened in the runs of this process, of the last sweep, by place."""
+PATIENCE = 0.2
+"""Seconds between two looks at whether a sweep is still wanted."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What came of one point.
+
+    Attributes
+    ----------
+    number
+        Of the point in the plan.
+    ending
+        `converged` and the other ways in which a run ends; `refused` where its settings do not fit
+        together, `broken` where the engine failed, `stuck` and `lost` where its process was ended.
+    reason
+        Of any ending but convergence, and what to try.
+    values
+        Of the readings of the plan, in their units: NaN where the run has none, infinity for
+        never. Those of a run that has not converged are what it had come to.
+    iterations
+        How many it did.
+    seconds
+        That the whole of it took, with its problem, its reference and its readings.
+    was_warm
+        Whether it started from the run nearest to it.
+    """
+
+    number: int
+    ending: str
+    reason: str
+    values: tuple[float, ...]
+    iterations: int = 0
+    seconds: float = 0.0
+    was_warm: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether the run has converged, so that its values are answers."""
+        return self.ending == Ending.CONVERGED
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run, for whatever process does it.
+
+    Attributes
+    ----------
+    sweep, number
+        A name that no other sweep has, and the point.
+    scene, changes
+        Settings, those at their defaults left out.
+    readings
+        Names of what is taken of the run.
+    limit, fields
+        As for `sweep`.
+    place
+        Of the point, as shares of the axes; None for a run that starts from no other.
+    versions
+        Of who asks, which have to be those of who answers.
+    """
+
+    sweep: str
+    number: int
+    scene: str
+    changes: dict[str, object]
+    readings: tuple[str, ...]
+    limit: float
+    fields: str | None
+    place: tuple[float, ...] | None
+    versions: str
+
+
+class VersionsDifferError(RuntimeError):
+    """Who answers is not of the versions of who asks."""
+
+
+@cache
+def versions() -> str:
+    """Versions of all that results depend on."""
+    names = ("slipfront", "numpy", "scipy")
+    return ", ".join([*(f"{name} {version(name)}" for name in names), platform.python_version()])
+
+
+def field_file(number: int) -> str:
+    """Name of the file of a point's fields."""
+    return f"run-{number:05d}.npz"
+
+
+def run(task: Task) -> Row:
+    """Row of a point, whose run starts from the nearest one that this process has done.
+
+    Raises
+    ------
+    VersionsDifferError
+        Where the result would be that of other code.
+    """
+    if task.versions != versions():
+        raise VersionsDifferError(f"it has {versions()}, and here are {task.versions}")
+    readings = [reading(name) for name in task.readings]
+    if any(one.quantity.is_of_course for one in readings):
+        settle()
+    if task.sweep not in _runs:
+        _runs.clear()
+    done, nearest = _runs.setdefault(task.sweep, {}), None
+    if task.place is not None and (places := list(done)):
+        nearest = done.get(min(places, key=partial(math.dist, task.place)))
+    began = time.perf_counter()
+    nothing = (math.nan,) * len(readings)
+    # A run that diverges is told by its status.
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        try:
+            finished = finished_run(
+                CATALOGUE[task.scene].settings.checked(task.changes),
+                errors=any(one.quantity.reads == "errors" for one in readings),
+                indicators=any(one.quantity.reads == "indicators" for one in readings),
+                cancelled=lambda: time.perf_counter() > began + task.limit,
+                before=nearest,
+            )
+            if task.fields is not None:
+                file = Path(task.fields) / field_file(task.number)
+                save_result(file, finished.settings, finished.solution)
+            values = tuple(float(one(finished)) for one in readings)
+            row = Row(task.number, *_ending(finished), values, finished.iterate.number)
+            row = replace(row, was_warm=finished.was_warm)
+            if task.place is not None and row.holds:
+                done[task.place] = finished.states
+                for place in list(done)[:-KEPT]:
+                    done.pop(place, None)
+        except RefusedError as refusal:
+            row = Row(task.number, REFUSED, str(refusal), nothing)
+        except Exception as trouble:  # whatever it is belongs in the table
+            row = Row(task.number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
+    return replace(row, seconds=time.perf_counter() - began)
+
+
+def _ending(finished: FinishedRun) -> tuple[str, str]:
+    status = finished.solution.status
+    if status.ending is Ending.CANCELLED:
+        return STUCK, TOO_LONG
+    return str(status.ending), "" if status.ending is Ending.CONVERGED else status.advice
+
+
+def patience(limit: float) -> float:
+    """Seconds after which a process that has a run is stuck: no run ends itself."""
+    return 1.5 * limit + 10.0
+
+
+def sweep(
+    plan: Plan,
+    executor: Executor,
+    *,
+    done: Collection[int] = (),
+    following: Callable[[int], Sequence[int]] | None = None,
+    limit: float = math.inf,
+    fields: str | None = None,
+    warm: bool = True,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> Iterator[Row]:
+    """Run points of a plan.
+
+    Parameters
+    ----------
+    plan
+        What to run.
+    executor
+        Where.
+    done
+        Numbers of the points to leave out.
+    following
+        Next points to run, by how many are under way, asked for after each row until there are
+        none; without it all are run, from neighbour to neighbour.
+    limit
+        Seconds that a run may take.
+    fields
+        Folder for the fields of every run, which all processes share; None keeps none.
+    warm
+        Whether runs may start from their neighbours, where no reading is of how they went.
+    cancelled
+        Asked several times a second whether to end it.
+
+    Yields
+    ------
+    One row for every point, as they come, in any order. Closing the generator ends the sweep: what
+    is not begun is not done, and what runs in processes of this machine is ended.
+
+    Raises
+    ------
+    VersionsDifferError
+        Where a worker's results would be those of other code.
+    BrokenExecutor
+        Where the executor does no more calls; the same sweep can go on in another.
+    """
+    all_points = iter([snake(plan.shape)])
+    following = following or (lambda under_way: next(all_points, []))
+    task_of = partial(_task, plan, uuid.uuid4().hex, limit, fields, warm)
+    tasks: dict[Future[Row], Task] = {}
+    ended: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
+    try:
+        while not cancelled():
+            for task in map(task_of, (n for n in following(len(tasks)) if n not in done)):
+                future = executor.submit(run, task)
+                tasks[future] = task
+                future.add_done_callback(ended.put)
+            if not tasks:
+                return
+            with suppress(queue.Empty):
+                future = ended.get(timeout=PATIENCE)
+                yield _row(future, tasks.pop(future))
+    finally:
+        for future in tasks:
+            future.cancel()
+
+
+def snake(shape: Sequence[int]) -> list[int]:
+    """Numbers of the points of a grid, where each line goes back the way of the one before."""
+    grid = np.arange(math.prod(shape)).reshape(-1, shape[-1])
+    grid[1::2] = grid[1::2, ::-1]
+    return [int(number) for number in grid.ravel()]
+
+
+def _task(plan: Plan, name: str, limit: float, fields: str | None, warm: bool, number: int) -> Task:
+    is_warm = warm and not any(one.quantity.is_of_course for one in plan.readings)
+    places = zip(np.unravel_index(number, plan.shape), plan.shape, strict=True)
+    return Task(
+        name,
+        number,
+        plan.settings.scene,
+        {**plan.fixed, **plan.point(number)},
+        tuple(one.name for one in plan.readings),
+        limit,
+        fields,
+        tuple(float(place / count) for place, count in places) if is_warm else None,
+        versions(),
+    )
+
+
+def _row(future: Future[Row], task: Task) -> Row:
+    """Row of a run, whatever became of its process."""
+    try:
+        return future.result()
+    except (VersionsDifferError, BrokenExecutor):
+        raise
+    except ImportError as trouble:
+        raise VersionsDifferError(f"it cannot run this: {trouble}") from None
+    except CancelledError:
+        raise BrokenExecutor("the executor does not answer any more") from None
+    except TimeoutError:
+        ending, reason = STUCK, TOO_LONG
+    except Exception as trouble:
+        why = f"{type(trouble).__name__}: {trouble}"
+        ending, reason = LOST, f"Its process was ended ({why}); the same sweep tries it again."
+    return Row(task.number, ending, reason, (math.nan,) * len(task.readings))
