@@ -74,11 +74,7 @@ class Job:
         (self.folder / SETTINGS).write_text(settings, encoding="utf-8")
         self._began = time.monotonic()
         self._is_cancelled = False
-        try:
-            self._future = executor().submit(command, tuple(arguments), self.folder)
-        except RuntimeError:  # its process ended while it had nothing to do
-            executor.cache_clear()
-            self._future = executor().submit(command, tuple(arguments), self.folder)
+        self._future = executor().submit(command, tuple(arguments), self.folder)
 
     @property
     def is_over(self) -> bool:

@@ -15,6 +15,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from multiprocessing.context import BaseContext
 from typing import Any
 
@@ -59,7 +60,8 @@ def machine() -> str:
 class Processes(Executor):
     """Niced processes of this machine with one BLAS thread each, which end with this process.
 
-    A process that is killed fails the call that it does, with `pebble.ProcessExpired`.
+    A process that is killed fails its call with `pebble.ProcessExpired`. If none did a call, all
+    that wait fail with `BrokenProcessPool`, and can be submitted again.
 
     Parameters
     ----------
@@ -73,21 +75,26 @@ class Processes(Executor):
     """
 
     def __init__(self, count: int, limit: float | None = None, n_calls: int = 0) -> None:
-        self._limit = limit
-        self._pool = ProcessPool(count, n_calls, initializer=_begin, context=_context())
+        self._limit, self._is_shut_down = limit, False
+        self._started = partial(ProcessPool, count, n_calls, initializer=_begin, context=_context())
+        self._pool = self._started()
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Do a call in the next process that is free; all of it is picklable.
-
-        Raises
-        ------
-        RuntimeError
-            If this is shut down, or its processes ended while they had nothing to do.
-        """
-        return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
+        """Do a call in the next process that is free; all of it is picklable."""
+        try:
+            return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
+        except RuntimeError:
+            if self._is_shut_down:
+                raise
+            # A pool is broken once a process is killed while none does a call.
+            self._pool.stop()
+            self._pool.join()
+            self._pool = self._started()
+            return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Begin no other call; if futures are to be cancelled, end the processes at once."""
+        self._is_shut_down = True
         if cancel_futures:
             self._pool.stop()
         else:

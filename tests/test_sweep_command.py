@@ -303,9 +303,9 @@ class Known(Executor):
         self._values = values
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        (task,) = args
+        _, number, _ = args
         future: Future[Any] = Future()
-        future.set_result(Row(task.number, "converged", "", (float(self._values[task.number]),)))
+        future.set_result(Row(number, "converged", "", (float(self._values[number]),)))
         return future
 
 

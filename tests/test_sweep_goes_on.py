@@ -109,6 +109,13 @@ def test_a_process_that_is_killed_takes_one_row_with_it_and_says_so() -> None:
             calls[0].result()
 
 
+def test_a_process_that_is_killed_while_it_does_nothing_costs_no_row() -> None:
+    with opened("processes:1") as executor:
+        idle = executor.submit(os.getpid).result()
+        os.kill(idle, signal.SIGKILL)
+        assert all(row.holds for row in rows_of(tiny(["peak=300:900:6"], ["stiffness"]), executor))
+
+
 class Ending(Here):
     """Loses the run of a point."""
 
@@ -117,7 +124,7 @@ class Ending(Here):
         self.point, self.trouble = point, trouble
 
     def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
-        if args[0].number == self.point:
+        if args[1] == self.point:
             fn, args = _raise, (self.trouble,)
         return super().submit(fn, *args, **kwargs)
 

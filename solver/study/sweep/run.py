@@ -9,6 +9,7 @@ import time
 import uuid
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -35,6 +36,8 @@ KEPT = 500
 scenes as they are each takes 5 to 30 kB."""
 _runs: dict[str, dict[tuple[float, ...], States]] = {}
 """What stuck, slipped and opened in the runs of this process, of the last sweep, by place."""
+TRIES = 3
+"""Times that all is submitted again because processes were ended while they did nothing."""
 PATIENCE = 0.2
 """Seconds between two looks at whether a sweep is still wanted."""
 
@@ -78,33 +81,32 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Task:
-    """One run, for whatever process does it.
+class Common:
+    """What the runs of a sweep have in common, for whatever process does them.
 
     Attributes
     ----------
-    sweep, number
-        A name that no other sweep has, and the point.
-    scene, changes
+    sweep
+        A name that no other sweep has.
+    scene, fixed
         Settings, those at their defaults left out.
     readings
-        Names of what is taken of the run.
+        Names of what is taken of a run.
+    shape
+        Points along the axes; None for runs that start from no others.
     limit, fields
         As for `sweep`.
-    place
-        Of the point, as shares of the axes; None for a run that starts from no other.
     versions
         Of who asks, which have to be those of who answers.
     """
 
     sweep: str
-    number: int
     scene: str
-    changes: dict[str, object]
+    fixed: dict[str, object]
     readings: tuple[str, ...]
+    shape: tuple[int, ...] | None
     limit: float
     fields: str | None
-    place: tuple[float, ...] | None
     versions: str
 
 
@@ -124,7 +126,7 @@ def field_file(number: int) -> str:
     return f"run-{number:05d}.npz"
 
 
-def run(task: Task) -> Row:
+def run(common: Common, number: int, point: dict[str, object]) -> Row:
     """Row of a point, whose run starts from the nearest one that this process has done.
 
     Raises
@@ -132,42 +134,42 @@ def run(task: Task) -> Row:
     VersionsDifferError
         Where the result would be that of other code.
     """
-    if task.versions != versions():
-        raise VersionsDifferError(f"it has {versions()}, and here are {task.versions}")
-    readings = [reading(name) for name in task.readings]
+    if common.versions != versions():
+        raise VersionsDifferError(f"it has {versions()}, and here are {common.versions}")
+    readings = [reading(name) for name in common.readings]
     if any(one.quantity.is_of_course for one in readings):
         settle()
-    if task.sweep not in _runs:
+    if common.sweep not in _runs:
         _runs.clear()
-    done, nearest = _runs.setdefault(task.sweep, {}), None
-    if task.place is not None and (places := list(done)):
-        nearest = done.get(min(places, key=partial(math.dist, task.place)))
+    done, shape = _runs.setdefault(common.sweep, {}), common.shape or (1,)
+    place = tuple(np.unravel_index(number, shape) / np.array(shape)) if common.shape else ()
+    nearest = min(list(done), key=partial(math.dist, place), default=None)
     began = time.perf_counter()
     nothing = (math.nan,) * len(readings)
     # A run that diverges is told by its status.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
             finished = finished_run(
-                CATALOGUE[task.scene].settings.checked(task.changes),
+                CATALOGUE[common.scene].settings.checked({**common.fixed, **point}),
                 errors=any(one.quantity.reads == "errors" for one in readings),
                 indicators=any(one.quantity.reads == "indicators" for one in readings),
-                cancelled=lambda: time.perf_counter() > began + task.limit,
-                before=nearest,
+                cancelled=lambda: time.perf_counter() > began + common.limit,
+                before=None if nearest is None else done.get(nearest),
             )
-            if task.fields is not None:
-                file = Path(task.fields) / field_file(task.number)
+            if common.fields is not None:
+                file = Path(common.fields) / field_file(number)
                 save_result(file, finished.settings, finished.solution)
             values = tuple(float(one(finished)) for one in readings)
-            row = Row(task.number, *_ending(finished), values, finished.iterate.number)
+            row = Row(number, *_ending(finished), values, finished.iterate.number)
             row = replace(row, was_warm=finished.was_warm)
-            if task.place is not None and row.holds:
-                done[task.place] = finished.states
-                for place in list(done)[:-KEPT]:
-                    done.pop(place, None)
+            if common.shape and row.holds:
+                done[place] = finished.states
+                for oldest in list(done)[:-KEPT]:
+                    done.pop(oldest, None)
         except RefusedError as refusal:
-            row = Row(task.number, REFUSED, str(refusal), nothing)
+            row = Row(number, REFUSED, str(refusal), nothing)
         except Exception as trouble:  # whatever it is belongs in the table
-            row = Row(task.number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
+            row = Row(number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
     return replace(row, seconds=time.perf_counter() - began)
 
 
@@ -228,24 +230,47 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
     """
-    all_points = iter([snake(plan.shape)])
-    following = following or (lambda under_way: next(all_points, []))
-    task_of = partial(_task, plan, uuid.uuid4().hex, limit, fields, warm)
-    tasks: dict[Future[Row], Task] = {}
+    is_warm = warm and not any(one.quantity.is_of_course for one in plan.readings)
+    common = Common(
+        uuid.uuid4().hex,
+        plan.settings.scene,
+        plan.fixed,
+        tuple(one.name for one in plan.readings),
+        plan.shape if is_warm else None,
+        limit,
+        fields,
+        versions(),
+    )
+    path = [] if following else [number for number in snake(plan.shape) if number not in done]
+    under_way: dict[Future[Row], int] = {}
     ended: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
+    tries = 0
     try:
         while not cancelled():
-            for task in map(task_of, (n for n in following(len(tasks)) if n not in done)):
-                future = executor.submit(run, task)
-                tasks[future] = task
+            for number in [*path, *(following(len(under_way)) if following else ())]:
+                future = executor.submit(run, common, number, plan.point(number))
+                under_way[future] = number
                 future.add_done_callback(ended.put)
-            if not tasks:
+            if not under_way:
                 return
+            path = []
             with suppress(queue.Empty):
                 future = ended.get(timeout=PATIENCE)
-                yield _row(future, tasks.pop(future))
+                if future not in under_way:
+                    continue
+                try:
+                    row = _row(future, under_way[future], len(plan.readings))
+                except BrokenProcessPool:
+                    tries += 1
+                    if tries > TRIES:
+                        raise
+                    path, under_way = list(under_way.values()), {}
+                    continue
+                del under_way[future]
+                tries = 0
+                yield row
     finally:
-        for future in tasks:
+        for future in under_way:
             future.cancel()
 
 
@@ -256,23 +281,7 @@ def snake(shape: Sequence[int]) -> list[int]:
     return [int(number) for number in grid.ravel()]
 
 
-def _task(plan: Plan, name: str, limit: float, fields: str | None, warm: bool, number: int) -> Task:
-    is_warm = warm and not any(one.quantity.is_of_course for one in plan.readings)
-    places = zip(np.unravel_index(number, plan.shape), plan.shape, strict=True)
-    return Task(
-        name,
-        number,
-        plan.settings.scene,
-        {**plan.fixed, **plan.point(number)},
-        tuple(one.name for one in plan.readings),
-        limit,
-        fields,
-        tuple(float(place / count) for place, count in places) if is_warm else None,
-        versions(),
-    )
-
-
-def _row(future: Future[Row], task: Task) -> Row:
+def _row(future: Future[Row], number: int, n_values: int) -> Row:
     """Row of a run, whatever became of its process."""
     try:
         return future.result()
@@ -287,4 +296,4 @@ def _row(future: Future[Row], task: Task) -> Row:
     except Exception as trouble:
         why = f"{type(trouble).__name__}: {trouble}"
         ending, reason = LOST, f"Its process was ended ({why}); the same sweep tries it again."
-    return Row(task.number, ending, reason, (math.nan,) * len(task.readings))
+    return Row(number, ending, reason, (math.nan,) * n_values)
