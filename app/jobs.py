@@ -21,7 +21,7 @@ import panel as pn
 from app.worker.commands import LOG, command
 from solver.definitions import SettingError
 from solver.executors import opened, processors
-from solver.study.sweep import Plan, Row, VersionsDifferError, patience, sweep
+from solver.study.sweep import Plan, Row, patience, sweep
 
 log = logging.getLogger(__name__)
 LOOK = 500
@@ -178,7 +178,7 @@ class Sweep:
                 self.rows.extend(
                     sweep(self.plan, where, limit=LIMIT, cancelled=self._is_cancelled.is_set)
                 )
-        except (SettingError, VersionsDifferError) as refusal:
+        except SettingError as refusal:
             self.message = str(refusal)
         except Exception as trouble:
             log.exception("A sweep broke.")

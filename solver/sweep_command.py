@@ -17,11 +17,11 @@ from solver.files import settings_from_command
 from solver.prepared import print_tables
 from solver.report_commands import writing
 from solver.study.page import write_page
-from solver.study.sweep import Plan, Row, VersionsDifferError, patience, plan_of, sweep
-from solver.study.sweep.plan import FORM
+from solver.study.sweep import Plan, Row, patience, plan_of, sweep
+from solver.study.sweep.plan import FORM, LOST, STUCK
 from solver.study.sweep.report import counts, growth, sections, title_of
 from solver.study.sweep.run import field_file
-from solver.study.sweep.table import csv_of, is_final, lines_of, rows_in
+from solver.study.sweep.table import csv_of, lines_of, rows_in
 
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0
@@ -94,7 +94,8 @@ def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace)
     BrokenExecutor
         For one that does no more calls.
     """
-    fields, known = None, {number: row for number, row in rows.items() if is_final(row)}
+    fields = None
+    known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
     if chosen.fields:
         folder = (chosen.out / FIELDS).resolve()
         folder.mkdir(exist_ok=True)
@@ -104,21 +105,15 @@ def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace)
     if chosen.adaptive is not None:
         options |= {"following": chooser_of(plan, chosen.adaptive, known), "warm": False}
     table = chosen.out / TABLE
-    # As a whole, in case that its last line was cut off
-    write(table, csv_of(plan, list(rows.values())))
-    with (
-        opened(chosen.on, patience(chosen.limit)) as executor,
-        table.open("a", encoding="utf-8", newline="") as lines,
-    ):
-        found = sweep(plan, executor, done=set(known), **options)
-        try:
+    with opened(chosen.on, patience(chosen.limit)) as executor:
+        # As a whole, in case that its last line was cut off
+        write(table, csv_of(plan, list(rows.values())))
+        with table.open("a", encoding="utf-8", newline="") as lines:
+            found = sweep(plan, executor, done=set(known), **options)
             for row in followed(found, size, len(known)):
                 rows[row.number] = known[row.number] = row
                 lines.write(lines_of(plan, [row]))
                 lines.flush()
-        except VersionsDifferError as refusal:
-            here = "workers of the same versions as this command"
-            raise SettingError("--on", chosen.on, here, str(refusal)) from None
 
 
 def followed(rows: Iterable[Row], size: int, done: int) -> Iterator[Row]:

@@ -22,7 +22,7 @@ from sweeps import rows_in_table, rows_of, tiny
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.executors import opened
-from solver.study.sweep import VersionsDifferError, sweep
+from solver.study.sweep import sweep
 from solver.study.sweep.run import versions
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -114,7 +114,7 @@ def test_workers_of_other_versions_are_refused(
     executor: Executor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("solver.study.sweep.run.versions", lambda: "numpy 1.0")
-    with pytest.raises(VersionsDifferError, match=versions()):
+    with pytest.raises(SettingError, match=versions()):
         rows_of(tiny(["peak=300,900"], ["iterations"]), executor)
 
 

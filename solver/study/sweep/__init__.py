@@ -12,14 +12,13 @@ say why, and `values` are what the run had come to, or NaN.
 """
 
 from solver.executors import opened
-from solver.study.sweep.plan import Plan, Varied, plan_of
-from solver.study.sweep.run import Row, VersionsDifferError, patience, sweep
+from solver.study.sweep.plan import Plan, Row, Varied, plan_of
+from solver.study.sweep.run import patience, sweep
 
 __all__ = [
     "Plan",
     "Row",
     "Varied",
-    "VersionsDifferError",
     "opened",
     "patience",
     "plan_of",

@@ -11,8 +11,7 @@ from scipy.spatial import Delaunay, KDTree, QhullError
 from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.study.sweep.chart import is_wide
-from solver.study.sweep.plan import Plan
-from solver.study.sweep.run import Row
+from solver.study.sweep.plan import Plan, Row
 
 FIRST = 0.25
 """Share of the runs that are spread evenly: a bend between points that saw nothing is not found."""

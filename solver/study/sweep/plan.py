@@ -1,4 +1,4 @@
-"""What a sweep runs: a scene, one or two settings over their values, and what is asked of it."""
+"""What a sweep runs, one or two settings over their values, and what comes of a point."""
 
 from __future__ import annotations
 
@@ -21,11 +21,14 @@ from solver.definitions import (
     parse,
     unknown,
 )
+from solver.latin import Ending
 from solver.settings import Settings
 from solver.study.quantities.quantities import Reading, reading
 
 MOST_POINTS = 20_000
 """Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
+STUCK, LOST = "stuck", "lost"
+"""How a run ends whose process was ended: by its time limit, or by something else."""
 FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
 
@@ -121,6 +124,44 @@ class Plan:
             if not found:
                 break
         return sorted(found)
+
+
+@dataclass(frozen=True)
+class Row:
+    """What came of one point.
+
+    Attributes
+    ----------
+    number
+        Of the point in the plan.
+    ending
+        `converged` and the other ways in which a run ends; `refused` where its settings do not fit
+        together, `broken` where the engine failed, `stuck` and `lost` where its process was ended.
+    reason
+        Of any ending but convergence, and what to try.
+    values
+        Of the readings of the plan, in their units: NaN where the run has none, infinity for
+        never. Those of a run that has not converged are what it had come to.
+    iterations
+        How many it did.
+    seconds
+        That the whole of it took, with its problem, its reference and its readings.
+    was_warm
+        Whether it started from the run nearest to it.
+    """
+
+    number: int
+    ending: str
+    reason: str
+    values: tuple[float, ...]
+    iterations: int = 0
+    seconds: float = 0.0
+    was_warm: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether the run has converged, so that its values are answers."""
+        return self.ending == Ending.CONVERGED
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:

@@ -12,8 +12,7 @@ import numpy as np
 from solver.study.exponent import exponent_of
 from solver.study.page import PlotSection, Section, bullets, plain_table
 from solver.study.sweep.chart import charts, grid
-from solver.study.sweep.plan import Plan
-from solver.study.sweep.run import Row
+from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.table import cells, head, heads
 
 CAPTION = (

@@ -7,6 +7,7 @@ import platform
 import queue
 import time
 import uuid
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -18,18 +19,18 @@ from pathlib import Path
 
 import numpy as np
 
+from solver.definitions import SettingError
 from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.solution import States
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.quantities.memory import settle
 from solver.study.quantities.quantities import reading
-from solver.study.sweep.plan import Plan
+from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
-STUCK, LOST = "stuck", "lost"
-"""How a run ends whose process was ended: by its time limit, or by something else."""
+WORKER = "versions of a worker"
 TOO_LONG = "It took longer than a run may; allow more with --limit."
 KEPT = 500
 """Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41. Of the
@@ -38,46 +39,10 @@ _runs: dict[str, dict[tuple[float, ...], States]] = {}
 """What stuck, slipped and opened in the runs of this process, of the last sweep, by place."""
 TRIES = 3
 """Times that all is submitted again because processes were ended while they did nothing."""
+AHEAD = 500
+"""Runs under way at once, done and waiting: more than there are workers, soon asked for."""
 PATIENCE = 0.2
 """Seconds between two looks at whether a sweep is still wanted."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """What came of one point.
-
-    Attributes
-    ----------
-    number
-        Of the point in the plan.
-    ending
-        `converged` and the other ways in which a run ends; `refused` where its settings do not fit
-        together, `broken` where the engine failed, `stuck` and `lost` where its process was ended.
-    reason
-        Of any ending but convergence, and what to try.
-    values
-        Of the readings of the plan, in their units: NaN where the run has none, infinity for
-        never. Those of a run that has not converged are what it had come to.
-    iterations
-        How many it did.
-    seconds
-        That the whole of it took, with its problem, its reference and its readings.
-    was_warm
-        Whether it started from the run nearest to it.
-    """
-
-    number: int
-    ending: str
-    reason: str
-    values: tuple[float, ...]
-    iterations: int = 0
-    seconds: float = 0.0
-    was_warm: bool = False
-
-    @property
-    def holds(self) -> bool:
-        """Whether the run has converged, so that its values are answers."""
-        return self.ending == Ending.CONVERGED
 
 
 @dataclass(frozen=True)
@@ -110,10 +75,6 @@ class Common:
     versions: str
 
 
-class VersionsDifferError(RuntimeError):
-    """Who answers is not of the versions of who asks."""
-
-
 @cache
 def versions() -> str:
     """Versions of all that results depend on."""
@@ -131,11 +92,11 @@ def run(common: Common, number: int, point: dict[str, object]) -> Row:
 
     Raises
     ------
-    VersionsDifferError
+    SettingError
         Where the result would be that of other code.
     """
     if common.versions != versions():
-        raise VersionsDifferError(f"it has {versions()}, and here are {common.versions}")
+        raise SettingError(WORKER, versions(), common.versions, "install these on all workers")
     readings = [reading(name) for name in common.readings]
     if any(one.quantity.is_of_course for one in readings):
         settle()
@@ -159,8 +120,17 @@ def run(common: Common, number: int, point: dict[str, object]) -> Row:
             if common.fields is not None:
                 file = Path(common.fields) / field_file(number)
                 save_result(file, finished.settings, finished.solution)
+            status, values = (
+                finished.solution.status,
+                tuple(float(one(finished)) for one in readings),
+            )
+            ending, reason = str(status.ending), status.advice
+            if status.ending is Ending.CANCELLED:
+                ending, reason = STUCK, TOO_LONG
+            elif status.ending is Ending.CONVERGED:
+                reason = ""
             values = tuple(float(one(finished)) for one in readings)
-            row = Row(number, *_ending(finished), values, finished.iterate.number)
+            row = Row(number, ending, reason, values, finished.iterate.number)
             row = replace(row, was_warm=finished.was_warm)
             if common.shape and row.holds:
                 done[place] = finished.states
@@ -171,13 +141,6 @@ def run(common: Common, number: int, point: dict[str, object]) -> Row:
         except Exception as trouble:  # whatever it is belongs in the table
             row = Row(number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
     return replace(row, seconds=time.perf_counter() - began)
-
-
-def _ending(finished: FinishedRun) -> tuple[str, str]:
-    status = finished.solution.status
-    if status.ending is Ending.CANCELLED:
-        return STUCK, TOO_LONG
-    return str(status.ending), "" if status.ending is Ending.CONVERGED else status.advice
 
 
 def patience(limit: float) -> float:
@@ -225,7 +188,7 @@ def sweep(
 
     Raises
     ------
-    VersionsDifferError
+    SettingError
         Where a worker's results would be those of other code.
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
@@ -241,19 +204,19 @@ def sweep(
         fields,
         versions(),
     )
-    path = [] if following else [number for number in snake(plan.shape) if number not in done]
+    path = deque(() if following else (n for n in snake(plan.shape) if n not in done))
     under_way: dict[Future[Row], int] = {}
     ended: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
     tries = 0
     try:
         while not cancelled():
-            for number in [*path, *(following(len(under_way)) if following else ())]:
-                future = executor.submit(run, common, number, plan.point(number))
-                under_way[future] = number
+            path.extend(following(len(under_way)) if following else ())
+            while path and len(under_way) < AHEAD:
+                future = executor.submit(run, common, path[0], plan.point(path[0]))
+                under_way[future] = path.popleft()
                 future.add_done_callback(ended.put)
             if not under_way:
                 return
-            path = []
             with suppress(queue.Empty):
                 future = ended.get(timeout=PATIENCE)
                 if future not in under_way:
@@ -264,7 +227,8 @@ def sweep(
                     tries += 1
                     if tries > TRIES:
                         raise
-                    path, under_way = list(under_way.values()), {}
+                    path.extendleft(under_way.values())
+                    under_way = {}
                     continue
                 del under_way[future]
                 tries = 0
@@ -285,10 +249,10 @@ def _row(future: Future[Row], number: int, n_values: int) -> Row:
     """Row of a run, whatever became of its process."""
     try:
         return future.result()
-    except (VersionsDifferError, BrokenExecutor):
+    except (SettingError, BrokenExecutor):
         raise
     except ImportError as trouble:
-        raise VersionsDifferError(f"it cannot run this: {trouble}") from None
+        raise SettingError(WORKER, "others", versions(), f"it cannot run this: {trouble}") from None
     except CancelledError:
         raise BrokenExecutor("the executor does not answer any more") from None
     except TimeoutError:

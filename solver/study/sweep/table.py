@@ -9,8 +9,7 @@ from pathlib import Path
 
 from solver.checked import dump
 from solver.definitions import SettingError
-from solver.study.sweep.plan import Plan
-from solver.study.sweep.run import LOST, STUCK, Row
+from solver.study.sweep.plan import Plan, Row
 
 BEFORE, AFTER = ("run",), ("ending", "start", "iterations done", "seconds in all", "reason")
 OWN, NEIGHBOURS = "own", "neighbour's"
@@ -94,8 +93,3 @@ def _row(plan: Plan, line: Sequence[str]) -> Row:
     numbers = tuple(map(float, values))
     is_warm = start == NEIGHBOURS
     return Row(int(number), ending, reason, numbers, int(iterations), float(seconds), is_warm)
-
-
-def is_final(row: Row) -> bool:
-    """Whether a run need not be tried again, since its process was not ended."""
-    return row.ending not in (STUCK, LOST)
