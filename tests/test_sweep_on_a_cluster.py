@@ -16,7 +16,7 @@ from threading import Thread
 import numpy as np
 import pytest
 from distributed import Client
-from processes import PATIENCE, started, wait_for
+from processes import PATIENCE, wait_for
 from sweeps import rows_in_table, rows_of, tiny
 
 from solver.cli import main
@@ -95,19 +95,6 @@ def test_workers_give_the_same_rows_as_this_process(executor: Executor) -> None:
     plan = tiny(["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "dissipation"])
     here, there = ([row.values for row in rows_of(plan, place)] for place in (None, executor))
     assert np.array(there) == pytest.approx(np.array(here), rel=1e-9)
-
-
-def test_a_client_that_is_killed_is_gone_on_with(cluster: Cluster, tmp_path: Path) -> None:
-    asked = ["sweep", "bar", "--vary", "peak=300:900:40", "--of", "iterations"]
-    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
-    asked += ["--on", cluster.on, "--out", str(tmp_path)]
-    table = tmp_path / "sweep.csv"
-    with started([sys.executable, "-m", "solver", *asked]):
-        wait_for(lambda: rows_in_table(table) > 3)
-    rows = table.read_text(encoding="utf-8").splitlines()
-    assert main(asked) == 0
-    assert rows_in_table(table) == 40
-    assert {*rows[:-1]} <= {*table.read_text(encoding="utf-8").splitlines()}
 
 
 def test_workers_of_other_versions_are_refused(
