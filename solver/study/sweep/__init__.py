@@ -12,13 +12,12 @@ say why, and `values` are what the run had come to, or NaN.
 """
 
 from solver.executors import opened
-from solver.study.sweep.plan import Plan, Row, Varied, plan_of
+from solver.study.sweep.plan import Plan, Row, plan_of
 from solver.study.sweep.run import patience, sweep
 
 __all__ = [
     "Plan",
     "Row",
-    "Varied",
     "opened",
     "patience",
     "plan_of",
