@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
@@ -53,10 +53,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
     plan = plan_of(settings, chosen.vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
-    size = plan.size
-    if chosen.adaptive is not None:
-        chooser_of(plan, chosen.adaptive, {})
-        size = min(size, chosen.adaptive)
+    size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
     print_tables(tables)
     for name in plan.idle():
         message = f"slipfront: {name} does nothing with the other settings as they are"
@@ -76,21 +73,13 @@ def _sweep(chosen: argparse.Namespace) -> int:
     return 0 if len(rows) >= size and all(row.holds for row in by_number) else 1
 
 
-def chooser_of(plan: Plan, most: int, rows: dict[int, Row]) -> Callable[[int], list[int]]:
-    """Chooser of an adaptive sweep."""
-    # Here and not above: it takes a sixth of a second, for which other commands need not wait.
-    from solver.study.sweep.adaptive import Chooser
-
-    return Chooser(plan, most, rows)
-
-
 def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace) -> None:
     """Run what of a plan has no row yet, append its rows to the table, and print how far it is.
 
     Raises
     ------
     SettingError
-        For an executor that there is not, or one of other versions.
+        For an executor that there is not, one of other versions, or what cannot be sampled.
     BrokenExecutor
         For one that does no more calls.
     """
@@ -103,7 +92,10 @@ def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace)
         known = {n: row for n, row in known.items() if (folder / field_file(n)).exists()}
     options: dict[str, Any] = {"limit": chosen.limit, "fields": fields, "warm": not chosen.cold}
     if chosen.adaptive is not None:
-        options |= {"following": chooser_of(plan, chosen.adaptive, known), "warm": False}
+        # Here and not above: it takes a sixth of a second, for which other commands need not wait.
+        from solver.study.sweep.adaptive import Chooser
+
+        options |= {"following": Chooser(plan, chosen.adaptive, known), "warm": False}
     table = chosen.out / TABLE
     with opened(chosen.on, patience(chosen.limit)) as executor:
         # As a whole, in case that its last line was cut off

@@ -159,6 +159,7 @@ def test_fields_can_be_kept(tmp_path: Path) -> None:
         ["--of", ""],
         ["--on", "threads"],
         ["--limit", "0"],
+        ["--adaptive", "3"],
         ["--vary", "peak=1:2:3"],
         ["--vary", "friction=-3"],
         ["--out", "/dev/null/sweep"],
