@@ -33,7 +33,7 @@ LAYERS = [
     ["remarks"],
     ["curves"],
     ["files"],
-    ["running"],
+    ["executors"],
     ["study"],
     ["lessons", "mesh_command", "report_commands", "compare_command"],
     ["sweep_command"],
