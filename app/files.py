@@ -20,8 +20,9 @@ from app.widgets import button, dialog, download
 from solver.checked import dump
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
-from solver.files import ends_of_tables, settings_from_toml
+from solver.files import settings_from_toml
 from solver.refusal import RefusedError
+from solver.remarks import ends_of_tables
 from solver.scenes import points_of
 from solver.settings import Settings
 from solver.study.other_programs.brought import Brought, read_brought

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from solver.discrete.structure import Description
 from solver.latin import Status
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.settings import Settings
 
 Floats = NDArray[np.float32]

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import atexit
 import logging
+import os
 import re
 import threading
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from contextlib import ExitStack
 from functools import cache
 from pathlib import Path
@@ -18,10 +20,8 @@ import panel as pn
 
 from app.worker.commands import LOG, command
 from solver.definitions import SettingError
-from solver.running.executors import executor_of_the_server, opened
-from solver.running.machine import processors
-from solver.running.pool import Pool
-from solver.study.sweep import Plan, Row, VersionsDifferError, patience, sweep
+from solver.executors import opened, processors
+from solver.study.sweep import Plan, Row, patience, sweep
 
 log = logging.getLogger(__name__)
 LOOK = 500
@@ -29,6 +29,8 @@ LOOK = 500
 LIMIT = 60.0
 """Seconds that a run of a sweep may take: nobody waits longer for a point of a chart."""
 PROCESSES = "processes"
+VARIABLE = "SLIPFRONT_EXECUTOR"
+"""Of the environment: where sweeps and reports run."""
 SETTINGS = "settings.toml"
 OUT = "out"
 
@@ -42,17 +44,21 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
         document.on_session_destroyed(lambda context: end())
 
 
+def server_executor() -> str:
+    """Text that names where this server's sweeps and reports run."""
+    return os.environ.get(VARIABLE) or PROCESSES
+
+
 @cache
-def executor() -> Pool:
+def executor() -> Executor:
     """What runs the commands of all pages: a process at a time, or the server's cluster.
 
     Two at a time would spoil each other's measurements, and thirty the server.
     """
-    named = executor_of_the_server() or PROCESSES
-    stack = ExitStack()
+    named, stack = server_executor(), ExitStack()
     atexit.register(stack.close)
     on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
-    return stack.enter_context(opened(on, lasting=False))
+    return stack.enter_context(opened(on, n_calls=1))
 
 
 class Job:
@@ -165,14 +171,14 @@ class Sweep:
         self._is_cancelled.set()
 
     def _go(self) -> None:
-        named = executor_of_the_server() or PROCESSES
         self._under_way.add(self)
+        on = share_of(server_executor(), len(self._under_way))
         try:
-            with opened(share_of(named, len(self._under_way)), patience(LIMIT)) as pool:
+            with opened(on, patience(LIMIT)) as where:
                 self.rows.extend(
-                    sweep(self.plan, pool, limit=LIMIT, cancelled=self._is_cancelled.is_set)
+                    sweep(self.plan, where, limit=LIMIT, cancelled=self._is_cancelled.is_set)
                 )
-        except (SettingError, VersionsDifferError) as refusal:
+        except SettingError as refusal:
             self.message = str(refusal)
         except Exception as trouble:
             log.exception("A sweep broke.")

@@ -23,13 +23,13 @@ def space_time(n_rows: int, n_instants: int) -> Array:
 
 
 def as_slice(rows: Indices) -> slice | Indices:
-    """Give rows as a slice when they follow each other, so that reading them copies nothing."""
+    """Rows as a slice when they follow each other, so that reading them copies nothing."""
     first = int(rows[0]) if len(rows) else 0
     return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
 
 
 def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Put fields of space, or of space and time, one below the other.
+    """Fields of space, or of space and time, one below the other.
 
     What does not change with time has a single column, unless another of them does.
     """
@@ -38,12 +38,12 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 def at_instant(field: Array, instant: int) -> Array:
-    """Give what a field has at an instant, shape (n, 1); a single column is of all instants."""
+    """What a field has at an instant, shape (n, 1); a single column is of all instants."""
     return field if field.shape[1] == 1 else field[:, instant : instant + 1]
 
 
 def without_residue(values: Array, terms: Array) -> Array:
-    """Set to zero what rounding alone leaves of sums over time.
+    """Sums over time, with zero where rounding alone leaves something of them.
 
     Parameters
     ----------

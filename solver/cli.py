@@ -9,7 +9,7 @@ import math
 import os
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -22,7 +22,6 @@ from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.disk import check_place, why
 from solver.files import (
-    remarks,
     save_result,
     scene_settings,
     settings_from_command,
@@ -32,12 +31,12 @@ from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.mesh_command import add_mesh
-from solver.prepared import print_tables
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
 from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
+from solver.remarks import print_tables, remarks_before, warn
 from solver.report_commands import REFUSED, add_reports
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -50,7 +49,7 @@ OUT_OF_MEMORY, INTERRUPTED = 3, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; give the exit code.
+    """Exit code of one command.
 
     0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended by Ctrl-C.
     """
@@ -64,26 +63,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = chosen.command(chosen)
         sys.stdout.flush()
     except RefusedError as refusal:
-        print(f"slipfront: {refusal}", file=sys.stderr)
+        warn(str(refusal))
         return REFUSED
     except NoReferenceError as refusal:
-        print(f"slipfront: there is nothing to compare with: {refusal}", file=sys.stderr)
+        warn(f"there is nothing to compare with: {refusal}")
         return REFUSED
     except BrokenPipeError:
         # Whoever reads has enough (as with "| head"); Python must not complain at its own end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as trouble:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        print(f"slipfront: nothing can be printed: {why(trouble)}", file=sys.stderr)
+        warn(f"nothing can be printed: {why(trouble)}")
         return REFUSED
     except (MemoryError, RuntimeError) as trouble:
         if isinstance(trouble, RuntimeError) and "MALLOC" not in str(trouble):  # that of SuperLU
             raise
         remedy = "take a coarser mesh or fewer instants, or for `run` --no-reference"
-        print(f"slipfront: this takes more memory than there is: {remedy}", file=sys.stderr)
+        warn(f"this takes more memory than there is: {remedy}")
         return OUT_OF_MEMORY
     except KeyboardInterrupt:
-        print("slipfront: ended; files that are written stay", file=sys.stderr)
+        warn("ended; files that are written stay")
         return INTERRUPTED
     return code
 
@@ -137,16 +136,16 @@ def _parser() -> argparse.ArgumentParser:
 def _run(chosen: argparse.Namespace) -> int:
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
     if chosen.out is not None:
-        _check_file(chosen.out)
+        with _writing(chosen.out):  # before the run, and not after it
+            check_place(chosen.out)
     limit = _limit(chosen)
     print_tables(tables)
-    for remark in remarks(settings, chosen.changes):
-        print(f"slipfront: {remark}", file=sys.stderr)
+    warn(*remarks_before(settings, chosen.changes))
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
     if nothing_acts(problem):
-        print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
+        warn("nothing acts on the structure: all loads are zero")
     method = method_of(settings)
     method = replace(method, stop=replace(method.stop, seconds=limit))
     most, beside = settings.max_iterations, chosen.reference
@@ -157,16 +156,13 @@ def _run(chosen: argparse.Namespace) -> int:
     else:
         solution = solve_in_slabs(problem, method, chosen.slab, distance=distance, spent=spent)
     if chosen.out is not None:
-        try:
+        with _writing(chosen.out):
             save_result(chosen.out, settings, solution)
-        except OSError as problem_there:
-            raise _refused_file(chosen.out, problem_there) from None
     loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
     if loose:
-        print(
-            f"slipfront: at {loose} of {problem.n_instants} instants nothing says where a body "
-            "lies: its displacement is one of many there, and counts in no error",
-            file=sys.stderr,
+        warn(
+            f"at {loose} of {problem.n_instants} instants nothing says where a body lies: its "
+            "displacement is one of many there, and counts in no error"
         )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
         _print_figures(settings, solution, tables, chosen.json)
@@ -183,29 +179,26 @@ def _limit(chosen: argparse.Namespace) -> float:
 
 
 def _announce(cost: RunCost, limit: float) -> None:
-    """Say what a long or large run will take, before it begins."""
+    """Print what a long or large run will take, before it begins."""
     if not cost.is_large:
         return
-    line = f"slipfront: this will take about {cost}"
+    line = f"this will take about {cost}"
     if cost.reference > 0.2 * cost.seconds:
         share = round(100.0 * cost.reference / cost.seconds)
         line += f", {share} % of the time for the reference, which --no-reference leaves out"
     if limit < cost.seconds:
         line += f"; --limit ends it after {limit:g} s"
-    print(line, file=sys.stderr, flush=True)
+    warn(line)
 
 
-def _check_file(path: Path) -> None:
-    """Refuse a file that cannot be written, before the run and not after it."""
+@contextlib.contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """Refuse a file that cannot be written."""
     try:
-        check_place(path)
+        yield
     except OSError as problem:
-        raise _refused_file(path, problem) from None
-
-
-def _refused_file(path: Path, problem: OSError) -> SettingError:
-    allowed_file = "a file in an existing folder that can be written"
-    return SettingError("--out", str(path), allowed_file, why(problem))
+        can = "a file in an existing folder that can be written"
+        raise SettingError("--out", str(path), can, why(problem)) from None
 
 
 def _print_figures(
@@ -225,32 +218,31 @@ def _print_figures(
 
 
 def _number(name: str, value: float) -> str:
-    """Write a relative error, or the ratio of squares that the indicator is: rounding as 0."""
+    """Text of a relative error, or the ratio of squares that the indicator is: rounding as 0."""
     rounding = float(np.finfo(float).eps) ** (2 if name == "indicator" else 1)
     return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
 def _distance(problem: Problem, limit: float) -> Distance | None:
-    """Give the distance to the reference, or None where there is none in time."""
+    """Distance to the reference, or None where there is none in time."""
     end = time.perf_counter() + limit
     try:
         reference = reference_of(problem, lambda: time.perf_counter() > end)
     except Interrupted:
-        print("slipfront: no errors are known: the reference takes longer", file=sys.stderr)
+        warn("no errors are known: the reference takes longer")
         return None
     except NoReferenceError as refusal:
-        print(f"slipfront: no errors are known: {refusal}", file=sys.stderr)
+        warn(f"no errors are known: {refusal}")
         return None
     lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
     if lost:
-        found = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+        message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
         if reference.jumps_at is not None:
-            found += ": friction softens until the structure jumps"
-        print(f"slipfront: no errors are known: {found}", file=sys.stderr)
+            message += ": friction softens until the structure jumps"
+        warn(f"no errors are known: {message}")
         return None
     if several:
-        found = f"there are several solutions at {several} instants; errors are to one of them"
-        print(f"slipfront: {found}", file=sys.stderr)
+        warn(f"there are several solutions at {several} instants; errors are to one of them")
     return distance_to(reference, problem)
 
 
@@ -262,13 +254,13 @@ def _scenes(_chosen: argparse.Namespace) -> int:
 
 def _settings(chosen: argparse.Namespace) -> int:
     kind = scene_settings(chosen.scene)
-    definitions, usual = kind.definitions(), kind.usual("paper")
+    definitions, papers = kind.definitions(), kind.defaults("paper")
     width = max(map(len, definitions)) + 1
     for name, definition in definitions.items():
         unit = about(definition).unit or "-"
         default = json.dumps(definition.default)
-        if usual[name] != definition.default:
-            default += f" (method=paper: {json.dumps(usual[name])})"
+        if papers[name] != definition.default:
+            default += f" (method=paper: {json.dumps(papers[name])})"
         print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
         print(f"{'':<{width}} {definition.doc}")
     return 0

@@ -11,7 +11,7 @@ from solver.definitions import SettingError
 from solver.disk import read_bytes, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
-from solver.prepared import prepared
+from solver.remarks import prepared
 from solver.scenes.method import method_of
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import CAN, FEWEST, FRICTION, read_brought

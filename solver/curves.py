@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from solver.columns import TableColumn
+from solver.columns import TableColumn, examples_of
 from solver.definitions import CurveParameter, SettingError, allowed
 from solver.disk import read_bytes, why
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import Table, read_table
-from solver.units import examples_of
 
 _BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment"}
 """Quantities of settings whose ordinate is called value."""
@@ -93,18 +93,18 @@ def _chosen(
             both = f"{definition.abscissa} and {definition.ordinate}"
             raise table.refuse(f"it has {len(columns)} columns: name {both} in its first line")
         return columns[0], columns[1]
-    own = [column for column in columns if column.key == name or column.key not in _SETTINGS]
+    likely = [column for column in columns if column.key == name or column.key not in _SETTINGS]
     kinds: Collection[str] = TableColumn(0, name=definition.ordinate).quantities[0]
     kinds = kinds or {_BY_UNIT[unit] for unit in units[1].split(" or ")}
     names = ", ".join(repr(column.name) for column in columns)
-    first = table.find(own, {definition.abscissa}, units[0])
+    first = table.find(likely, {definition.abscissa}, units[0])
     if first is None:
         loop = ": a loop, as force over displacement, is no path over time"
         raise table.refuse(
             f"its head names no {definition.abscissa} (it has {names})"
             f"{loop if definition.abscissa == 'time' else ''}; add that column"
         )
-    rest = [column for column in own if column is not first]
+    rest = [column for column in likely if column is not first]
     second = table.find(rest, kinds, units[1], name)
     if second is None and len(columns) == 2 and rest:
         second = None if rest[0].quantities[0] else rest[0]
@@ -116,7 +116,7 @@ def _chosen(
 
 
 def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -> dict[str, Table]:
-    """Read the CSV files that curves name, put their points into the values, and give them.
+    """Tables in the CSV files that curves name, whose points replace the names in the values.
 
     Reading files is for fronts whose user owns the machine, so nothing else does it.
     """
@@ -125,9 +125,9 @@ def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -
         value = values.get(name)
         if not isinstance(definition, CurveParameter) or not isinstance(value, str):
             continue
-        if value and value not in definition.presets:
-            tables[name] = _read_file(folder / value, definition, name)
-            values[name] = curve_of(tables[name], definition, name, definition.units).points
+        if value not in ("", *definition.presets):
+            table = tables[name] = _read_file(folder / value, definition, name)
+            values[name] = curve_of(table, definition, name, definition.units).points
     return tables
 
 
@@ -139,12 +139,11 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     SettingError
         Where the other settings want another quantity than a table has.
     """
-    found = {}
-    for name, table in tables.items():
-        definition, units = settings.definitions()[name], settings.curve_units(name)
-        if isinstance(definition, CurveParameter):
-            found[name] = curve_of(table, definition, name, units).message
-    return found
+    definitions: Mapping[str, Any] = settings.definitions()
+    return {
+        name: curve_of(table, definitions[name], name, settings.curve_units(name)).message
+        for name, table in tables.items()
+    }
 
 
 def _read_file(path: Path, definition: CurveParameter, name: str) -> Table:

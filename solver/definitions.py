@@ -56,27 +56,6 @@ class About:
     aliases: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class Retired:
-    """A setting that there was, and that files may still have.
-
-    Attributes
-    ----------
-    value
-        What all runs now have; None where it did nothing without another setting.
-    why
-        What was measured, as a reason.
-    """
-
-    value: object | None
-    why: str
-
-    def check(self, name: str, value: object) -> None:
-        """Refuse any value but the one that all runs have."""
-        if self.value is not None and value != self.value:
-            raise SettingError(name, value, str(self.value), f"{self.why}; leave it out")
-
-
 class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
@@ -102,9 +81,14 @@ class CurveParameter(Parameter):
 
 
 def about(parameter: Parameter) -> About:
-    """Give the record of a setting's definition."""
-    found: About = parameter.metadata["about"]
-    return found
+    """Record of a setting's definition."""
+    record: About = parameter.metadata["about"]
+    return record
+
+
+def _common(doc: str, record: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of param that all settings have."""
+    return {"doc": doc, "constant": True, "metadata": {"about": About(**record)}}
 
 
 def quantity(
@@ -114,47 +98,25 @@ def quantity(
     doc: str,
     **record: Any,
 ) -> param.Number[float]:
-    """Define a real setting: hard `bounds`, and the range that a `slider` shows."""
-    return param.Number(
-        default=default,
-        bounds=bounds,
-        softbounds=slider,
-        doc=doc,
-        constant=True,
-        metadata={"about": About(**record)},
-    )
+    """Real setting: hard `bounds`, the range that a `slider` shows, and entries of `About`."""
+    return param.Number(default=default, bounds=bounds, softbounds=slider, **_common(doc, record))
 
 
 def count(
     default: int, bounds: tuple[int, int], slider: tuple[int, int], doc: str, **record: Any
 ) -> param.Integer[int]:
-    """Define a whole-number setting."""
-    return param.Integer(
-        default=default,
-        bounds=bounds,
-        softbounds=slider,
-        doc=doc,
-        constant=True,
-        metadata={"about": About(**record)},
-    )
+    """Whole-number setting."""
+    return param.Integer(default=default, bounds=bounds, softbounds=slider, **_common(doc, record))
 
 
 def switch(default: bool, doc: str, **record: Any) -> param.Boolean[bool]:
-    """Define an on/off setting."""
-    return param.Boolean(
-        default=default, doc=doc, constant=True, metadata={"about": About(**record)}
-    )
+    """On/off setting."""
+    return param.Boolean(default=default, **_common(doc, record))
 
 
 def choice(default: str, options: Iterable[str], doc: str, **record: Any) -> param.Selector[str]:
-    """Define a setting that is one of a few names."""
-    return param.Selector(
-        default=default,
-        objects=list(options),
-        doc=doc,
-        constant=True,
-        metadata={"about": About(**record)},
-    )
+    """Setting that is one of a few names."""
+    return param.Selector(default=default, objects=list(options), **_common(doc, record))
 
 
 def curve(
@@ -166,29 +128,20 @@ def curve(
     doc: str,
     **record: Any,
 ) -> CurveParameter:
-    """Define a path: a preset's name or a table of points."""
-    return CurveParameter(
-        default,
-        presets,
-        abscissa,
-        ordinate,
-        units,
-        doc=doc,
-        constant=True,
-        metadata={"about": About(**record)},
-    )
+    """Path: a preset's name or a table of points."""
+    return CurveParameter(default, presets, abscissa, ordinate, units, **_common(doc, record))
 
 
 def redefined(definition: Any, default: object, **record: Any) -> Any:
-    """Define a setting again for some scenes, with another default and other entries of `About`."""
-    found = copy.copy(definition)
-    found.default = default
-    found.metadata = {"about": replace(about(definition), **record)}
-    return found
+    """Setting for some scenes, with another default and other entries of `About`."""
+    again = copy.copy(definition)
+    again.default = default
+    again.metadata = {"about": replace(about(definition), **record)}
+    return again
 
 
 def allowed(definition: Parameter) -> str:
-    """Describe in words which values a setting takes."""
+    """Words on which values a setting takes."""
     if isinstance(definition, CurveParameter):
         pairs = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
         return f"{', '.join(definition.presets)}, or {pairs}"
@@ -210,7 +163,7 @@ def allowed(definition: Parameter) -> str:
 
 
 def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
-    """Make the refusal of a name that no setting has; it says which may have been meant."""
+    """Refusal of a name that no setting has; it says which may have been meant."""
     names = list(known)
     near = difflib.get_close_matches(name, names, n=1)
     remedy = f"did you mean {near[0]}?" if near else "correct the name or leave it out"
@@ -218,7 +171,7 @@ def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
 
 
 def checked_value(definition: Parameter, name: str, value: object) -> Any:
-    """Give a setting's value in its own type.
+    """Value of a setting in its own type.
 
     Raises
     ------
@@ -281,9 +234,9 @@ def _checked_curve(
 
 
 def parse(text: str) -> object:
-    """Read a setting's value from text, as typed on a command line or in an address."""
+    """Value of a setting from text, as typed on a command line or in an address."""
     try:
-        found: dict[str, object] = tomllib.loads(f"value = {text}")
+        table: dict[str, object] = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):  # no TOML, digits beyond Python's limit, deep nesting
         return text
-    return found["value"] if len(found) == 1 else text
+    return table["value"] if len(table) == 1 else text

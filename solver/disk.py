@@ -16,7 +16,7 @@ TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
 def read_bytes(path: Path) -> bytes:
-    """Read a file; of one that is too large, or has no end, no more than it takes to know.
+    """Bytes of a file; of one that is too large, or has no end, no more than it takes to know.
 
     Raises
     ------
@@ -31,7 +31,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def read_text(path: Path) -> str:
-    """Read a file of text as above.
+    """Text of a file, read as above.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
 
 
 def why(problem: OSError | ValueError) -> str:
-    """Say in a few words why a file cannot be read or written."""
+    """A few words on why a file cannot be read or written."""
     reason = problem.strerror if isinstance(problem, OSError) else None
     return reason or type(problem).__name__
 
@@ -78,7 +78,7 @@ def write(path: Path, content: str | bytes) -> None:
 
 
 def check_place(path: Path) -> None:
-    """Find out, before long work, whether a file can be written.
+    """Check, before long work, that a file can be written.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def check_place(path: Path) -> None:
 
 
 def _place_and_part(path: Path) -> tuple[Path, Path]:
-    """Give the place of a file, links followed, and what stands beside it until it is complete."""
+    """Place of a file, links followed, and what stands beside it until it is complete."""
     place = Path(os.path.realpath(path))
     if place.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))

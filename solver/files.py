@@ -12,19 +12,23 @@ from typing import Any
 import numpy as np
 
 from solver.curves import messages, read_tables
-from solver.definitions import CurveParameter, SettingError, parse
-from solver.discrete.inside import Inside
+from solver.definitions import SettingError, parse
 from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
-from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces, held_instants
 from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
+INDICATORS = "indicator", "behaviour", "estimated_error"
+ERRORS = "error_displacement", "error_force"
+"""What is known of every iteration, beside its time; errors where there is a reference."""
+OF_BASES = "modes", "added", "updated", "enriched", "dropped"
+"""What is known of every separated basis at every iteration."""
+
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
-    """Read a saved settings file, whose curves name no other files.
+    """Settings of a saved file, whose curves name no other files.
 
     Parameters
     ----------
@@ -55,7 +59,7 @@ def _scene_and_values(text: str, source: str) -> tuple[type[Settings], dict[str,
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:
-    """Read settings from a scene's name or a saved file, and `NAME=VALUE` texts over it.
+    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it.
 
     Returns
     -------
@@ -87,76 +91,40 @@ def settings_from_command(
     return settings, messages(tables, settings)
 
 
-def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
-    """Say what of these settings a run does not heed: idle ones, and load tables that go on."""
-    idle = settings.usual("paper")
-    found = [
-        f"{name} does nothing with the other settings as they are"
-        for name in dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
-        if not settings.applies(name) and getattr(settings, name) != idle[name]
-    ]
-    duration = settings.duration
-    return found + [
-        f"{name} goes on to {end:g} s, but the run ends at {duration:g} s: "
-        f"set duration={end:g} to run all of it"
-        for name, end in ends_of_tables(settings).items()
-        if end > duration
-    ]
-
-
-def ends_of_tables(settings: Settings) -> dict[str, float]:
-    """Give the last time, s, of every load path that is a table, by the name of its setting."""
-    values = settings.values()
-    return {
-        name: values[name][-1][0]
-        for name, definition in settings.definitions().items()
-        if isinstance(definition, CurveParameter)
-        and definition.abscissa == "time"
-        and isinstance(values[name], tuple)
-        and settings.applies(name)
-    }
-
-
 def scene_settings(scene: object) -> type[Settings]:
-    """Find the settings of a scene by its name in the catalogue."""
+    """Settings of a scene by its name in the catalogue."""
     if not isinstance(scene, str) or scene not in CATALOGUE:
         raise SettingError("scene", scene, ", ".join(CATALOGUE), "choose one of these")
     return CATALOGUE[scene].settings
 
 
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
-    """Give the key figures of a finished run."""
+    """Key figures of a finished run."""
     last = solution.records[-1] if solution.records else None
+    reduction, bases = solution.iterate.reduction, {}
+    if reduction is not None:
+        bases = {
+            "modes_largest": max(entry.modes for entry in reduction.records),
+            "modes_stored": reduction.stored,
+            "modes_saved": reduction.saved,
+        }
     return {
         "scene": settings.scene,
         "status": str(solution.status.ending),
         "advice": solution.status.advice,
         "remarks": remarks_on(settings, solution.iterate),
         "iterations": solution.iterate.iterations,
-        "indicator": last.indicator if last else None,
-        "behaviour": last.behaviour if last else None,
-        "estimated_error": last.estimated_error if last else None,
+        **{name: getattr(last, name, None) for name in INDICATORS},
         "certified": solution.is_certified,
         "residual": solution.iterate.residual,
-        "error_displacement": last.error_displacement if last else None,
-        "error_force": last.error_force if last else None,
+        **{name: getattr(last, name, None) for name in ERRORS},
         "seconds": last.seconds if last else solution.iterate.seconds,
-        **_bases(solution.iterate.reduction),
-    }
-
-
-def _bases(reduction: Reduction | None) -> dict[str, int]:
-    if reduction is None:
-        return {}
-    return {
-        "modes_largest": max(entry.modes for entry in reduction.records),
-        "modes_stored": reduction.stored,
-        "modes_saved": reduction.saved,
+        **bases,
     }
 
 
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
-    """Give the arrays of a result file (SI; space first, time last).
+    """Arrays of a result file (SI; space first, time last).
 
     Along rods `displacement` is that of the degrees of freedom at `x`, body after body;
     `friction_force` and `status` are those of the points of all interfaces with friction, one after
@@ -169,24 +137,34 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     shape (n_iterations, n_substructures), as in `ReductionRecord`.
     """
     iterate, problem = solution.iterate, solution.iterate.problem
-    history: dict[str, list[Any]] = {
-        "indicator": [entry.indicator for entry in solution.records],
-        "behaviour": [entry.behaviour for entry in solution.records],
-        "estimated_error": [entry.estimated_error for entry in solution.records],
-        "seconds": [entry.seconds for entry in solution.records],
-        "error_displacement": [entry.error_displacement for entry in solution.records],
-        "error_force": [entry.error_force for entry in solution.records],
+    history = {
+        name: [getattr(entry, name) for entry in solution.records]
+        for name in (*INDICATORS, *ERRORS, "seconds")
     }
     if iterate.reduction is not None:
-        for name in ("modes", "added", "updated", "enriched", "dropped"):
+        for name in OF_BASES:
             history[f"pgd_{name}"] = [
                 [getattr(part, name) for part in entry.reduction] for entry in solution.records
             ]
+    fields: dict[str, Any]
+    if problem.inside is None:
+        fields = {
+            "x": problem.positions,
+            "displacement": iterate.displacement,
+            "friction_force": iterate.friction_force,
+            "determinate": determinate_forces(problem),
+            "status": iterate.status,
+        }
+    else:
+        fields = {
+            "x": problem.inside.nodes,
+            "elements": problem.inside.elements,
+            "displacement": problem.inside.displacement(iterate.displacement, slice(None)),
+            "displacement_determinate": held_instants(problem, iterate.contact_force),
+        }
     return {
         "t": problem.instants,
-        **(
-            _on_lines(iterate) if problem.inside is None else _in_the_plane(problem.inside, iterate)
-        ),
+        **fields,
         **interface_arrays(iterate),
         **{name: np.array(column) for name, column in history.items()},
         "certified": solution.is_certified,
@@ -195,40 +173,21 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     }
 
 
-def _on_lines(iterate: Iterate) -> dict[str, Any]:
-    return {
-        "x": iterate.problem.positions,
-        "displacement": iterate.displacement,
-        "friction_force": iterate.friction_force,
-        "determinate": determinate_forces(iterate.problem),
-        "status": iterate.status,
-    }
-
-
-def _in_the_plane(inside: Inside, iterate: Iterate) -> dict[str, Any]:
-    return {
-        "x": inside.nodes,
-        "elements": inside.elements,
-        "displacement": inside.displacement(iterate.displacement, slice(None)),
-        "displacement_determinate": held_instants(iterate.problem, iterate.contact_force),
-    }
-
-
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
-    """Give the arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
+    """Arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
 
     `points` are places along the interface, m; `determinate` tells where the force is no arbitrary
     share of what a support or a ring of contacts carries; the others are as in `ContactFields`,
     shape (n_points, n_instants), with the opening as `gap`. Forces are in N, on the body above.
     """
-    found: dict[str, Any] = {}
+    arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
     for name, law in iterate.problem.rubbing.items():
         if law.is_plain and len(iterate.problem.rubbing) == 1:
             continue
         fields = iterate.contact(name)
         *_, tangential = iterate.problem.contact_places[name]
-        own = {
+        entries = {
             "points": law.positions,
             "determinate": determinate[tangential],
             "normal_force": fields.normal_force,
@@ -237,10 +196,10 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
             "slip": fields.slip,
             "status": fields.status,
         }
-        found |= {
-            f"interface/{name}/{key}": field for key, field in own.items() if field is not None
+        arrays |= {
+            f"interface/{name}/{key}": field for key, field in entries.items() if field is not None
         }
-    return found
+    return arrays
 
 
 def save_result(path: Path, settings: Settings, solution: Solution) -> None:

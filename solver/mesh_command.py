@@ -9,7 +9,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.files import settings_from_command
 from solver.latin.run_cost import run_cost
-from solver.prepared import print_tables
+from solver.remarks import print_tables
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

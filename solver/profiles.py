@@ -33,7 +33,7 @@ def _pieces(tables: list[Pairs], edges: Array) -> tuple[Array, list[Array], Indi
 
 
 def shares_of(nodes: Array, order: int = 1) -> Array:
-    """Return the ends of the shares of nodes in a row, shape (n_nodes + 1,), m.
+    """Ends of the shares of nodes in a row, shape (n_nodes + 1,), m.
 
     They meet half-way between nodes; of quadratic elements a node in the middle has two thirds.
 
@@ -49,7 +49,7 @@ def shares_of(nodes: Array, order: int = 1) -> Array:
 
 
 def means(tables: list[Pairs], edges: Array) -> Array:
-    """Return the mean of the product of one or two tables over every share.
+    """Mean of the product of one or two tables over every share.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def means(tables: list[Pairs], edges: Array) -> Array:
 
 
 def harmonic_means(table: Pairs, edges: Array) -> Array:
-    """Return the inverse of the mean of the inverse of a table over every share."""
+    """Inverse of the mean of the inverse of a table over every share."""
     ends, (values,), first = _pieces([table], edges)
     change = np.diff(values) / values[:-1]
     is_steep = np.abs(change) > STEEP
@@ -79,7 +79,7 @@ def harmonic_means(table: Pairs, edges: Array) -> Array:
 
 
 def gap_at(table: Pairs, nodes: Array) -> Array:
-    """Return a gap at nodes; a point between two that is lower than both is put at the nearer.
+    """Gap at nodes; a point between two that is lower than both is put at the nearer.
 
     A slope or a curve that the nodes tell stays as it is: only what would touch first and lies
     between nodes is moved.
@@ -98,7 +98,7 @@ def gap_at(table: Pairs, nodes: Array) -> Array:
 
 
 def unseen(name: str, table: Pairs, length: float, elements: int, order: int) -> str | None:
-    """Say what a mesh does not see of a gap that is a table, and how many elements would.
+    """What a mesh does not see of a gap that is a table, and how many elements would.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def unseen(name: str, table: Pairs, length: float, elements: int, order: int) ->
 
 
 def _off_nodes(table: Pairs, length: float, pieces: int) -> Array:
-    """Return how far points are off the line through evenly spaced nodes, shape (n_points,)."""
+    """How far points are off the line through evenly spaced nodes, shape (n_points,)."""
     x, values = np.array(table).T
     place = x * (pieces / length)
     left = np.floor(place).clip(0, pieces - 1)

@@ -11,7 +11,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
-from solver.prepared import print_tables
+from solver.remarks import print_tables
 from solver.study.figures.figure_report import paper_figures, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof

@@ -10,8 +10,7 @@ from typing import ClassVar
 import param
 
 from solver.checked import Checked
-from solver.definitions import Retired, choice, count, quantity, switch
-from solver.methods import METHODS
+from solver.definitions import choice, count, quantity, switch
 
 
 def _on_modes(settings: Settings) -> bool:
@@ -20,12 +19,6 @@ def _on_modes(settings: Settings) -> bool:
 
 def _on_fields(settings: Settings) -> bool:
     return bool(settings.linear_stage == "full")
-
-
-NO_SAMPLES = (
-    "laws evaluated at a part of the points and instants hardly ever came sooner to an error, and "
-    "stalled at a larger one"
-)
 
 
 class Settings(Checked):
@@ -37,13 +30,25 @@ class Settings(Checked):
     friction: param.Number[float]
     """Every scene defines these, where it shows them."""
 
-    METHODS: ClassVar = METHODS
-    RETIRED: ClassVar = {
-        "local_stage": Retired("full", NO_SAMPLES),
-        "local_points": Retired(None, NO_SAMPLES),
-        "local_instants": Retired(None, NO_SAMPLES),
-        "pgd_enrichment": Retired(None, "modes that waited for a threshold only came later"),
+    METHODS: ClassVar = {
+        "fast": {
+            "search_direction": "auto",
+            "acceleration": "anderson",
+            "start": "nested",
+            "relaxation": 0.8,
+            "finish": "at-once",
+            "tolerance": 1e-3,
+        },
+        "paper": {
+            "search_direction": "paper",
+            "acceleration": "none",
+            "start": "zero",
+            "relaxation": 0.8,
+            "finish": "none",
+            "tolerance": 1e-10,
+        },
     }
+    """What `method` sets at once."""
 
     substructures = count(
         10,
@@ -245,7 +250,7 @@ class Settings(Checked):
 
     @property
     def k_factors(self) -> tuple[float, float]:
-        """Give further factors on k of contacts, along and across them."""
+        """Further factors on k of contacts, along and across them."""
         return self.k_friction_scale, 1.0
 
     @property

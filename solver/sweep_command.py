@@ -6,26 +6,24 @@ import argparse
 import sys
 import time
 from collections.abc import Iterable, Iterator
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
 from solver.disk import write
+from solver.executors import FORMS, opened
 from solver.files import settings_from_command
-from solver.prepared import print_tables
+from solver.remarks import print_tables
 from solver.report_commands import writing
-from solver.running.executors import FORMS, opened
-from solver.running.pool import GoneError
 from solver.study.page import write_page
-from solver.study.sweep import Plan, Row, VersionsDifferError, patience, plan_of, sweep
-from solver.study.sweep.adaptive import Chooser, sweep_adaptively
-from solver.study.sweep.growth import growth
-from solver.study.sweep.journal import Journal, journal_of
-from solver.study.sweep.plan import FORM
-from solver.study.sweep.point import field_file
-from solver.study.sweep.report import counts, sections, title_of
-from solver.study.sweep.table import csv_of, write_parquet
+from solver.study.sweep import Plan, Row, patience, plan_of, sweep
+from solver.study.sweep.plan import FORM, LOST, STUCK
+from solver.study.sweep.report import counts, growth, sections, title_of
+from solver.study.sweep.run import field_file
+from solver.study.sweep.table import csv_of, lines_of, rows_in
 
+TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0
 """Seconds that a run may take, unless somebody says otherwise."""
 OFTEN, SELDOM = 0.2, 10.0
@@ -55,88 +53,72 @@ def _sweep(chosen: argparse.Namespace) -> int:
     plan = plan_of(settings, chosen.vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
-    if chosen.adaptive is not None:
-        Chooser(plan, chosen.adaptive)
+    size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
     print_tables(tables)
     for name in plan.idle():
-        print(
-            f"slipfront: {name} does nothing with the other settings as they are", file=sys.stderr
-        )
+        message = f"slipfront: {name} does nothing with the other settings as they are"
+        print(message, file=sys.stderr)
     with writing(chosen.out):
-        with journal_of(plan, chosen.out) as journal:
-            try:
-                run(plan, journal, chosen)
-            except (KeyboardInterrupt, GoneError) as end:
-                why = f"slipfront: {end}" if str(end) else "Stopped"
-                print(f"{why}; the same command goes on from here.", file=sys.stderr)
-        rows = [journal.rows[number] for number in sorted(journal.rows)]
-        files = write_report(plan, rows, chosen.out)
-    print("\n".join([counts(plan, rows), *growth(plan, rows)]))
-    print(f"{len(files)} files in {chosen.out}")
-    return 0 if len(rows) >= wanted(plan, chosen) and all(row.holds for row in rows) else 1
+        rows = rows_in(chosen.out / TABLE, plan)
+        try:
+            run(plan, rows, size, chosen)
+        except (KeyboardInterrupt, BrokenExecutor) as end:
+            why = f"slipfront: {end}" if str(end) else "Stopped"
+            print(f"{why}; the same command goes on from here.", file=sys.stderr)
+        by_number = [rows[number] for number in sorted(rows)]
+        write(chosen.out / TABLE, csv_of(plan, by_number))
+        note = write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
+    print("\n".join([*filter(None, [note]), counts(plan, by_number), *growth(plan, by_number)]))
+    print(f"{TABLE} and {PAGE} in {chosen.out}")
+    return 0 if len(rows) >= size and all(row.holds for row in by_number) else 1
 
 
-def run(plan: Plan, journal: Journal, chosen: argparse.Namespace) -> None:
-    """Run what of a plan has no row in its journal yet, and say how far it is.
+def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace) -> None:
+    """Run what of a plan has no row yet, append its rows to the table, and print how far it is.
 
     Raises
     ------
     SettingError
-        For an executor that there is not, or one of other versions.
+        For an executor that there is not, one of other versions, or what cannot be sampled.
+    BrokenExecutor
+        For one that does no more calls.
     """
-    fields, done = None, journal.done
+    fields = None
+    known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
     if chosen.fields:
-        folder = (chosen.out / "fields").resolve()
+        folder = (chosen.out / FIELDS).resolve()
         folder.mkdir(exist_ok=True)
         fields = str(folder)
-        done = {number for number in done if (folder / field_file(number)).exists()}
-    with opened(chosen.on, patience(chosen.limit)) as pool:
-        limits: dict[str, Any] = {"limit": chosen.limit, "fields": fields}
-        if chosen.adaptive is not None:
-            known = [journal.rows[number] for number in done]
-            rows = sweep_adaptively(plan, pool, chosen.adaptive, known=known, **limits)
-        else:
-            rows = sweep(plan, pool, done=done, warm=not chosen.cold, **limits)
-        try:
-            for row in told(rows, wanted(plan, chosen), len(done)):
-                journal.add(row)
-        except VersionsDifferError as refusal:
-            here = "workers of the same versions as this command"
-            raise SettingError("--on", chosen.on, here, str(refusal)) from None
+        known = {n: row for n, row in known.items() if (folder / field_file(n)).exists()}
+    options: dict[str, Any] = {"limit": chosen.limit, "fields": fields, "warm": not chosen.cold}
+    if chosen.adaptive is not None:
+        # Here and not above: it takes a sixth of a second, for which other commands need not wait.
+        from solver.study.sweep.adaptive import Chooser
+
+        options |= {"following": Chooser(plan, chosen.adaptive, known), "warm": False}
+    table = chosen.out / TABLE
+    with opened(chosen.on, patience(chosen.limit)) as executor:
+        # As a whole, in case that its last line was cut off
+        write(table, csv_of(plan, list(rows.values())))
+        with table.open("a", encoding="utf-8", newline="") as lines:
+            found = sweep(plan, executor, done=set(known), **options)
+            for row in followed(found, size, len(known)):
+                rows[row.number] = known[row.number] = row
+                lines.write(lines_of(plan, [row]))
+                lines.flush()
 
 
-def wanted(plan: Plan, chosen: argparse.Namespace) -> int:
-    """Count the runs that a command asks for."""
-    return plan.size if chosen.adaptive is None else min(plan.size, int(chosen.adaptive))
-
-
-def told(rows: Iterable[Row], size: int, done: int) -> Iterator[Row]:
-    """Say on stderr, as rows pass, how many there are and how long the others will take."""
+def followed(rows: Iterable[Row], size: int, done: int) -> Iterator[Row]:
+    """Print on stderr, as rows pass, how many there are and how long the others will take."""
     on_terminal = sys.stderr.isatty()
     start, ends = ("\r", "") if on_terminal else ("", "\n")
-    began = said = time.monotonic()
+    began = printed = time.monotonic()
     for number, row in enumerate(rows, start=1):
         yield row
         now = time.monotonic()
         is_last = done + number == size
-        if now - said > (OFTEN if on_terminal else SELDOM) or (is_last and on_terminal):
+        if now - printed > (OFTEN if on_terminal else SELDOM) or (is_last and on_terminal):
             left = (now - began) / number * (size - done - number)
             line = f"{done + number} of {size} runs, {left:.0f} s left"
             print(f"{start}{line:<40}", end="\n" if is_last else ends, file=sys.stderr, flush=True)
-            said = now
-
-
-def write_report(plan: Plan, rows: list[Row], folder: Path) -> list[Path]:
-    """Write `sweep.csv`, `sweep.html` and, with pyarrow, `sweep.parquet`; give these files.
-
-    Raises
-    ------
-    OSError
-        When a file cannot be written.
-    """
-    table, page_file = folder / "sweep.csv", folder / "sweep.html"
-    write(table, csv_of(plan, rows))
-    if note := write_page(page_file, title_of(plan), sections(plan, rows)):
-        print(note)
-    parquet = folder / "sweep.parquet"
-    return [table, page_file, *([parquet] if write_parquet(plan, rows, parquet) else [])]
+            printed = now

@@ -32,14 +32,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import Refuse, TableColumn, are_units, column_of
+from solver.columns import Refuse, TableColumn, are_units, column_of, is_spelt_as_unit, size_in
 from solver.disk import LARGEST, TOO_LARGE
-from solver.units import is_spelt_as_unit, size_in
 
 Row = tuple[int, list[str]]
 """Number of a line, and its cells."""
 SEPARATORS = "\t;, "
-NO_TEXT = "it is no text: save the table as CSV"
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|\d+,\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I)
 
 
@@ -63,7 +61,7 @@ class Table:
 
         `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named.
         """
-        said = [
+        parts = [
             column.message(name, unit)
             for column, name, unit in zip(columns, names, units, strict=True)
         ]
@@ -72,12 +70,12 @@ class Table:
         ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
         others = [repr(column.name) for column in self.columns if column not in columns]
         passed = f"; passed over: {', '.join(others)}" if others else ""
-        return f"{', '.join(said)}, {numbers.shape[1]} points, {ends}{passed}"
+        return f"{', '.join(parts)}, {numbers.shape[1]} points, {ends}{passed}"
 
     def find(
         self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
     ) -> TableColumn | None:
-        """Find the column of a quantity among some, as described above.
+        """Column of a quantity among some, as described above.
 
         Raises
         ------
@@ -102,7 +100,7 @@ class Table:
         return None
 
     def numbers(self, columns: Sequence[TableColumn]) -> Array:
-        """Return the numbers of some columns as they are written, shape (n_columns, n_rows).
+        """Numbers of some columns as they are written, shape (n_columns, n_rows).
 
         Raises
         ------
@@ -131,7 +129,7 @@ class Table:
         """Cells with decimal points; of both signs the rarer one is refused, with its line."""
         signs = Counter(sign for row in cells for text in row for sign in ",." if sign in text)
         if signs["."] and signs[","]:
-            (usual, _), (rare, _) = signs.most_common()
+            (common, _), (rare, _) = signs.most_common()
             line, text = next(
                 (line, text)
                 for (line, _), row in zip(self.rows, cells, strict=True)
@@ -141,13 +139,13 @@ class Table:
             names = {",": "comma", ".": "point"}
             raise self.refuse(
                 f"line {line} has {text!r}, with a decimal {names[rare]} where others have a "
-                f"{names[usual]}: write all of them alike, and thousands without a sign"
+                f"{names[common]}: write all of them alike, and thousands without a sign"
             )
         return [[text.replace(",", ".") for text in row] for row in cells] if signs[","] else cells
 
 
 def read_table(data: bytes | str, refuse: Refuse) -> Table:
-    """Read a table, as described above.
+    """Table as it is read, as described above.
 
     Parameters
     ----------
@@ -181,22 +179,22 @@ def read_table(data: bytes | str, refuse: Refuse) -> Table:
 
 
 def _text(data: bytes | str, refuse: Refuse) -> str:
-    text = data
-    if isinstance(data, bytes):
-        encodings = ["utf-8-sig", "cp1252"]
-        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            encodings = ["utf-16"]
-        elif data and 0.4 < data.count(0) / len(data) <= 0.5:
-            encodings = ["utf-16-be" if data[0] == 0 else "utf-16-le"]
-        for encoding in encodings:
-            try:
-                text = data.decode(encoding)
-                break
-            except UnicodeDecodeError:
-                continue
-    if not isinstance(text, str) or "\0" in text:
-        raise refuse(NO_TEXT)
+    text = data if isinstance(data, str) else _decoded(data)
+    if "\0" in text:
+        raise refuse("it is no text: save the table as CSV")
     return text.removeprefix("\ufeff")
+
+
+def _decoded(data: bytes) -> str:
+    encoding = "utf-8-sig"
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        encoding = "utf-16"
+    elif data and 0.4 < data.count(0) / len(data) <= 0.5:
+        encoding = "utf-16-be" if data[0] == 0 else "utf-16-le"
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")
 
 
 def _is_number(cell: str) -> bool:
@@ -204,7 +202,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _number(cell: str) -> float:
-    """Return a number; NaN for what is none."""
+    """Number of a cell; NaN for what is none."""
     try:
         return float(cell)
     except ValueError:
@@ -245,18 +243,18 @@ def _heads(rows: Sequence[Row]) -> tuple[Sequence[Row], int]:
         cells = rows[place][1]
         return len(cells) > 1 and (are_units(cells) or not any(map(_is_number, cells)))
 
-    for place, (_, cells) in enumerate(rows):
+    def is_first(place: int) -> bool:
+        cells = rows[place][1]
         numbers = sum(map(_is_number, cells))
-        if numbers > 1 and (numbers == len(cells) or (place > 0 and is_head(place - 1))):
-            first = place
-            while first > 0 and is_head(first - 1):
-                first -= 1
-            if first < place:
-                return rows[first:place], place
-            break
-    start = (place for place, (_, cells) in enumerate(rows) if any(map(_is_number, cells)))
-    place = next(start, len(rows))
-    return rows[:place], place
+        return numbers > 1 and (numbers == len(cells) or (place > 0 and is_head(place - 1)))
+
+    first = start = next(filter(is_first, range(len(rows))), 0)
+    while first > 0 and is_head(first - 1):
+        first -= 1
+    if first == start:
+        numbers = (place for place, (_, cells) in enumerate(rows) if any(map(_is_number, cells)))
+        first, start = 0, next(numbers, len(rows))
+    return rows[first:start], start
 
 
 def _columns(

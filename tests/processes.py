@@ -7,6 +7,7 @@ import subprocess
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 PATIENCE = 120.0
 """Seconds that a test waits for what comes at all, also where others keep the machine busy."""
@@ -28,9 +29,9 @@ def wait_for(condition: Callable[[], object]) -> None:
 
 
 @contextmanager
-def started(command: Sequence[str]) -> Iterator[subprocess.Popen[bytes]]:
-    """Start a command, and end it in any case."""
-    with subprocess.Popen(command) as process:
+def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a command, with options of `Popen`, and end it in any case."""
+    with subprocess.Popen(command, **options) as process:
         try:
             yield process
         finally:

@@ -3,34 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
-from solver.running.pool import Pool
 from solver.scenes import CATALOGUE
 from solver.study.sweep import Plan, Row, plan_of, sweep
 
 TINY = {"elements": 20, "instants": 21, "substructures": 2}
 
 
-class Here(Pool):
-    """Does every call at once, in this process."""
+class Here(ThreadPoolExecutor):
+    """Does one call after the other in this process, and counts them."""
 
     def __init__(self) -> None:
+        super().__init__(1)
         self.calls = 0
-
-    @property
-    def width(self) -> int:
-        return 1
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         self.calls += 1
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as trouble:
-            future.set_exception(trouble)
-        return future
+        return super().submit(fn, *args, **kwargs)
 
 
 def tiny(vary: list[str], of: list[str], scene: str = "bar", **changes: Any) -> Plan:
@@ -38,6 +30,12 @@ def tiny(vary: list[str], of: list[str], scene: str = "bar", **changes: Any) -> 
     return plan_of(settings, vary, of)
 
 
-def rows_of(plan: Plan, pool: Pool | None = None, **rest: Any) -> list[Row]:
+def rows_of(plan: Plan, executor: Executor | None = None, **rest: Any) -> list[Row]:
     """Run a sweep; its rows by number."""
-    return sorted(sweep(plan, pool or Here(), **rest), key=lambda row: row.number)
+    return sorted(sweep(plan, executor or Here(), **rest), key=lambda row: row.number)
+
+
+def rows_in_table(file: Path) -> int:
+    """Rows that a sweep has written so far."""
+    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+    return max(0, sum(not line.startswith("#") for line in lines) - 1)

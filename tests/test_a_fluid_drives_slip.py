@@ -17,11 +17,11 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.latin import Auto, Ending, Latin, Stop, solve
 from solver.reference.choice import reference_of
-from solver.reference.closed_forms.diffusion import spread
-from solver.reference.closed_forms.slip_front import (
+from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     fronts,
     slip_under_growing_strength,
+    spread,
     stress_ahead,
 )
 from solver.reference.solution import Reference

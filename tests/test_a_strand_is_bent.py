@@ -19,7 +19,7 @@ from solver.discrete.wire_forces import CutWires, cut_at, stress_at, stress_rang
 from solver.files import result_arrays
 from solver.latin import Auto, Latin, Stop
 from solver.reference.choice import incremental_solver
-from solver.reference.closed_forms.bent_wire import BentWire
+from solver.reference.closed_forms.bent_strand import BentWire
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod, incremental
 from solver.refusal import RefusedError

@@ -73,7 +73,6 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
         ("instant=2", "from 0 to 1"),
         ("plots=Convergence,Moon", "there is no plot Moon"),
         ("pace=", "5 a second"),
-        ("local_stage=sampled", "leave it out"),
         ("file=load", "open its file"),
     ],
 )

@@ -9,7 +9,7 @@ import pytest
 from plane import lengths, solved
 
 from solver.reference.choice import reference_of
-from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.glued import jumps
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings

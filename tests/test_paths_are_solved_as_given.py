@@ -11,7 +11,7 @@ from solver.definitions import SettingError
 from solver.latin import Ending, solve
 from solver.loads import PRESSURES
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.closed_forms.diffusion import spread
+from solver.reference.closed_forms.fluid_driven_slip import spread
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise, left_out, structure_of
 from solver.scenes.bar import BarSettings
@@ -74,7 +74,7 @@ def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scen
             settings = of_preset(scene, name, preset, instants=number)
             fine = np.linspace(0.0, settings.duration, 96_001)
             path = settings.SHAPES.get(preset, PRESSURES.get(preset))
-            given = path(fine / settings.duration, 3) * settings.size_of(name)
+            given = path.value(fine / settings.duration, 3) * settings.size_of(name)
             seen = settings.path(name)
             if number == 1:  # it begins at rest: what is between that and its end, is passed
                 given, seen = (np.concatenate([[0.0], one]) for one in (given, seen))

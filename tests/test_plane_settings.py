@@ -98,7 +98,6 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
         (BlockSettings, {"elements": 2000, "elements_up": 1000, "substructures": 99}, "instants"),
         (BlockSettings, {"elements": 400, "elements_up": 400, "instants": 2}, "parts smaller"),
         (BlockSettings, {"start": "nested"}, "start"),
-        (LayersSettings, {"local_stage": "reduced"}, "local_stage"),
         (BlockSettings, {"gap": [[0.1, 0.0], [0.0, 0.0]]}, "must increase"),
         (BlockSettings, {"radius": 0.0}, "radius"),
         (LayersSettings, {"layers": 1}, "layers"),

@@ -5,9 +5,8 @@ import json
 import pytest
 
 from app.link import Place, query_of, read
-from app.state import default_settings
 from solver.checked import dump
-from solver.definitions import SettingError, allowed, parse
+from solver.definitions import allowed, parse
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
@@ -63,21 +62,3 @@ def test_a_saved_file_takes_changes_from_the_command_line(tmp_path):
     saved.write_text(dump(BarSettings.checked({"peak": 700.0, "elements": 20})), encoding="utf-8")
     found, _ = settings_from_command(str(saved), ["peak=800", "load=ramp"])
     assert (found.peak, found.elements, found.load) == (800.0, 20, "ramp")
-
-
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_a_file_of_an_earlier_version_is_read_as_far_as_it_still_holds(scene):
-    kind = CATALOGUE[scene].settings
-    usual = kind.checked({})
-    old = 'local_stage = "full"\nlocal_points = 0.5\npgd_enrichment = 0.1\n'
-    assert settings_from_toml(f"{dump(usual)}{old}").values() == usual.values()
-    with pytest.raises(SettingError, match=r"local_stage.*leave it out"):
-        kind.checked({"local_stage": "reduced"})
-
-
-def test_an_address_of_an_earlier_version_is_read_as_far_as_it_still_holds():
-    for old, complaint in (("full", ""), ("reduced", "stalled at a larger one; leave it out")):
-        place, words = read(f"?peak=700&local_stage={old}&local_points=0.3")
-        assert place.settings.changed(default_settings("bar")) == {"peak": 700.0}
-        assert complaint in words
-        assert bool(words) == bool(complaint)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from solver.reference.condensation import NoReferenceError
-from solver.reference.shakedown.slip_space import (
+from solver.reference.shakedown import (
     MOST_POINTS,
     largest_swing,
     slip_space,

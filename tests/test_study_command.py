@@ -16,7 +16,7 @@ import pytest
 
 from solver import report_commands
 from solver.cli import main
-from solver.running.machine import LIMITS
+from solver.executors import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
@@ -149,7 +149,7 @@ def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     assert all(size.seconds > 0.0 for one in found for size in one.sizes)
 
 
-PROGRAM = "import solver.__main__, solver.running.machine as found; print(found.machine())"
+PROGRAM = "import solver.__main__, solver.executors as found; print(found.machine())"
 
 
 @pytest.mark.parametrize(("given", "stated"), [(None, "1"), ("2", "2")])

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from contextlib import nullcontext
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -22,11 +25,11 @@ from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
 from solver.study.chart import Map
 from solver.study.page import write_page
-from solver.study.sweep import Plan, Row, plan_from_plain, plan_of
-from solver.study.sweep.adaptive import Chooser, sweep_adaptively
+from solver.study.sweep import Plan, Row, plan_of, sweep
+from solver.study.sweep.adaptive import Chooser
 from solver.study.sweep.chart import chart_of, ordered
-from solver.study.sweep.order import snake
 from solver.study.sweep.plan import axis_of
+from solver.study.sweep.run import snake
 
 SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
 
@@ -35,17 +38,9 @@ SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={va
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     """Run sweeps of the command in this process, and draw no page."""
     monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
-    pool = Here()
-
-    class Opened:
-        def __init__(self, *_: object) -> None: ...
-        def __enter__(self) -> Here:
-            return pool
-
-        def __exit__(self, *_: object) -> None: ...
-
-    monkeypatch.setattr(sweep_command, "opened", Opened)
-    return pool
+    executor = Here()
+    monkeypatch.setattr(sweep_command, "opened", lambda *given: nullcontext(executor))
+    return executor
 
 
 def command(folder: Path, *more: str, vary: str = "peak=300:900:4") -> int:
@@ -85,43 +80,66 @@ def test_the_page_needs_nothing_beside_it(tmp_path: Path, monkeypatch: pytest.Mo
     assert page.count("<tr>") == 1 + 12
 
 
-def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path: Path, here: Here) -> None:
+def rewrite(folder: Path, change: Callable[[list[str]], list[str]]) -> None:
+    """Change the rows of the table of a sweep, as lines."""
+    lines = (folder / "sweep.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    n_rows = len(table(folder))
+    text = "".join([*lines[:-n_rows], *change(lines[-n_rows:])])
+    (folder / "sweep.csv").write_text(text, encoding="utf-8")
+
+
+def test_a_sweep_that_was_killed_while_it_wrote_a_row_goes_on_where_it_was(
+    tmp_path: Path, here: Here
+) -> None:
     assert command(tmp_path) == 0
-    journal, whole = tmp_path / "sweep.jsonl", (tmp_path / "sweep.csv").read_text(encoding="utf-8")
-    lines = journal.read_bytes().splitlines(keepends=True)
-    # It was killed while it wrote its third row.
-    journal.write_bytes(b"".join(lines[:3]) + lines[3][:20])
-    before = here.calls
+    whole, calls = table(tmp_path), here.calls
+    rewrite(tmp_path, lambda rows: [*rows[:2], rows[2][:20]])
     assert command(tmp_path) == 0
-    assert here.calls - before <= 2
-    again = table(tmp_path)
-    assert [(row["peak"], row["peak_displacement"]) for row in again] == [
-        (row["peak"], row["peak_displacement"])
-        for row in csv.DictReader(line for line in whole.splitlines() if line[0] != "#")
+    assert here.calls == calls + 2
+    answers = "peak", "peak_displacement", "iterations", "ending"
+    assert [[row[name] for name in answers] for row in table(tmp_path)] == [
+        [row[name] for name in answers] for row in whole
     ]
+    assert table(tmp_path)[:2] == whole[:2]
     assert command(tmp_path) == 0
-    assert here.calls - before <= 2
+    assert here.calls == calls + 2
 
 
 def test_runs_whose_process_was_ended_are_tried_again(tmp_path: Path, here: Here) -> None:
     assert command(tmp_path) == 0
-    journal = tmp_path / "sweep.jsonl"
-    head, *lines = journal.read_text(encoding="utf-8").splitlines()
-    rows = [json.loads(line) for line in lines]
-    rows[0]["ending"], rows[1]["ending"] = "stuck", "lost"
-    journal.write_text("\n".join([head, *map(json.dumps, rows), ""]), encoding="utf-8")
-    assert command(tmp_path) == 0
-    assert {row["ending"] for row in table(tmp_path)} == {"converged"}
+    calls = here.calls
+    rewrite(
+        tmp_path,
+        lambda rows: [
+            row.replace("converged", ending)
+            for row, ending in zip(rows, ["stuck", "lost", "refused", "broken"], strict=True)
+        ],
+    )
+    assert command(tmp_path) == 1
+    assert here.calls == calls + 2
+    endings = [row["ending"] for row in table(tmp_path)]
+    assert endings == ["converged", "converged", "refused", "broken"]
 
 
 @pytest.mark.usefixtures("here")
-def test_a_folder_keeps_one_sweep(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    "more", [["--vary", "friction=0.2,0.3"], ["--set", "friction=0.2"], ["--of", "stiffness"]]
+)
+def test_the_folder_of_another_sweep_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], more: list[str]
+) -> None:
     assert command(tmp_path) == 0
-    assert command(tmp_path, vary="peak=300:900:5") == 2
+    assert command(tmp_path, *more) == 2
+    assert command(tmp_path, vary="peak=300:901:4") == 2
     assert "a folder of the same sweep" in capsys.readouterr().err
     assert len(table(tmp_path)) == 4
-    (tmp_path / "sweep.jsonl").write_text("no journal\n", encoding="utf-8")
+
+
+@pytest.mark.usefixtures("here")
+def test_a_table_of_something_else_is_not_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "sweep.csv").write_text("a,b\n1,2\n", encoding="utf-8")
     assert command(tmp_path) == 2
+    assert (tmp_path / "sweep.csv").read_text(encoding="utf-8") == "a,b\n1,2\n"
 
 
 @pytest.mark.usefixtures("here")
@@ -141,6 +159,7 @@ def test_fields_can_be_kept(tmp_path: Path) -> None:
         ["--of", ""],
         ["--on", "threads"],
         ["--limit", "0"],
+        ["--adaptive", "3"],
         ["--vary", "peak=1:2:3"],
         ["--vary", "friction=-3"],
         ["--out", "/dev/null/sweep"],
@@ -248,22 +267,6 @@ def test_a_foolish_plan_is_refused_in_a_line(vary: list[str], of: list[str], wor
     assert "\n" not in str(refusal.value)
 
 
-def test_a_plan_survives_as_json_and_another_has_another_digest() -> None:
-    table = BAR.replace(load=((0.0, 0.0), (1.0, 900.0)))
-    plan = plan_of(table, ["friction=0.1:0.6:3", "method=fast,paper"], ["dissipation@1", "modes"])
-    again = plan_from_plain(json.loads(json.dumps(plan.plain())))
-    assert again.digest == plan.digest
-    assert again.axes == plan.axes
-    assert again.settings_at(5).values() == plan.settings_at(5).values()
-    digests = {
-        plan_of(base, vary, of).digest
-        for base in (BAR, BAR.replace(peak=1.0))
-        for vary in (["friction=0.1,0.2"], ["friction=0.1,0.3"])
-        for of in (["iterations"], ["modes"])
-    }
-    assert len(digests) == 8
-
-
 @ANY
 @given(st.lists(st.integers(1, 12), min_size=1, max_size=2))
 def test_the_path_goes_through_every_point_once_from_neighbour_to_neighbour(
@@ -294,18 +297,25 @@ def energies(plan: Plan) -> Array:
     return np.array(found)
 
 
-def chosen(plan: Plan, exact: Array, runs: int, at_once: int = 4) -> list[int]:
-    """Let a chooser take its samples, some of them always under way."""
-    chooser, under_way = Chooser(plan, runs), list[int]()
-    found: list[int] = []
-    while True:
-        asked = chooser.ask(at_once - len(under_way))
-        found += asked
-        under_way += asked
-        if not under_way:
-            return found
-        done = under_way.pop(0)
-        chooser.tell(Row(done, "converged", "", (float(exact[done]),)))
+class Known(Executor):
+    """Does no runs, but takes for each what is known of its point."""
+
+    def __init__(self, values: Array) -> None:
+        self._values = values
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        _, number, _ = args
+        future: Future[Any] = Future()
+        future.set_result(Row(number, "converged", "", (float(self._values[number]),)))
+        return future
+
+
+def sampled(plan: Plan, executor: Executor, most: int, rows: dict[int, Row]) -> list[int]:
+    """Take more samples besides some rows, and add theirs; the points of all."""
+    for row in sweep(plan, executor, following=Chooser(plan, most, rows)):
+        assert row.number not in rows
+        rows[row.number] = row
+    return list(rows)
 
 
 def error(plan: Plan, exact: Array, points: list[int]) -> float:
@@ -330,20 +340,25 @@ def even(plan: Plan, along: int) -> list[int]:
 def test_the_energy_over_the_peak_takes_half_the_runs_of_a_grid(runs: int) -> None:
     plan = tiny(["peak=300:2400:841"], ["dissipation@1"])
     exact = energies(plan)
-    points = chosen(plan, exact, runs)
-    assert len(set(points)) == runs
+    points = sampled(plan, Known(exact), runs, {})
+    assert len(points) == runs
     assert error(plan, exact, points) < error(plan, exact, even(plan, 2 * runs))
+
+
+def test_a_map_is_sampled_where_it_bends() -> None:
+    plan = tiny(["peak=300:2400:29", "friction=0.2:0.4:29"], ["dissipation@1"])
+    exact = energies(plan)
+    points = sampled(plan, Known(exact), 64, {})
+    assert error(plan, exact, points) < error(plan, exact, even(plan, 8))
 
 
 def test_a_sweep_takes_no_more_runs_than_it_may_and_goes_on_from_those_it_has() -> None:
     plan = tiny(["peak=300:900:61"], ["peak_displacement"])
-    pool = Here()
-    rows = list(sweep_adaptively(plan, pool, 9))
-    assert len({row.number for row in rows}) == len(rows) == 9
-    assert {0, plan.size - 1} <= {row.number for row in rows}
-    more = list(sweep_adaptively(plan, pool, 12, known=rows))
-    assert len({row.number for row in [*rows, *more]}) == 12
-    assert list(sweep_adaptively(plan, pool, 12, known=[*rows, *more])) == []
+    executor, rows = Here(), dict[int, Row]()
+    assert {0, plan.size - 1} <= {*sampled(plan, executor, 9, rows)}
+    assert len(rows) == 9
+    assert len(sampled(plan, executor, 12, rows)) == 12
+    assert len(sampled(plan, executor, 12, rows)) == executor.calls == 12
 
 
 @pytest.mark.parametrize(
@@ -358,4 +373,4 @@ def test_a_sweep_takes_no_more_runs_than_it_may_and_goes_on_from_those_it_has() 
 )
 def test_what_cannot_be_sampled_is_refused(vary: list[str], runs: int, words: str) -> None:
     with pytest.raises(SettingError, match=words):
-        Chooser(tiny(vary, ["iterations"]), runs)
+        Chooser(tiny(vary, ["iterations"]), runs, {})

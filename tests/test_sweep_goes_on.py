@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import signal
+import subprocess
+import sys
 import time
+from concurrent.futures import BrokenExecutor
+from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import is_alive, wait_for
-from sweeps import Here, rows_of, tiny
+from pebble import ProcessExpired
+from processes import is_alive, started, wait_for
+from sweeps import Here, rows_in_table, rows_of, tiny
 
+from solver import sweep_command
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.running.executors import opened
-from solver.running.pool import EndedError, OverdueError
+from solver.executors import opened
 from solver.scenes import CATALOGUE
 from solver.study.exponent import exponent_of
-from solver.study.sweep import Plan, sweep
-from solver.study.sweep import point as points
-from solver.study.sweep.growth import growth
-from solver.study.sweep.point import Row
+from solver.study.quantities.finished import finished_run
+from solver.study.sweep import Plan, Row, sweep
+from solver.study.sweep import run as runs
+from solver.study.sweep.report import growth
 
 
 def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
@@ -30,16 +35,16 @@ def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
     rows = rows_of(plan)
     assert [row.number for row in rows] == list(range(6))
     assert all(row.holds and not row.reason for row in rows)
-    alone = points.run_point(plan, 3)
-    assert rows[3].values == alone.values
+    alone = finished_run(plan.settings_at(3), errors=False, indicators=False)
+    assert rows[3].values == tuple(reading(alone) for reading in plan.readings)
     assert not any(row.was_warm for row in rows)
     assert rows[3].values[1] == rows[3].iterations
 
 
 def test_processes_give_the_same_rows_as_this_one() -> None:
     plan = tiny(["peak=300:900:13"], ["peak_displacement", "dissipation"])
-    with opened("processes:2") as pool:
-        rows = rows_of(plan, pool)
+    with opened("processes:2") as executor:
+        rows = rows_of(plan, executor)
     expected = np.array([row.values for row in rows_of(plan)])
     assert np.array([row.values for row in rows]) == pytest.approx(expected, rel=1e-9)
 
@@ -55,7 +60,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPat
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("at the third turn")
 
-    monkeypatch.setattr(points, "finished_run", broken)
+    monkeypatch.setattr(runs, "finished_run", broken)
     row = rows_of(plan)[0]
     assert (row.ending, row.reason) == ("broken", "ZeroDivisionError: at the third turn")
 
@@ -92,42 +97,33 @@ def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of
     assert not any(row.was_warm for row in rows_of(plan))
 
 
-def test_a_process_that_is_killed_takes_no_row_with_it() -> None:
-    plan = tiny(["peak=300:900:60"], ["peak_displacement"])
-    with opened("processes:2") as pool:
-        killed, rows = set(), []
-        for row in sweep(plan, pool):
-            rows.append(row)
-            if len(killed) < 2:
-                pid = pool.submit(os.getpid).result()
-                os.kill(pid, signal.SIGKILL)
-                wait_for(lambda pid=pid: not is_alive(pid))
-                killed.add(pid)
-    assert sorted(row.number for row in rows) == list(range(60))
-    assert all(row.holds for row in rows)
-    assert len(killed) == 2
+def test_a_process_that_is_killed_takes_one_row_with_it_and_says_so() -> None:
+    with opened("processes:1") as executor:
+        first = executor.submit(os.getpid).result()
+        calls = [executor.submit(time.sleep, 60.0), executor.submit(os.getpid)]
+        wait_for(calls[0].running)
+        os.kill(first, signal.SIGKILL)
+        assert calls[1].result() != first
+        with pytest.raises(ProcessExpired):
+            calls[0].result()
 
 
-def test_a_call_that_takes_too_long_is_ended_and_the_next_goes_on() -> None:
-    with opened("processes:1", 1.0) as pool:
-        first = pool.submit(os.getpid).result()
-        with pytest.raises(OverdueError, match="longer than 1 s"):
-            pool.submit(time.sleep, 60.0).result()
-        second = pool.submit(os.getpid).result()
-        assert first != second
-        assert not is_alive(first)
+def test_a_process_that_is_killed_while_it_does_nothing_costs_no_row() -> None:
+    with opened("processes:1") as executor:
+        idle = executor.submit(os.getpid).result()
+        os.kill(idle, signal.SIGKILL)
+        assert all(row.holds for row in rows_of(tiny(["peak=300:900:6"], ["stiffness"]), executor))
 
 
 class Ending(Here):
-    """Loses every piece that holds a point."""
+    """Loses the run of a point."""
 
-    def __init__(self, point: int, trouble: Exception, times: int = 1000) -> None:
+    def __init__(self, point: int, trouble: Exception) -> None:
         super().__init__()
-        self.point, self.trouble, self.times = point, trouble, times
+        self.point, self.trouble = point, trouble
 
     def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
-        if self.point in args[0].numbers and self.times:
-            self.times -= 1
+        if args[1] == self.point:
             fn, args = _raise, (self.trouble,)
         return super().submit(fn, *args, **kwargs)
 
@@ -137,26 +133,105 @@ def _raise(trouble: Exception) -> None:
 
 
 @pytest.mark.parametrize(
-    ("trouble", "ending"), [(OverdueError("late"), "stuck"), (EndedError("gone"), "lost")]
+    ("trouble", "ending", "words"),
+    [(TimeoutError(), "stuck", "--limit"), (ProcessExpired("killed"), "lost", "killed")],
 )
-def test_only_the_point_that_ends_its_process_is_given_up(trouble: Exception, ending: str) -> None:
+def test_only_the_run_whose_process_was_ended_has_no_answer(
+    trouble: Exception, ending: str, words: str
+) -> None:
     rows = rows_of(tiny(["peak=300:900:6"], ["iterations"]), Ending(2, trouble))
     assert [row.ending for row in rows] == ["converged"] * 2 + [ending] + ["converged"] * 3
-    assert str(trouble) in rows[2].reason
+    assert words in rows[2].reason
 
 
-def test_a_point_is_not_given_up_for_one_lost_process() -> None:
-    rows = rows_of(tiny(["peak=300:900:6"], ["iterations"]), Ending(2, EndedError("gone"), 2))
-    assert [row.number for row in rows if row.holds] == list(range(6))
+def test_an_executor_that_is_broken_ends_the_sweep() -> None:
+    executor = Ending(2, BrokenExecutor("it is gone"))
+    rows = sweep(tiny(["peak=300:900:6"], ["iterations"]), executor)
+    with pytest.raises(BrokenExecutor, match="it is gone"):
+        list(rows)
+
+
+def test_a_call_that_takes_too_long_is_ended_and_the_next_goes_on() -> None:
+    with opened("processes:1", 1.0) as executor:
+        first = executor.submit(os.getpid).result()
+        with pytest.raises(TimeoutError):
+            executor.submit(time.sleep, 60.0).result()
+        assert executor.submit(os.getpid).result() != first
+        wait_for(lambda: not is_alive(first))
+
+
+def test_a_call_that_is_cancelled_is_ended_and_the_next_goes_on() -> None:
+    with opened("processes:1") as executor:
+        first = executor.submit(os.getpid).result()
+        call = executor.submit(time.sleep, 60.0)
+        wait_for(call.running)
+        call.cancel()
+        assert executor.submit(os.getpid).result() != first
+        wait_for(lambda: not is_alive(first))
 
 
 def test_an_executor_ends_with_all_that_it_does() -> None:
-    with opened("processes:2") as pool:
-        calls = [pool.submit(time.sleep, 60.0) for _ in range(4)]
-        wait_for(lambda: sum(call.running() for call in calls) == 2)
-    assert all(call.done() for call in calls)
-    with pytest.raises(RuntimeError, match="shut down"):
-        pool.submit(int)
+    with opened("processes:2") as executor:
+        processes = {executor.submit(_late_pid).result() for _ in range(4)}
+        for _ in range(4):
+            executor.submit(time.sleep, 60.0)
+    assert not any(map(is_alive, processes))
+    with pytest.raises(RuntimeError, match="not active"):
+        executor.submit(int)
+
+
+def _late_pid() -> int:
+    time.sleep(0.1)
+    return os.getpid()
+
+
+CALLS = """
+import time
+from solver.executors import opened
+
+with opened("processes:2") as executor:
+    calls = [executor.submit(time.sleep, 600.0) for _ in range(2)]
+    while not all(call.running() for call in calls):
+        time.sleep(0.01)
+    print("at work", flush=True)
+    time.sleep(600.0)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc").exists(), reason="no list of processes")
+def test_a_program_that_is_killed_leaves_no_process_whatever_these_do() -> None:
+    options = {"start_new_session": True, "stdout": subprocess.PIPE}
+    with started([sys.executable, "-c", CALLS], **options) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == b"at work\n"
+        assert len(in_session(program.pid)) > 2
+        program.kill()
+        wait_for(lambda: not in_session(program.pid))
+
+
+def test_a_sweep_that_is_killed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = ["sweep", "bar", "--vary", "peak=300:900:60", "--of", "iterations"]
+    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+    asked += ["--on", "processes:2", "--out", str(tmp_path)]
+    table = tmp_path / "sweep.csv"
+    with started([sys.executable, "-m", "solver", *asked]):
+        wait_for(lambda: rows_in_table(table) > 3)
+    rows = table.read_text(encoding="utf-8").splitlines()
+    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
+    assert main(asked) == 0
+    assert rows_in_table(table) == 60
+    assert {*rows[:-1]} <= {*table.read_text(encoding="utf-8").splitlines()}
+
+
+def in_session(leader: int) -> list[int]:
+    """Processes of a session that have not ended, whoever their parents are."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, _, _, session = process.read_text("utf-8").rpartition(")")[2].split()[:4]
+            if int(session) == leader and state not in "ZX":
+                found.append(int(process.parent.name))
+    return found
 
 
 @pytest.mark.parametrize(
@@ -199,14 +274,6 @@ def test_the_energy_of_a_cycle_over_the_peak_is_the_closed_form() -> None:
         peak = plan.point(row.number)["peak"]
         exact = 2.0 * peak**3 / (3.0 * STIFFNESS * 0.3 * PRESSURE)
         assert row.values[0] == pytest.approx(exact, rel=2e-4)
-
-
-def test_iterations_over_k_are_those_of_single_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    plan = tiny(["k_scale=0.1:10:3:log", "finish=none,at-once"], ["iterations"])
-    for row in rows_of(plan):
-        own = [f"{name}={value}" for name, value in plan.settings_at(row.number).changed().items()]
-        main(["run", "bar", "--json", *(part for one in own for part in ("--set", one))])
-        assert json.loads(capsys.readouterr().out)["iterations"] == row.values[0]
 
 
 @pytest.mark.parametrize("power", [-2.0, 0.5, 1.0])

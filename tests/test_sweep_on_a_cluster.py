@@ -8,21 +8,22 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
 import numpy as np
 import pytest
-from processes import started, wait_for
-from sweeps import rows_of, tiny
+from distributed import Client
+from processes import PATIENCE, wait_for
+from sweeps import rows_in_table, rows_of, tiny
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.running.executors import opened
-from solver.running.pool import Pool
-from solver.study.sweep import VersionsDifferError, sweep
-from solver.study.sweep import point as points
+from solver.executors import opened
+from solver.study.sweep import sweep
+from solver.study.sweep.run import versions
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -46,6 +47,10 @@ class Cluster:
 
     def worker(self) -> None:
         self._start("worker", self.address, "--nthreads", "1", "--no-nanny")
+
+    def wait_for_workers(self, number: int) -> None:
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(number, timeout=PATIENCE)
 
     @property
     def workers(self) -> list[subprocess.Popen[bytes]]:
@@ -74,47 +79,35 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     try:
         for _ in range(2):
             found.worker()
-        with opened(found.on) as pool:
-            wait_for(lambda: pool.width == 2)
+        found.wait_for_workers(2)
         yield found
     finally:
         found.end()
 
 
 @pytest.fixture
-def pool(cluster: Cluster) -> Iterator[Pool]:
+def executor(cluster: Cluster) -> Iterator[Executor]:
     with opened(cluster.on) as found:
         yield found
 
 
-def test_workers_give_the_same_rows_as_this_process(pool: Pool) -> None:
+def test_workers_give_the_same_rows_as_this_process(executor: Executor) -> None:
     plan = tiny(["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "dissipation"])
-    here, there = ([row.values for row in rows_of(plan, place)] for place in (None, pool))
+    here, there = ([row.values for row in rows_of(plan, place)] for place in (None, executor))
     assert np.array(there) == pytest.approx(np.array(here), rel=1e-9)
 
 
-def test_a_client_that_is_killed_is_gone_on_with(cluster: Cluster, tmp_path: Path) -> None:
-    asked = ["sweep", "bar", "--vary", "peak=300:900:40", "--of", "iterations"]
-    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
-    asked += ["--on", cluster.on, "--out", str(tmp_path)]
-    journal = tmp_path / "sweep.jsonl"
-    with started([sys.executable, "-m", "solver", *asked]):
-        wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
-    assert main(asked) == 0
-    numbers = [json.loads(line)["number"] for line in journal.read_bytes().splitlines()[1:]]
-    assert sorted(numbers) == list(range(40))
+def test_workers_of_other_versions_are_refused(
+    executor: Executor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("solver.study.sweep.run.versions", lambda: "numpy 1.0")
+    with pytest.raises(SettingError, match=versions()):
+        rows_of(tiny(["peak=300,900"], ["iterations"]), executor)
 
 
-def test_workers_of_other_versions_are_refused(pool: Pool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("solver.study.sweep.drive.versions", lambda: "numpy 1.0")
-    with pytest.raises(VersionsDifferError, match=points.versions()):
-        rows_of(tiny(["peak=300,900"], ["iterations"]), pool)
-
-
-def test_a_worker_that_is_killed_takes_no_row_with_it(cluster: Cluster, pool: Pool) -> None:
+def test_a_worker_that_is_killed_takes_no_row_with_it(cluster: Cluster, executor: Executor) -> None:
     plan, rows = tiny(["peak=300:900:20"], ["peak_displacement"]), []
-    wait_for(lambda: pool.width == 2)
-    for row in sweep(plan, pool):
+    for row in sweep(plan, executor):
         rows.append(row)
         if len(rows) == 1:
             # none but this test needs both
@@ -127,7 +120,7 @@ def test_a_worker_that_is_killed_takes_no_row_with_it(cluster: Cluster, pool: Po
 def test_a_cluster_that_does_not_answer_is_refused_in_a_line(
     on: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("solver.running.cluster.PATIENCE", 0.5)
+    monkeypatch.setattr("solver.executors.PATIENCE", 0.5)
     with pytest.raises(SettingError, match="a Dask scheduler that answers") as refusal:
         opened(on).__enter__()
     assert len(str(refusal.value).splitlines()) == 1
@@ -137,7 +130,6 @@ def test_without_distributed_a_cluster_is_refused_in_a_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    monkeypatch.delitem(sys.modules, "solver.running.cluster", raising=False)
     with pytest.raises(SettingError, match=r"pip install 'slipfront\[cluster\]'"):
         opened("dask://127.0.0.1:9").__enter__()
 
@@ -149,14 +141,14 @@ def test_a_scheduler_that_is_gone_is_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The last of all, which ends the cluster."""
-    monkeypatch.setattr("solver.running.cluster.PATIENCE", 1.0)
-    journal = tmp_path / "sweep.jsonl"
+    monkeypatch.setattr("solver.executors.PATIENCE", 1.0)
+    table = tmp_path / "sweep.csv"
     asked = ["sweep", "bar", "--vary", "peak=300:900:2000", "--of", "iterations"]
     asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
 
     def end() -> None:
         with suppress(AssertionError):
-            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
+            wait_for(lambda: rows_in_table(table) > 3)
         cluster.end()
 
     ending = Thread(target=end)

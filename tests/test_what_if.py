@@ -50,21 +50,13 @@ def test_the_tab_opens_with_its_first_chart_drawn() -> None:
     chart = made.chart()
     assert np.isfinite(chart.runs.values).sum() == 6
     assert "6 of 6 runs: 6 converged" in made.message.object
-    rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "f")]
+    rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "r")]
     assert len(rows) == 6
 
 
-def test_rows_come_one_by_one_and_cancel_ends_them(
-    here: Here, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("here")
+def test_rows_come_one_by_one_and_cancel_ends_them() -> None:
     plan = Question(("friction=0.1:0.9:400",), "dissipation").plan(tiny())
-    submit = here.submit
-
-    def late(*arguments: Any) -> Any:
-        time.sleep(0.01)
-        return submit(*arguments)
-
-    monkeypatch.setattr(here, "submit", late)
     running = Sweep(plan)
     while not running.rows:
         time.sleep(0.01)

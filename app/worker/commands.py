@@ -5,11 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Sequence
-from contextlib import ExitStack, redirect_stderr, redirect_stdout
-from functools import partial
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from solver.running.calls import when_deserted
+from solver.executors import left_alone
 
 LOG = "log.txt"
 
@@ -20,12 +19,12 @@ def command(arguments: Sequence[str], folder: Path) -> int:
 
     # A process does one command and ends.
     os.chdir(folder)
-    deserted = when_deserted(partial(shutil.rmtree, folder, ignore_errors=True))
-    with ExitStack() as stack:
-        stack.enter_context(deserted)
-        log = stack.enter_context(Path(LOG).open("w", buffering=1, encoding="utf-8"))
-        stack.enter_context(redirect_stdout(log))
-        stack.enter_context(redirect_stderr(log))
+    left_alone.callback(shutil.rmtree, folder, ignore_errors=True)
+    with (
+        Path(LOG).open("w", buffering=1, encoding="utf-8") as log,
+        redirect_stdout(log),
+        redirect_stderr(log),
+    ):
         try:
             return main(list(arguments))
         except SystemExit as end:

@@ -19,7 +19,7 @@ from solver.reduction.basis import Modes
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
-from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
+from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.scenes import kind_of
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import Brought

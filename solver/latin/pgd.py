@@ -20,8 +20,7 @@ from solver.latin.blocks import ALL, Blocks
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Bases, Group, LinearStage
 from solver.latin.response import Responses
-from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis
-from solver.reduction.enrichment import nearest_mode
+from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10

@@ -6,6 +6,7 @@ the friction rows and trapezoidal weights of the instants.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -13,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
@@ -90,11 +91,11 @@ class Decomposition:
         return errors
 
     def modes_for(self, share: float) -> int:
-        """Count the modes that bring the error down to a share of the field's norm."""
+        """Number of modes that bring the error down to a share of the field's norm."""
         return int(np.argmax(self.errors <= share))
 
     def correlations(self, modes: Array) -> Array:
-        """Give the cosines between modes and the space modes of the same place in the order.
+        """Cosines between modes and the space modes of the same place in the order.
 
         Parameters
         ----------
@@ -107,15 +108,14 @@ class Decomposition:
         the modes point the same way.
         """
         lengths = np.sqrt(self.space_weights @ modes**2)
-        own = self.space_modes[:, : modes.shape[1]]
-        cosines: Array = self.space_weights @ (own * modes) / lengths
-        return cosines
+        space_modes = self.space_modes[:, : modes.shape[1]]
+        return np.asarray(self.space_weights @ (space_modes * modes) / lengths)
 
 
 def decompose(
     field: Array, space_weights: Array, time_weights: Array, positions: Array
 ) -> Decomposition:
-    """Decompose a space-time field in weighted inner products.
+    """Decomposition of a space-time field in weighted inner products.
 
     Parameters
     ----------
@@ -138,58 +138,52 @@ def decompose(
     )
 
 
-def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
-    """Decompose one interface field in every substructure (paper, section 3.2).
+def singular_values(field: Array, space_weights: Array, time_weights: Array) -> Array:
+    """Singular values of `decompose` alone, descending, shape (n_modes,)."""
+    weighted = np.sqrt(space_weights)[:, None] * field * np.sqrt(time_weights)
+    return np.asarray(np.linalg.svd(weighted, compute_uv=False))
 
-    Returns
-    -------
-    One decomposition in SI units per substructure, numbered from the clamp.
-    """
-    problem = fields.problem
-    field, weights = _field_and_weights(fields, name)
-    own = friction_rows(problem)
-    time_weights = problem.time_weights * problem.scales.time
-    places = problem.positions[problem.row_dofs]
-    return [decompose(field[rows], weights[rows], time_weights, places[rows]) for rows in own]
+
+def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
+    """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
+    return [decompose(*part) for part in _parts(fields, name)]
 
 
 def friction_spectra(fields: InterfaceFields) -> list[Array]:
-    """Compute the singular values of the friction force in every substructure.
-
-    The values of `decompositions`, without their modes and for substructures of one size at once.
-
-    Returns
-    -------
-    One array of descending singular values per substructure, numbered from the clamp, N sqrt(s/m).
-    """
-    problem = fields.problem
-    field, lengths = _field_and_weights(fields, InterfaceField.FRICTION_FORCE)
-    time_root = np.sqrt(problem.time_weights * problem.scales.time)
-    weighted = field * np.sqrt(lengths)[:, None] * time_root
-    own = friction_rows(problem)
-    values: dict[int, Array] = {}
-    for size in sorted({len(rows) for rows in own}):
-        alike = [number for number, rows in enumerate(own) if len(rows) == size]
-        stack = weighted[np.stack([own[number] for number in alike])]
-        found = np.linalg.svd(stack, compute_uv=False)
-        values.update(zip(alike, found, strict=True))
-    return [values[number] for number in range(len(own))]
+    """Singular values of the friction force in every substructure, N sqrt(s/m), as above."""
+    parts = _parts(fields, InterfaceField.FRICTION_FORCE)
+    return [singular_values(field, *weights) for field, *weights, _ in parts]
 
 
-def friction_rows(problem: Problem) -> list[Indices]:
-    """Give the boundary rows that rub, per substructure, in the order of its own rows."""
-    rubs = np.zeros(problem.n_rows, dtype=bool)
-    rubs[problem.sliding[0]] = True
-    return [part.rows[rubs[part.rows]] for part in problem.substructures]
+def _parts(
+    fields: InterfaceFields, name: InterfaceField
+) -> Iterator[tuple[Array, Array, Array, Array]]:
+    """Yield a field of every substructure on its rows that rub, its weights and its positions."""
+    problem, scales = fields.problem, fields.problem.scales
+    sliding, weights = problem.sliding
+    lengths = np.zeros(problem.n_rows)
+    lengths[sliding] = weights
+    positions, time_weights = (
+        problem.positions[problem.row_dofs],
+        problem.time_weights * scales.time,
+    )
+    if name is InterfaceField.FRICTION_FORCE:
+        whole = fields.boundary_force * scales.force
+        whole[sliding] /= weights[:, None]
+    else:
+        whole = fields.boundary_displacement * scales.displacement
+    for part in problem.substructures:
+        rows = part.rows[lengths[part.rows] > 0.0]
+        yield whole[rows], lengths[rows], time_weights, positions[rows]
 
 
 def front_decay(count: int) -> Array:
-    """Give sigma_n/sigma_1 of a constant-speed front (solver/README.md, 3), shape (count,)."""
+    """Decay sigma_n/sigma_1 of a constant-speed front (solver/README.md, 3), shape (count,)."""
     return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
 
 
 def against_front(values: Array) -> Array:
-    """Divide the decay of singular values by that of a constant-speed front.
+    """Decay of singular values over that of a constant-speed front.
 
     Parameters
     ----------
@@ -203,22 +197,10 @@ def against_front(values: Array) -> Array:
     """
     if values[0] == 0.0:
         return np.zeros_like(values)
-    found: Array = values / values[0] / front_decay(len(values))
-    return found
+    return np.asarray(values / values[0] / front_decay(len(values)))
 
 
 def _signs(modes: Array) -> Array:
     size = np.abs(modes)
     largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)
     return np.where(modes[largest, np.arange(modes.shape[1])] < 0.0, -1.0, 1.0)
-
-
-def _field_and_weights(fields: InterfaceFields, name: InterfaceField) -> tuple[Array, Array]:
-    """Give a field in SI and the weights of its rows; rows beyond it have no meaning."""
-    problem, scales = fields.problem, fields.problem.scales
-    sliding, weights = problem.sliding
-    lengths = np.ones(problem.n_rows)
-    lengths[sliding] = weights
-    if name is InterfaceField.FRICTION_FORCE:
-        return fields.boundary_force * scales.force / lengths[:, None], lengths
-    return fields.boundary_displacement * scales.displacement, lengths

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from solver.definitions import Pairs
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop, LoopFields, Structure
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK

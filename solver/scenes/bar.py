@@ -15,7 +15,7 @@ from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS, interpolate
 from solver.profiles import harmonic_means, means, shares_of
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry

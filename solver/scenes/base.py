@@ -13,10 +13,23 @@ from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
-from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning_knots
 from solver.laws import FrictionLaw, Strength
-from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.loads import (
+    BEGINS,
+    NO_KNOTS,
+    PRESETS,
+    PRESSURES,
+    SAME,
+    Preset,
+    apart,
+    instants_of,
+    interpolate,
+    knots_of,
+    load_path,
+    thinned,
+    turning_knots,
+)
+from solver.reference.closed_forms import ExactCurve
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000

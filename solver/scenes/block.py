@@ -17,7 +17,7 @@ from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import gap_at, unseen
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry

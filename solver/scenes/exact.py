@@ -13,14 +13,15 @@ from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw, Strength
+from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.broken_wire import broken_wire
-from solver.reference.closed_forms.cantilever import cantilever
-from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
-from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
-from solver.reference.closed_forms.exact_curve import ExactCurve
-from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.reference.closed_forms.elastic_bodies import HalfPlane, cantilever
 from solver.reference.closed_forms.masing import masing
-from solver.reference.closed_forms.pulled_bar import closed_form
+from solver.reference.closed_forms.pulled_bar import (
+    closed_form,
+    pulled_changing_bar,
+    pulled_compliant_bar,
+)
 
 SMALL = 0.12
 """Largest half-width of a contact, over the length and the height of its body, that is still that

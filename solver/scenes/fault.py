@@ -19,12 +19,10 @@ from solver.discrete.fault import Fault, sheared
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Support
 from solver.discrete.structure import LoopFields
-from solver.instants import instants_of
-from solver.loads import INJECTIONS, interpolate
+from solver.loads import INJECTIONS, instants_of, interpolate
 from solver.profiles import means, shares_of
-from solver.reference.closed_forms.diffusion import spread
-from solver.reference.closed_forms.exact_curve import ExactCurve
-from solver.reference.closed_forms.slip_front import fronts, stress_ahead
+from solver.reference.closed_forms import ExactCurve
+from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings

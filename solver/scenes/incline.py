@@ -19,7 +19,7 @@ from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact import exact_slope

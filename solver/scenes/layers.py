@@ -14,7 +14,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings

@@ -18,8 +18,8 @@ from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS, PRESSURES
+from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
-from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.words import acting, counted

@@ -15,7 +15,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods, neighbours
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
-from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry

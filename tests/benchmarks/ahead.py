@@ -15,12 +15,11 @@ from itertools import islice
 from multiprocessing import get_context
 from typing import Any
 
+from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
-from solver.running.machine import machine
-from solver.running.processes import ONE_THREAD
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

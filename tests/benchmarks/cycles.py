@@ -21,14 +21,13 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.executors import ONE_THREAD, machine
 from solver.latin import Iterate, iterations
 from solver.latin.iteration import Iteration
 from solver.latin.slabs import Slab, first_slab, next_slab
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.solution import Reference
-from solver.running.machine import machine
-from solver.running.processes import ONE_THREAD
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

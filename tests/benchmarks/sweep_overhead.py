@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import time
 
-from solver.running.executors import opened
-from solver.running.machine import machine
+from solver.executors import machine, opened, processors
 from solver.scenes.bar import BarSettings
-from solver.study.sweep.drive import sweep
-from solver.study.sweep.plan import plan_of
+from solver.study.sweep import plan_of, sweep
 
 
 def print_overhead(side: int) -> None:
@@ -16,8 +14,9 @@ def print_overhead(side: int) -> None:
     vary = [f"friction=0.1:0.6:{side}", f"peak=300:1500:{side}"]
     plan = plan_of(BarSettings.checked({}), vary, ["dissipation"])
     began = time.perf_counter()
-    with opened("processes") as pool:
-        width, seconds = pool.width, [row.seconds for row in sweep(plan, pool)]
+    width = processors()
+    with opened("processes") as executor:
+        seconds = [row.seconds for row in sweep(plan, executor)]
         whole = time.perf_counter() - began
     alone = sum(seconds) / width
     print(machine())

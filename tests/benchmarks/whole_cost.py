@@ -8,9 +8,9 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from solver.executors import machine
 from solver.latin.run_cost import run_cost
 from solver.reference.choice import reference_of
-from solver.running.machine import machine
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

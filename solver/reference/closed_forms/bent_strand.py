@@ -1,9 +1,11 @@
-"""Closed form: the moment of a strand of helical wires under a uniform curvature.
+"""Closed form: the moment of a strand of helical wires, and of one wire, under uniform curvature.
 
-Layers do not tie each other, so that it is the sum of `BentWire` over all wires, and of the bending
-of each about its own axis. To and fro it follows Masing's rule with memory: every branch is the
-first curve, doubled, from where the curvature turned back, until it meets a branch before it (the
-play operators of M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, Springer 1989).
+Slip of a wire starts at the neutral axis and spreads to an angle phi on both sides of it, with
+kappa / kappa_0 = phi / sin(phi), until all slips at (pi / 2) kappa_0. It follows from equilibrium
+of the part that slips, with sections of the strand that stay plane (the model of Papailiou, IEEE
+Trans. Power Delivery 12, 1997, without growth of tension along the wire). Layers do not tie each
+other, so that the moment of a strand is the sum over all wires, and of the bending of each about
+its own axis. Back and forth both follow Masing's rule.
 """
 
 from __future__ import annotations
@@ -12,10 +14,63 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import brentq
 
 from solver.arrays import Array
 from solver.discrete.cross_section import CrossSection
-from solver.reference.closed_forms.bent_wire import BentWire
+from solver.discrete.helical_wire import HelicalWire
+from solver.reference.closed_forms.masing import energy_of_cycle, masing
+
+
+@dataclass(frozen=True)
+class BentWire:
+    """A helical wire whose friction bound is the same along it.
+
+    Attributes
+    ----------
+    wire
+        Its geometry and stiffness.
+    bound
+        Friction bound mu q per length of wire, N/m, above 0.
+    """
+
+    wire: HelicalWire
+    bound: float
+
+    @property
+    def first_slip(self) -> float:
+        """Curvature kappa_0 at which the first point slips, 1/m."""
+        wire = self.wire
+        return float(self.bound / (wire.stiffness * np.cos(wire.lay) ** 2 * abs(np.sin(wire.lay))))
+
+    def moment(self, curvature: Array) -> Array:
+        """Mean share of the wire in the strand's moment as it is first bent, N m.
+
+        Parameters
+        ----------
+        curvature
+            Grown from zero, of any shape, 1/m.
+        """
+        wire = self.wire
+        force = self.bound * wire.radius / abs(np.sin(wire.lay))
+        share = np.array([self._share(float(kappa)) for kappa in np.ravel(curvature)])
+        moment = wire.radius * np.cos(wire.lay) * force * share
+        return np.asarray(moment.reshape(np.shape(curvature)))
+
+    def energy(self, peak: float) -> float:
+        """What friction takes in a cycle between -peak and peak, J per wire and metre of strand."""
+        return energy_of_cycle(peak, lambda kappa: float(self.moment(np.array(kappa))))
+
+    def _share(self, curvature: float) -> float:
+        """Moment over R cos(alpha) times the force that friction builds up in a radian."""
+        ratio = curvature / self.first_slip
+        if ratio <= 1.0:
+            return 0.5 * ratio
+        phi = 0.5 * np.pi
+        if ratio < phi:
+            phi = float(brentq(lambda angle: angle - ratio * np.sin(angle), 1e-9, phi, xtol=1e-14))
+        spread = 0.5 * phi * (0.5 * np.pi - phi) / np.sin(phi)
+        return float(2.0 / np.pi * (spread + np.sin(phi) - 0.5 * phi * np.cos(phi)))
 
 
 @dataclass(frozen=True)
@@ -47,46 +102,16 @@ class BentStrand:
         )
 
     def moment(self, curvature: Array) -> Array:
-        """Give the moment as the strand is first bent, N m.
-
-        Parameters
-        ----------
-        curvature
-            Grown from zero, of any shape, 1/m.
-        """
+        """Moment as the strand is first bent, N m; the curvature has grown from zero, 1/m."""
         own = self.section.slipping_bending * np.asarray(curvature)
         wires = zip(self.section.layers, self.layers, strict=True)
-        return np.asarray(own + sum(layer.wires * one.moment(curvature) for layer, one in wires))
+        return np.asarray(own + sum(layer.wires * wire.moment(curvature) for layer, wire in wires))
 
     def along(self, path: Array) -> Array:
-        """Give the moment along any path of the curvature from zero, of its shape, N m."""
-        turns, before = [(0.0, 0.0)], 0.0
-        found = np.zeros(len(path))
-        for instant, curvature in enumerate(path.tolist()):
-            if (curvature - before) * (before - turns[-1][0]) < 0.0:
-                turns.append((before, self._on_branch(turns, before)))
-            while len(turns) > 1 and _meets(turns, curvature):
-                del turns[-2 if len(turns) > 2 else -1 :]
-            found[instant] = self._on_branch(turns, curvature)
-            before = curvature
-        return found
+        """Moment along any path of the curvature from zero, of its shape, N m."""
+        return masing(path, lambda curvature: float(self.moment(np.array(curvature))))
 
     def energy(self, peak: float) -> float:
-        """Give what friction takes in a closed cycle between -peak and peak, J per metre."""
+        """What friction takes in a closed cycle between -peak and peak, J per metre."""
         wires = zip(self.section.layers, self.layers, strict=True)
-        return float(sum(layer.wires * one.energy(peak) for layer, one in wires))
-
-    def _on_branch(self, turns: list[tuple[float, float]], curvature: float) -> float:
-        """Give the moment on the branch that begins at the last turn, or on the first curve."""
-        turned, moment = turns[-1]
-        share = 1.0 if len(turns) == 1 else 0.5
-        away = share * (curvature - turned)
-        return moment + float(np.sign(away) * self.moment(np.array(abs(away)))) / share
-
-
-def _meets(turns: list[tuple[float, float]], curvature: float) -> bool:
-    """Tell whether the branch from the last turn has met the one before, or the first curve."""
-    last = turns[-1][0]
-    if len(turns) == 2:
-        return abs(curvature) >= abs(last) and curvature * last < 0.0
-    return (curvature - turns[-2][0]) * (turns[-2][0] - last) >= 0.0
+        return float(sum(layer.wires * wire.energy(peak) for layer, wire in wires))

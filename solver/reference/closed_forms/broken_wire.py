@@ -20,7 +20,7 @@ from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 
 STEPS = 100
 PRECISION = 1e-13
-"""Change of the tension, as a share of the largest, at which it is found."""
+"""Change of the tension, as a share of the largest, at which it is accepted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class BrokenWire:
 
 
 def broken_wire(scene: Rods) -> BrokenWire | None:
-    """Solve a strand with a broken wire in closed form.
+    """Solution of a strand with a broken wire.
 
     Returns
     -------
@@ -80,10 +80,10 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
 
 
 def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
-    """Give the bars left and right of the break, from their far ends to the break, if they can."""
+    """Bars left and right of the break, from their far ends to the break, if known."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
-    found = []
+    bars = []
     for elements in (node, scene.elements - node):
         side = Rods(
             length=scene.length * elements / scene.elements,
@@ -95,13 +95,13 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
             load=tension,
             bound=sides * scene.bound[: elements + 1],
         )
-        found.append(closed_form(side))
-    left, right = found
+        bars.append(closed_form(side))
+    left, right = bars
     return None if left is None or right is None else (left, right)
 
 
 def _tension(scene: Rods) -> Array:
-    """Find T under a rigid grip: a neighbour's elongation is given.
+    """T under a rigid grip: a neighbour's elongation is given.
 
     It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second
     part grows with T, and no faster than the first, so halved steps halve the error at least.

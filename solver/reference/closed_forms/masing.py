@@ -1,22 +1,21 @@
-"""Masing's rule: how what rubs answers a load that turns, from how it answers one that grows."""
+"""Masing's rule: how what rubs answers a load that turns, from how it answers one that grows.
+
+From a turning point on the answer is the first curve, doubled in both directions; a loop that
+closes is forgotten, and what went on before goes on (G. Masing, 1926, with Madelung's memory).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
+from scipy.integrate import quad
 
 from solver.arrays import Array
 
-Turn = tuple[float, float]
-"""A load, and the answer at it."""
-
 
 def masing(load: Array, grown: Callable[[float], float]) -> Array:
-    """Answer a load from rest on.
-
-    From a turning point on the answer is the first curve, doubled in both directions; a loop that
-    closes is forgotten, and what went on before goes on (G. Masing, 1926, with Madelung's memory).
+    """Answer to a load from rest on, shape (n_instants,).
 
     Parameters
     ----------
@@ -24,26 +23,25 @@ def masing(load: Array, grown: Callable[[float], float]) -> Array:
         Over time, shape (n_instants,); monotone between instants.
     grown
         The answer to a load that has grown from rest to a value, which is not negative.
-
-    Returns
-    -------
-    Shape (n_instants,).
     """
-    turns: list[Turn] = [(0.0, 0.0)]
-    now: Turn = turns[0]
-    found = np.zeros_like(load)
-    for place, value in enumerate(load.tolist()):
+    turns = [(0.0, 0.0)]  # loads, and the answers at them
+    now = turns[0]
+    answers = np.zeros_like(load)
+    for instant, value in enumerate(load.tolist()):
         if (value - now[0]) * (now[0] - turns[-1][0]) < 0.0:
             turns.append(now)
         while len(turns) > 1 and _closes(value, turns):
             del turns[-2 if len(turns) > 2 else -1 :]
-        now = value, _branch(value, turns, grown)
-        found[place] = now[1]
-    return found
+        double = 2.0 if len(turns) > 1 else 1.0
+        start, answer = turns[-1]
+        way = value - start
+        now = value, answer + double * float(np.copysign(grown(abs(way) / double), way))
+        answers[instant] = now[1]
+    return answers
 
 
-def _closes(value: float, turns: list[Turn]) -> bool:
-    """Tell whether a load has come back to where the turn before the last one was, or beyond.
+def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
+    """Whether a load has come back to where the turn before the last one was, or beyond.
 
     Where that is rest, the first curve goes on at the opposite of the last one.
     """
@@ -52,8 +50,7 @@ def _closes(value: float, turns: list[Turn]) -> bool:
     return abs(value - last) >= size
 
 
-def _branch(value: float, turns: list[Turn], grown: Callable[[float], float]) -> float:
-    start, answer = turns[-1]
-    double = 2.0 if len(turns) > 1 else 1.0
-    way = value - start
-    return answer + double * float(np.copysign(grown(abs(way) / double), way))
+def energy_of_cycle(peak: float, grown: Callable[[float], float]) -> float:
+    """Area of the loop between -peak and peak: what friction takes in a closed cycle."""
+    below, _ = quad(grown, 0.0, peak, limit=200)
+    return float(abs(8.0 * below - 4.0 * peak * grown(peak)))

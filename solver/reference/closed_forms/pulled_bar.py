@@ -1,10 +1,10 @@
-"""The friction bar in closed form: its normal force is a play operator (solver/README.md, 6).
+"""Closed forms: a clamped bar pulled over a support with friction (solver/README.md, 6, 8 and 14).
 
-Sliding needs the whole bound between a section and the free end, R(x) = integral of mu p from x to
-L. So the normal force N(x, t) follows the load F(t) with play R(x): on a rising load it is the
-larger of its old value and F - R, on a falling one the smaller of its old value and F + R. This
-holds for every bound mu p >= 0 along the bar and every load path from rest, full sliding included,
-and gives the loading, unloading and reloading formulas of solver/README.md, 6 for a uniform bound.
+Under Coulomb friction the normal force is a play operator. Sliding needs the whole bound between a
+section and the free end, R(x) = integral of mu p from x to L. So the normal force N(x, t) follows
+the load F(t) with play R(x): on a rising load it is the larger of its old value and F - R, on a
+falling one the smaller of its old value and F + R. This holds for every bound mu p >= 0 along the
+bar and every load path from rest, full sliding included.
 
 Where the bound changes with time it holds as long as what it leaves stuck is within the bound, to
 an element's length: the sections that a load reaches are then those to the right of one, as ever. A
@@ -17,16 +17,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from solver.arrays import ROUNDING, Array
 from solver.discrete.rods import Rods
 from solver.laws import FrictionLaw
 from solver.laws.play import play
+from solver.reference.closed_forms.masing import energy_of_cycle
 
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""
 AT_ONCE = 60_000
-"""Forces, at sections and instants, that are found in one go: few enough to stay in a cache."""
+"""Forces, at sections and instants, that are computed in one go: few enough to stay in a cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +57,11 @@ class ClosedForm:
     @property
     def end_displacement(self) -> Array:
         """Displacement of the free end, shape (n_instants,), m."""
-        found: Array = self.displacement[-1]
-        return found
+        return np.asarray(self.displacement[-1])
 
 
 def closed_form(scene: Rods) -> ClosedForm | None:
-    """Solve the friction bar in closed form (solver/README.md, 6).
+    """Solution of a bar under Coulomb friction.
 
     Parameters
     ----------
@@ -91,9 +92,9 @@ def closed_form(scene: Rods) -> ClosedForm | None:
 
 
 def _grip_beyond(scene: Rods, share: float | Array) -> Array:
-    """Give R at a share of every element's length, shape (n_elements, n_instants or 1), N.
+    """R at a share of every element's length, shape (n_elements, n_instants or 1), N.
 
-    Of shares of shape (n_shares, 1, 1) it gives (n_shares, ...).
+    Of shares of shape (n_shares, 1, 1): (n_shares, ...).
     """
     size = scene.length / scene.elements
     left, right = scene.bounds[:-1], scene.bounds[1:]
@@ -108,7 +109,7 @@ def _normal_force(scene: Rods, reach: Array) -> Array:
 
 
 def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
-    """Average over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
+    """Mean over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])
     shares = np.arange(1, parts)[:, None, None] / parts
@@ -119,3 +120,79 @@ def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
         total += forces.reshape(-1, *total.shape).sum(axis=0)
     mean: Array = total / parts
     return mean
+
+
+def pulled_compliant_bar(
+    force: float, length: float, stiffness: float, bound: float, density: float
+) -> tuple[float, float]:
+    """End displacement of a bar whose support gives way before it slips, and its zone of slip, m.
+
+    Each point hangs on a spring in series with its slider (Jenkins' element). With beta the root of
+    the springs' density over ES, a zone of length s at the end slips under F = q s + q / (beta
+    tanh(beta (L - s))), and beyond it the bar stands on springs.
+
+    Parameters
+    ----------
+    force
+        F, N, grown from zero; at most what a bar that slips almost throughout carries.
+    length, stiffness
+        L, m, and ES, N.
+    bound
+        q = mu p, N/m.
+    density
+        Tangential stiffness of the support per length, N/m^2.
+    """
+    beta = np.sqrt(density / stiffness)
+
+    def carried(zone: float) -> float:
+        return float(bound * zone + bound / (beta * np.tanh(beta * (length - zone))))
+
+    if force <= carried(0.0):
+        return float(force * np.tanh(beta * length) / (stiffness * beta)), 0.0
+    zone = float(brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12)))
+    return float(bound / density + (force * zone - 0.5 * bound * zone**2) / stiffness), zone
+
+
+def cycled_compliant_bar(
+    force: float, length: float, stiffness: float, bound: float, density: float
+) -> tuple[float, float]:
+    """Where the end is once such a bar is unloaded, m, and what a cycle takes, J, as by Masing.
+
+    The load goes to and fro between plus and minus `force`; the others are as above.
+    """
+
+    def grown(value: float) -> float:
+        return pulled_compliant_bar(value, length, stiffness, bound, density)[0]
+
+    return grown(force) - 2.0 * grown(0.5 * force), energy_of_cycle(force, grown)
+
+
+def pulled_changing_bar(
+    force: float, stiffness: float, bound: float, ratio: float, slip_length: float
+) -> float:
+    """End displacement where friction changes with slip, under a force grown from zero, m.
+
+    Before any point has slipped as far as its friction changes, the bound is q + g u with the slope
+    g = (q_last - q) / s_0, and ES u'' = q + g u beyond the front. With gamma the root of |g| / ES
+    and l the length that slips, F = q sinh(gamma l) / gamma where friction hardens, and
+    q sin(gamma l) / gamma where it softens, up to q / gamma: beyond that the bar jumps.
+
+    Parameters
+    ----------
+    force
+        F, N: less than what makes all of the bar slip, and less than q / gamma where it softens.
+    stiffness
+        ES, N.
+    bound
+        q before any slip, N/m.
+    ratio
+        Last bound over the first, not 1.
+    slip_length
+        Slip s_0 at which the bound is the last, m: more than what is returned.
+    """
+    slope = bound * (ratio - 1.0) / slip_length
+    gamma = np.sqrt(abs(slope) / stiffness)
+    share = force * gamma / bound
+    if slope > 0.0:
+        return float(bound / slope * (np.sqrt(1.0 + share**2) - 1.0))
+    return float(bound / -slope * (1.0 - np.sqrt(1.0 - share**2)))

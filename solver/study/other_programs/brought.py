@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import Refuse, TableColumn
+from solver.columns import Refuse, TableColumn, size_in
 from solver.definitions import SettingError
 from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.tables import Table, read_table
-from solver.units import size_in
 
 FRICTION, DISPLACEMENT = "friction force", "displacement"
 FEWEST = 4

@@ -35,12 +35,12 @@ from solver.discrete.problem import Problem
 from solver.disk import check_place, whole_file, why
 from solver.files import settings_from_command
 from solver.latin import Ending, Iterate, solve
-from solver.prepared import prepared
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.condensation import NotHeldError, factored
 from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
 from solver.refusal import RefusedError
+from solver.remarks import prepared
 from solver.scenes.method import method_of
 
 SPACEDIM = 2

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.reference.closed_forms.cantilever import cantilever
-from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.reference.closed_forms.elastic_bodies import HalfPlane, cantilever
 from solver.scenes import loop_of
 from solver.study.proof.case import Answer, KnownCase, KnownNumber
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.contact_groups import NO_SLIP
-from solver.reference.closed_forms.slip_front import (
+from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     slip_under_growing_strength,
 )

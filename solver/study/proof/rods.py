@@ -10,8 +10,11 @@ import numpy as np
 from solver.discrete.cross_section import mooring
 from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
-from solver.reference.closed_forms.changing_friction_bar import pulled_changing_bar
-from solver.reference.closed_forms.compliant_bar import cycled_compliant_bar, pulled_compliant_bar
+from solver.reference.closed_forms.pulled_bar import (
+    cycled_compliant_bar,
+    pulled_changing_bar,
+    pulled_compliant_bar,
+)
 from solver.scenes import structure_of
 from solver.study.proof.case import Answer, KnownCase, KnownNumber
 

@@ -9,8 +9,7 @@ import numpy as np
 from solver.arrays import RESIDUE
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
-from solver.reference.shakedown.melan import shakedown_limit
-from solver.reference.shakedown.slip_space import largest_swing, slip_space
+from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of
@@ -102,7 +101,7 @@ def shakedown_factor(run: FinishedRun, at: float | None) -> float:
     try:
         if run.problem.opens:
             return largest_swing(slip_space(run.problem), last)[0]
-        return shakedown_limit(run.problem, last).factor
+        return shakedown_limit(run.problem, last)
     except NoReferenceError:
         return math.nan
 

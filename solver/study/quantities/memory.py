@@ -7,18 +7,24 @@ resident memory then is subtracted from the highest value at the end.
 
 from __future__ import annotations
 
+import json
 import math
+import os
 import re
+import subprocess
+import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from solver.running.alone import alone
+from solver.executors import ONE_THREAD
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.quantities.finished import finished_run
 
 STATUS = Path("/proc/self/status")
+ROOT = Path(__file__).resolve().parents[3]
+PROGRAM = f"import json, sys\nfrom {__name__} import answer\nprint(answer(json.load(sys.stdin)))"
 TINY: dict[str, dict[str, object]] = {
     "bar": {"elements": 4, "substructures": 2, "instants": 3},
     "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
@@ -30,8 +36,15 @@ def memory_of(settings: Settings) -> float:
     """Run a scene once more for the memory that it takes, B; NaN where none is told (not Linux)."""
     if not STATUS.exists():
         return math.nan
-    asked = {"scene": settings.scene, "changed": settings.changed()}
-    return float(alone(__name__, asked))
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        input=json.dumps({"scene": settings.scene, "changed": settings.changed()}),
+        env=os.environ | ONE_THREAD | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return float(done.stdout)
 
 
 @cache

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
+from solver.executors import machine
 from solver.latin import judged
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
-from solver.running.machine import machine
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

@@ -1,12 +1,10 @@
-"""What a sweep runs: a scene, one or two settings over their values, and what is asked of it."""
+"""What a sweep runs, one or two settings over their values, and what comes of a point."""
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
-import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -23,12 +21,14 @@ from solver.definitions import (
     parse,
     unknown,
 )
-from solver.scenes import CATALOGUE
+from solver.latin import Ending
 from solver.settings import Settings
 from solver.study.quantities.quantities import Reading, reading
 
 MOST_POINTS = 20_000
 """Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
+STUCK, LOST = "stuck", "lost"
+"""How a run ends whose process was ended: by its time limit, or by something else."""
 FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
 
@@ -54,10 +54,6 @@ class Varied:
     def is_numeric(self) -> bool:
         """Whether the values are numbers, which have a place on a scale."""
         return not isinstance(self.values[0], bool | str)
-
-    def plain(self) -> dict[str, Any]:
-        """Give it as JSON can hold it."""
-        return {"name": self.name, "values": list(self.values), "logarithmic": self.logarithmic}
 
 
 @dataclass(frozen=True)
@@ -90,26 +86,26 @@ class Plan:
 
     @cached_property
     def fixed(self) -> dict[str, Any]:
-        """What of the settings is not as it would be unsaid; a varied method brings the rest."""
+        """Settings that differ from their defaults; a varied method brings the rest."""
         return self.settings.changed()
 
     def title(self, axis: Varied) -> str:
-        """Give what a setting that varies is called, in words."""
+        """Title of a setting that varies."""
         return about(self.settings.definitions()[axis.name]).title
 
     def unit(self, axis: Varied) -> str:
-        """Give the SI unit of a setting that varies, empty for a pure number."""
+        """SI unit of a setting that varies, empty for a pure number."""
         return about(self.settings.definitions()[axis.name]).unit
 
     def point(self, number: int) -> dict[str, Any]:
-        """Give what varies at a point, by the setting's name."""
+        """Values of what varies at a point, by the setting's name."""
         places = np.unravel_index(number, self.shape)
         return {
             axis.name: axis.values[place] for axis, place in zip(self.axes, places, strict=True)
         }
 
     def settings_at(self, number: int) -> Settings:
-        """Give all settings of a point.
+        """Settings of a point, all of them.
 
         Raises
         ------
@@ -119,7 +115,7 @@ class Plan:
         return self.settings.checked({**self.fixed, **self.point(number)})
 
     def idle(self) -> list[str]:
-        """Name the settings that vary and do nothing at any point."""
+        """Names of the settings that vary and do nothing at any point."""
         found = {axis.name for axis in self.axes}
         for number in range(self.size):
             with contextlib.suppress(SettingError):
@@ -129,24 +125,47 @@ class Plan:
                 break
         return sorted(found)
 
-    def plain(self) -> dict[str, Any]:
-        """Give it as JSON can hold it, for files, processes and other machines."""
-        return {
-            "scene": self.settings.scene,
-            "settings": self.fixed,
-            "axes": [axis.plain() for axis in self.axes],
-            "of": [one.name for one in self.readings],
-        }
 
-    @cached_property
-    def digest(self) -> str:
-        """A short text that differs from plan to plan."""
-        text = json.dumps(self.plain(), sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+@dataclass(frozen=True)
+class Row:
+    """What came of one point.
+
+    Attributes
+    ----------
+    number
+        Of the point in the plan.
+    ending
+        `converged` and the other ways in which a run ends; `refused` where its settings do not fit
+        together, `broken` where the engine failed, `stuck` and `lost` where its process was ended.
+    reason
+        Of any ending but convergence, and what to try.
+    values
+        Of the readings of the plan, in their units: NaN where the run has none, infinity for
+        never. Those of a run that has not converged are what it had come to.
+    iterations
+        How many it did.
+    seconds
+        That the whole of it took, with its problem, its reference and its readings.
+    was_warm
+        Whether it started from the run nearest to it.
+    """
+
+    number: int
+    ending: str
+    reason: str
+    values: tuple[float, ...]
+    iterations: int = 0
+    seconds: float = 0.0
+    was_warm: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether the run has converged, so that its values are answers."""
+        return self.ending == Ending.CONVERGED
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Read a plan from texts as `--vary` and `--of` take them.
+    """Plan of texts as `--vary` and `--of` take them.
 
     Parameters
     ----------
@@ -176,17 +195,8 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     return plan
 
 
-def plan_from_plain(plain: Mapping[str, Any]) -> Plan:
-    """Make a plan again of what `Plan.plain` gave."""
-    settings = CATALOGUE[plain["scene"]].settings.checked(plain["settings"])
-    axes = tuple(
-        Varied(one["name"], tuple(one["values"]), one["logarithmic"]) for one in plain["axes"]
-    )
-    return Plan(settings, axes, tuple(reading(name) for name in plain["of"]))
-
-
 def axis_of(settings: Settings, text: str) -> Varied:
-    """Read one setting and its values.
+    """One setting and its values, of a text as `--vary` takes it.
 
     Raises
     ------
@@ -211,7 +221,7 @@ def axis_of(settings: Settings, text: str) -> Varied:
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:
-    """Spread values over a range."""
+    """Values spread over a range, and whether over decades."""
 
     def refuse(remedy: str) -> SettingError:
         return SettingError(name, text, f"LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, {within}", remedy)

@@ -1,4 +1,4 @@
-"""A sweep as a report: charts, and a line for every run."""
+"""A sweep as a page: charts, how answers grow, and a line for every run."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
+import numpy as np
+
+from solver.study.exponent import exponent_of
 from solver.study.page import PlotSection, Section, bullets, plain_table
-from solver.study.sweep.chart import charts
-from solver.study.sweep.growth import growth
-from solver.study.sweep.plan import Plan
-from solver.study.sweep.point import Row
+from solver.study.sweep.chart import charts, grid
+from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.table import cells, head, heads
 
 CAPTION = (
@@ -25,23 +26,42 @@ GROWTH = (
 
 
 def counts(plan: Plan, rows: Sequence[Row]) -> str:
-    """Say in a sentence what became of the runs."""
+    """What became of the runs, in a sentence."""
     endings = Counter(row.ending for row in rows)
-    told = ", ".join(f"{count} {ending}" for ending, count in endings.most_common())
-    return f"{len(rows)} of {plan.size} runs: {told or 'none yet'}."
+    message = ", ".join(f"{count} {ending}" for ending, count in endings.most_common())
+    return f"{len(rows)} of {plan.size} runs: {message or 'none yet'}."
+
+
+def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
+    """With which power of a setting over decades each reading grows, a line for every curve."""
+    numeric = [axis for axis in plan.axes if axis.is_numeric]
+    if len(numeric) != 1 or not numeric[0].logarithmic:
+        return []
+    (along,), lines = numeric, []
+    names = next((axis for axis in plan.axes if axis is not along), None)
+    for place, reading in enumerate(plan.readings):
+        values = grid(plan, rows, place)
+        if plan.axes[0] is along and names is not None:
+            values = values.T
+        for number, curve in enumerate(np.atleast_2d(values)):
+            law = exponent_of(along.values, curve)
+            if law is not None:
+                which = f", {names.name}={names.values[number]}" if names else ""
+                count = np.isfinite(curve).sum()
+                lines.append(f"{reading.name}{which}: {along.name}^({law}), of {count} runs")
+    return lines
 
 
 def title_of(plan: Plan) -> str:
-    """Say what is asked."""
+    """What is asked for, over what."""
     asked = ", ".join(one.title[0].lower() + one.title[1:] for one in plan.readings)
     over = " and ".join(plan.title(axis)[0].lower() + plan.title(axis)[1:] for axis in plan.axes)
     return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
 
 
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
-    """Write rows, in the order of their points."""
-    drawn = charts(plan, rows)
-    laws = growth(plan, rows)
+    """Page of some rows, in the order of their points."""
+    drawn, laws = charts(plan, rows), growth(plan, rows)
     table = [heads(plan), *([_text(cell) for cell in cells(plan, row)] for row in rows)]
     return [
         f"<p><b>{escape(counts(plan, rows))}</b></p>",

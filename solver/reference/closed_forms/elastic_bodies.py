@@ -1,4 +1,4 @@
-"""Closed forms of a cylinder on a half-plane, per length (Johnson, Contact Mechanics, 1985)."""
+"""Closed forms of elastic bodies: a cylinder on a half-plane, and a cantilever, per length."""
 
 from __future__ import annotations
 
@@ -11,11 +11,15 @@ from solver.laws.play import play
 
 LEVELS = 400
 """Steps in which the contact is taken to have grown."""
+SHEAR_FACTOR = 5.0 / 6.0
+"""Of a rectangular section."""
 
 
 @dataclass(frozen=True)
 class HalfPlane:
-    """Hertz's contact, and Cattaneo's and Mindlin's partial slip on it (sections 4.2 and 7.2).
+    """Hertz's contact, and Cattaneo's and Mindlin's partial slip on it.
+
+    (K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 7.2.)
 
     Attributes
     ----------
@@ -42,15 +46,15 @@ class HalfPlane:
         return float(2.0 * self.force / (np.pi * self.half_width))
 
     def stuck(self, share: float) -> float:
-        """Give the half-width that sticks under a shear force of a share of mu P, m."""
+        """Half-width that sticks under a shear force of a share of mu P, m."""
         return float(self.half_width * np.sqrt(1.0 - share))
 
     def pressure(self, place: Array) -> Array:
-        """Give the pressure at places from the middle of the contact, m; Pa."""
+        """Pressure at places from the middle of the contact, m; Pa."""
         return self.peak * _root(place / self.half_width)
 
     def traction(self, place: Array, friction: float, share: float) -> Array:
-        """Give the shear traction under a share of mu P that has grown, Pa; places as above.
+        """Shear traction under a share of mu P that has grown, Pa; places as above.
 
         It is that of sliding, less the same for what sticks: two square roots.
         """
@@ -59,7 +63,7 @@ class HalfPlane:
         return np.asarray(friction * self.peak * (_root(place / self.half_width) - back))
 
     def traction_over(self, place: Array, friction: float, shear: Array) -> Array:
-        """Give the shear traction under a shear force that turns, Pa, shape (n, n_instants).
+        """Shear traction under a shear force that turns, Pa, shape (n, n_instants).
 
         Pressing grows the contact from its middle, step by step, as flat punches that widen. What
         the outer ones carry is at its bound, as on a bar that is pulled at its end: the force on
@@ -85,10 +89,27 @@ class HalfPlane:
         return np.asarray(friction * np.diff(grown, axis=0).T @ share)
 
     def energy(self, friction: float, share: float) -> float:
-        """Give what friction takes in a cycle between plus and minus a share of mu P, J/m."""
+        """What friction takes in a cycle between plus and minus a share of mu P, J/m."""
         bracket = 4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
         return float((friction * self.force) ** 2 / (np.pi * self.modulus) * bracket)
 
 
 def _root(share: Array) -> Array:
     return np.asarray(np.sqrt(np.maximum(1.0 - share**2, 0.0)))
+
+
+def cantilever(length: float, height: float, young: float, poisson: float) -> float:
+    """End force for a unit of deflection, of Timoshenko's beam in plane stress, N/m for a metre.
+
+    (J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997.)
+
+    Parameters
+    ----------
+    length, height
+        m.
+    young, poisson
+        E, Pa, and nu.
+    """
+    bending = length**3 / (3.0 * young * height**3 / 12.0)
+    shear = length / (SHEAR_FACTOR * height * young / (2.0 * (1.0 + poisson)))
+    return 1.0 / (bending + shear)

@@ -1,0 +1,272 @@
+"""The load up to which slip may cease: Melan's theorem for friction, and its like in the plane.
+
+**Known bounds.** Where the bound does not depend on slip, a structure shakes down under a load that
+repeats itself if there is any slip s, the same at all instants, whose forces keep all forces within
+the bound b:
+
+    |lambda f_e(t) + R s| <= b(t),
+
+with f_e the forces where nothing has slipped and R s those that slip alone leaves behind. The
+largest lambda is the limit, wherever the slip begins (A. Klarbring, M. Ciavarella, J. R. Barber,
+Shakedown in elastic contact problems with Coulomb friction, Int. J. Solids Struct. 44, 2007;
+solver/README.md, 15). R is regular, so that R s is any force that stays.
+
+**In the plane** slip changes what presses. With all contacts closed their forces follow from the
+slips w of their points, f = S w - q(t), the pressing ones, too. So what friction can hold at an
+instant is a polyhedron: two planes a point,
+
+    |f_t| <= r + mu f_n    or    A w <= b(t),
+
+which the load moves, and the slips are pushed by them. What lies inside at all instants of a cycle
+may stay for ever. Where no slip changes what presses, the planes push slip there wherever it
+begins, as Melan's theorem says; where slip does, that depends on the start, but for certain plane
+problems below a critical mu (Klarbring et al.; L.-E. Andersson, J. R. Barber, Y.-J. Ahn, Attractors
+in frictional systems subjected to periodic loads, SIAM J. Appl. Math. 73, 2013).
+
+The theorem is of complete contacts, all of whose points press at all times, and the planes say so
+themselves: |f_t| <= mu f_n leaves no room where f_n < 0. A point that presses and does not rub, or
+whose friction needs no pressing force, has a plane of its own, f_n >= 0. So between all planes the
+contacts are closed, and beyond the largest swing there is no slip with which they stick and stay
+closed: something slips, or opens, in every cycle, wherever it began.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from scipy import sparse
+from scipy.optimize import OptimizeResult, linprog
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.reference.condensation import Condensation, NoReferenceError
+from solver.reference.rules import rules_of
+
+MOST_KNOWN = 1000
+"""Points of known bound above which matrices, which are full, take more than some seconds."""
+FELT = 1e-9
+"""Share of the largest bound up to which a force that changes is rounding, as for HiGHS."""
+SLACK = 1e-9
+"""Share of its size by which rounding lets a corner lie beyond a plane."""
+MOST_POINTS = 500
+"""Points up to which the program of the plane, whose matrix is full, takes some seconds: 423 of ten
+layers 3.6, 769 of a block 26, 893 of twenty layers 145 (measured)."""
+UNBOUNDED = 3
+"""Status of `linprog` where the factor may grow without end."""
+
+
+def shakedown_limit(problem: Problem, some: slice) -> float:
+    """Largest factor on all loads of rods under which slip ceases.
+
+    It is infinite where the loads stay the same, or nothing that rubs feels them.
+
+    Parameters
+    ----------
+    problem
+        Bodies whose friction has known bounds; all that acts is scaled, but for these.
+    some
+        The instants of a cycle; what came before says nothing of the limit.
+
+    Raises
+    ------
+    NoReferenceError
+        Where bounds depend on the pressing force or on slip, or there are too many points.
+    """
+    if problem.opens or _count(problem) > MOST_KNOWN:
+        raise NoReferenceError(
+            f"The limit is that of known bounds, and of at most {MOST_KNOWN} points."
+        )
+    # Jumps y = T y_b obey S y_b = T' f + q, and with a spring of compliance c in series
+    # y = s - c f. A point whose bound is nothing at all times has f = 0.
+    condensed = Condensation(problem)
+    rules = rules_of(problem).kept(condensed.moving)
+    if rules.ages:
+        raise NoReferenceError("Where friction changes with slip the theorem says nothing.")
+    residual, elastic, rings = condensed.stiffness, -condensed.load[:, some], condensed.stresses
+    if rules.compliance.any():
+        rings = np.zeros((len(rules.compliance), 0))  # what gives way tells its own force
+        stiff = 1.0 / rules.compliance[:, None]
+        tied = stiff * condensed.ties.toarray()
+        gives = np.linalg.solve(residual + condensed.ties.T @ tied, tied.T)
+        residual = np.diagflat(stiff) - tied @ gives
+        elastic = gives.T @ elastic - residual @ condensed.shift[:, some]
+    rubs, free = np.flatnonzero(rules.bounded), np.flatnonzero(~rules.bounded)
+    carried = np.linalg.solve(residual[np.ix_(free, free)], residual[np.ix_(free, rubs)]).T
+    elastic = elastic[rubs] - carried @ elastic[free]
+    bound = np.broadcast_to(rules.bound[rubs], (len(rubs), problem.n_instants))[:, some]
+    scale = float(bound.max(initial=0.0)) or 1.0
+    elastic, bound = elastic / scale, bound / scale
+    if rings.shape[1]:
+        return _limit_in_rings(elastic, bound, rings[rubs])
+    return _limit_of_points(elastic, bound)
+
+
+def _count(problem: Problem) -> int:
+    return sum(len(law.positions) for law in problem.rubbing.values())
+
+
+def _limit_of_points(elastic: Array, bound: Array) -> float:
+    """Lambda where the worst point decides: two instants that pull it both ways beyond its bounds.
+
+    Forces and bounds over the largest bound.
+    """
+    factor = np.inf
+    for force, most in zip(elastic.T, bound.T, strict=True):
+        swing = np.abs(elastic - force[:, None])
+        is_felt = swing > FELT
+        room = (bound + most[:, None])[is_felt] / swing[is_felt]
+        factor = min(factor, float(room.min(initial=np.inf)))
+    return factor
+
+
+def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
+    """Lambda where forces Q go round rings without moving anything, at each instant on their own.
+
+    Unknown are R s, lambda, and of every instant a share of Q; forces as above.
+    """
+    size, count = elastic.shape
+    within = sparse.hstack(
+        [
+            sparse.kron(sparse.eye_array(size), np.ones((count, 1))),
+            elastic.reshape(-1, 1),
+            sparse.kron(rings, sparse.eye_array(count)),
+        ]
+    )
+    solution = _largest(size, sparse.vstack([within, -within]), np.tile(bound.ravel(), 2))
+    return np.inf if solution.status == UNBOUNDED else float(solution.x[size])
+
+
+def _largest(place: int, matrix: Array | sparse.sparray, limit: Array) -> OptimizeResult:
+    """Largest value of one of the unknowns x, not below zero, with matrix x <= limit.
+
+    Raises
+    ------
+    NoReferenceError
+        Where no x obeys that.
+    """
+    bounds = np.tile([-np.inf, np.inf], (matrix.shape[1], 1))
+    bounds[place, 0] = 0.0
+    aim = np.zeros(matrix.shape[1])
+    aim[place] = -1.0
+    solution = linprog(aim, A_ub=matrix, b_ub=limit, bounds=bounds, method="highs")
+    if not solution.success and solution.status != UNBOUNDED:
+        raise NoReferenceError(f"No slip could stay: {solution.message}")
+    return solution
+
+
+@dataclass(frozen=True, eq=False)
+class SlipSpace:
+    """The planes between which all points stick and press: A w <= b.
+
+    Attributes
+    ----------
+    matrix
+        A, shape (n_planes, n_points), N/m: where each point slips to negative w, where to positive,
+        and where one opens whose friction does not say so.
+    limit
+        b, shape (n_planes, n_instants), N.
+    """
+
+    matrix: Array
+    limit: Array
+
+
+def slip_space(problem: Problem) -> SlipSpace:
+    """Planes between which all points stick, and all contacts are closed.
+
+    Points that a clamp holds, too, are left out.
+
+    Raises
+    ------
+    NoReferenceError
+        Where contacts give way before they slip, friction changes with slip, nothing rubs, forces
+        do not follow from jumps, or there are too many points.
+    """
+    if _count(problem) > MOST_POINTS:
+        raise NoReferenceError(f"The planes are those of at most {MOST_POINTS} points.")
+    condensed = Condensation(problem)
+    rules = rules_of(problem).kept(condensed.moving)
+    is_whole = len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
+    if not is_whole or rules.compliance.any() or not rules.is_linear or rules.smooth.any():
+        raise NoReferenceError(
+            "The planes are those of Coulomb's friction, where forces follow from slips."
+        )
+    stiffness, rubs = _elastic(condensed), np.flatnonzero(~rules.normal)
+    closed = np.where(rules.normal, -rules.gap, 0.0)
+    still = (stiffness @ closed)[:, None] - condensed.load
+    friction, pressing = rules.friction[rubs, None], rules.partner[rubs]
+    carried, bound = friction * stiffness[np.ix_(pressing, rubs)], rules.bound[rubs]
+    own, held = stiffness[np.ix_(rubs, rubs)], friction * still[pressing] + bound
+    # Friction that takes pressing says so by itself.
+    alone = np.setdiff1d(np.flatnonzero(rules.normal), pressing[~rules.bounded[rubs]])
+    matrix = np.concatenate([own - carried, -own - carried, -stiffness[np.ix_(alone, rubs)]])
+    limit = np.concatenate([held - still[rubs], held + still[rubs], still[alone]])
+    force = problem.scales.force
+    return SlipSpace(matrix * force / problem.scales.displacement, limit * force)
+
+
+def _elastic(condensed: Condensation) -> Array:
+    """S without what holds rigid motions: they are part of the slips, and cost nothing."""
+    stiffness, gauge = condensed.stiffness, condensed.gauge
+    # Each of these motions is held by a stiffness of its own.
+    held = gauge * (gauge * (stiffness @ gauge)).sum(axis=0)
+    return np.asarray(stiffness - held @ gauge.T)
+
+
+def largest_swing(space: SlipSpace, some: slice) -> tuple[float, Array]:
+    """How much a load may swing about its mean until no slip could stay, or a contact opens.
+
+    Parameters
+    ----------
+    space
+        The planes.
+    some
+        The instants of whole cycles, equally far apart.
+
+    Returns
+    -------
+    factor
+        On the load's distance from its mean over the time of the cycles; infinite where it stands
+        still.
+    slip
+        One that stays under it, with all contacts closed, shape (n_points,), m.
+
+    Raises
+    ------
+    NoReferenceError
+        Where not even the mean of the load could be held.
+    """
+    limit = space.limit[:, some]
+    mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)
+    least = (limit - mean[:, None]).min(axis=1)
+    unit, scale = float(np.abs(space.matrix).max()), float(np.abs(limit).max()) or 1.0
+    size = space.matrix.shape[1]
+    matrix = np.column_stack([space.matrix / unit, -least / scale])
+    solution = _largest(size, matrix, mean / scale)
+    if solution.status == UNBOUNDED:
+        return np.inf, np.zeros(size)
+    return float(solution.x[size]), solution.x[:size] * scale / unit
+
+
+def room_of_two(space: SlipSpace, some: slice) -> Array:
+    """Where two points may stay at all instants, between the lines that come farthest.
+
+    Returns
+    -------
+    Corners in their order, shape (n_corners, 2), m; none where nothing is left.
+    """
+    matrix, limit = space.matrix, space.limit[:, some].min(axis=1)
+    slack = SLACK * float(np.abs(space.limit).max(initial=0.0))
+    corners = []
+    for pair in combinations(range(len(matrix)), 2):
+        lines = matrix[list(pair)]
+        if abs(np.linalg.det(lines)) > SLACK * np.abs(lines).max() ** 2:
+            corner = np.linalg.solve(lines, limit[list(pair)])
+            if np.all(matrix @ corner <= limit + slack):
+                corners.append(corner)
+    if not corners:
+        return np.zeros((0, 2))
+    away = (corners - np.mean(corners, axis=0)).T
+    return np.array(corners)[np.argsort(np.arctan2(away[1], away[0]))]

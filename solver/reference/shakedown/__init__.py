@@ -1,1 +1,0 @@
-"""The largest load under which slip ceases, as linear programs."""

@@ -1,0 +1,263 @@
+"""The runs of a sweep: what a process does for one point, and rows as they come."""
+
+from __future__ import annotations
+
+import math
+import platform
+import queue
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from solver.definitions import SettingError
+from solver.files import save_result
+from solver.latin import Ending
+from solver.reference.solution import States
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
+from solver.study.quantities.memory import settle
+from solver.study.quantities.quantities import reading
+from solver.study.sweep.plan import LOST, STUCK, Plan, Row
+
+WORKER = "versions of a worker"
+TOO_LONG = "It took longer than a run may; allow more with --limit."
+KEPT = 500
+"""Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41. Of the
+scenes as they are each takes 5 to 30 kB."""
+_runs: dict[str, dict[tuple[float, ...], States]] = {}
+"""What stuck, slipped and opened in the runs of this process, of the last sweep, by place."""
+TRIES = 3
+"""Times that all is submitted again because processes were ended while they did nothing."""
+AHEAD = 500
+"""Runs under way at once, done and waiting: more than there are workers, soon asked for."""
+PATIENCE = 0.2
+"""Seconds between two looks at whether a sweep is still wanted."""
+
+
+@dataclass(frozen=True)
+class Common:
+    """What the runs of a sweep have in common, for whatever process does them.
+
+    Attributes
+    ----------
+    sweep
+        A name that no other sweep has.
+    scene, fixed
+        Settings, those at their defaults left out.
+    readings
+        Names of what is taken of a run.
+    shape
+        Points along the axes; None for runs that start from no others.
+    limit, fields
+        As for `sweep`.
+    versions
+        Of who asks, which have to be those of who answers.
+    """
+
+    sweep: str
+    scene: str
+    fixed: dict[str, object]
+    readings: tuple[str, ...]
+    shape: tuple[int, ...] | None
+    limit: float
+    fields: str | None
+    versions: str
+
+
+@cache
+def versions() -> str:
+    """Versions of all that results depend on."""
+    names = ("slipfront", "numpy", "scipy")
+    return ", ".join([*(f"{name} {version(name)}" for name in names), platform.python_version()])
+
+
+def field_file(number: int) -> str:
+    """Name of the file of a point's fields."""
+    return f"run-{number:05d}.npz"
+
+
+def run(common: Common, number: int, point: dict[str, object]) -> Row:
+    """Row of a point, whose run starts from the nearest one that this process has done.
+
+    Raises
+    ------
+    SettingError
+        Where the result would be that of other code.
+    """
+    if common.versions != versions():
+        raise SettingError(WORKER, versions(), common.versions, "install these on all workers")
+    readings = [reading(name) for name in common.readings]
+    if any(one.quantity.is_of_course for one in readings):
+        settle()
+    if common.sweep not in _runs:
+        _runs.clear()
+    done, shape = _runs.setdefault(common.sweep, {}), common.shape or (1,)
+    place = tuple(np.unravel_index(number, shape) / np.array(shape)) if common.shape else ()
+    nearest = min(list(done), key=partial(math.dist, place), default=None)
+    began = time.perf_counter()
+    nothing = (math.nan,) * len(readings)
+    # A run that diverges is told by its status.
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        try:
+            finished = finished_run(
+                CATALOGUE[common.scene].settings.checked({**common.fixed, **point}),
+                errors=any(one.quantity.reads == "errors" for one in readings),
+                indicators=any(one.quantity.reads == "indicators" for one in readings),
+                cancelled=lambda: time.perf_counter() > began + common.limit,
+                before=None if nearest is None else done.get(nearest),
+            )
+            if common.fields is not None:
+                file = Path(common.fields) / field_file(number)
+                save_result(file, finished.settings, finished.solution)
+            status, values = (
+                finished.solution.status,
+                tuple(float(one(finished)) for one in readings),
+            )
+            ending, reason = str(status.ending), status.advice
+            if status.ending is Ending.CANCELLED:
+                ending, reason = STUCK, TOO_LONG
+            elif status.ending is Ending.CONVERGED:
+                reason = ""
+            values = tuple(float(one(finished)) for one in readings)
+            row = Row(number, ending, reason, values, finished.iterate.number)
+            row = replace(row, was_warm=finished.was_warm)
+            if common.shape and row.holds:
+                done[place] = finished.states
+                for oldest in list(done)[:-KEPT]:
+                    done.pop(oldest, None)
+        except RefusedError as refusal:
+            row = Row(number, REFUSED, str(refusal), nothing)
+        except Exception as trouble:  # whatever it is belongs in the table
+            row = Row(number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
+    return replace(row, seconds=time.perf_counter() - began)
+
+
+def patience(limit: float) -> float:
+    """Seconds after which a process that has a run is stuck: no run ends itself."""
+    return 1.5 * limit + 10.0
+
+
+def sweep(
+    plan: Plan,
+    executor: Executor,
+    *,
+    done: Collection[int] = (),
+    following: Callable[[int], Sequence[int]] | None = None,
+    limit: float = math.inf,
+    fields: str | None = None,
+    warm: bool = True,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> Iterator[Row]:
+    """Run points of a plan.
+
+    Parameters
+    ----------
+    plan
+        What to run.
+    executor
+        Where.
+    done
+        Numbers of the points to leave out.
+    following
+        Next points to run, by how many are under way, asked for after each row until there are
+        none; without it all are run, from neighbour to neighbour.
+    limit
+        Seconds that a run may take.
+    fields
+        Folder for the fields of every run, which all processes share; None keeps none.
+    warm
+        Whether runs may start from their neighbours, where no reading is of how they went.
+    cancelled
+        Asked several times a second whether to end it.
+
+    Yields
+    ------
+    One row for every point, as they come, in any order. Closing the generator ends the sweep: what
+    is not begun is not done, and what runs in processes of this machine is ended.
+
+    Raises
+    ------
+    SettingError
+        Where a worker's results would be those of other code.
+    BrokenExecutor
+        Where the executor does no more calls; the same sweep can go on in another.
+    """
+    is_warm = warm and not any(one.quantity.is_of_course for one in plan.readings)
+    common = Common(
+        uuid.uuid4().hex,
+        plan.settings.scene,
+        plan.fixed,
+        tuple(one.name for one in plan.readings),
+        plan.shape if is_warm else None,
+        limit,
+        fields,
+        versions(),
+    )
+    path = deque(() if following else (n for n in snake(plan.shape) if n not in done))
+    under_way: dict[Future[Row], int] = {}
+    ended: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
+    tries = 0
+    try:
+        while not cancelled():
+            path.extend(following(len(under_way)) if following else ())
+            while path and len(under_way) < AHEAD:
+                future = executor.submit(run, common, path[0], plan.point(path[0]))
+                under_way[future] = path.popleft()
+                future.add_done_callback(ended.put)
+            if not under_way:
+                return
+            with suppress(queue.Empty):
+                future = ended.get(timeout=PATIENCE)
+                if future not in under_way:
+                    continue
+                try:
+                    row = _row(future, under_way[future], len(plan.readings))
+                except BrokenProcessPool:
+                    tries += 1
+                    if tries > TRIES:
+                        raise
+                    path.extendleft(under_way.values())
+                    under_way = {}
+                    continue
+                del under_way[future]
+                tries = 0
+                yield row
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+def snake(shape: Sequence[int]) -> list[int]:
+    """Numbers of the points of a grid, where each line goes back the way of the one before."""
+    grid = np.arange(math.prod(shape)).reshape(-1, shape[-1])
+    grid[1::2] = grid[1::2, ::-1]
+    return [int(number) for number in grid.ravel()]
+
+
+def _row(future: Future[Row], number: int, n_values: int) -> Row:
+    """Row of a run, whatever became of its process."""
+    try:
+        return future.result()
+    except (SettingError, BrokenExecutor):
+        raise
+    except ImportError as trouble:
+        raise SettingError(WORKER, "others", versions(), f"it cannot run this: {trouble}") from None
+    except CancelledError:
+        raise BrokenExecutor("the executor does not answer any more") from None
+    except TimeoutError:
+        ending, reason = STUCK, TOO_LONG
+    except Exception as trouble:
+        why = f"{type(trouble).__name__}: {trouble}"
+        ending, reason = LOST, f"Its process was ended ({why}); the same sweep tries it again."
+    return Row(number, ending, reason, (math.nan,) * n_values)
