@@ -114,11 +114,8 @@ class Problem:
         """Trapezoidal weights of the instants, shape (n_instants,), scaled."""
         if self.n_instants == 1:
             return np.ones(1)
-        steps = np.diff(self.instants) / self.scales.time
-        weights = np.zeros(self.n_instants)
-        weights[:-1] += 0.5 * steps
-        weights[1:] += 0.5 * steps
-        return weights
+        halves = 0.5 * (np.diff(self.instants) / self.scales.time)
+        return np.append(halves, 0.0) + np.insert(halves, 0, 0.0)
 
     @cached_property
     def laws(self) -> list[Interface]:
