@@ -30,7 +30,7 @@ def table(forces):
 
 
 def sample(chosen, number):
-    """Give the iterate of some number."""
+    """Iterate of some number."""
     return next(islice(iterations(discretise(chosen), method_of(chosen)), number - 1, None))
 
 

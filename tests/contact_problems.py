@@ -11,13 +11,13 @@ COURSES = ("random", "reversal", "open and close", "wander")
 
 
 def stiffness(rng, size, softest=1e-2):
-    """Give a random symmetric positive definite matrix whose parts are strongly coupled."""
+    """A random symmetric positive definite matrix whose parts are strongly coupled."""
     factor = rng.normal(size=(size, size))
     return factor @ factor.T / size + softest * np.eye(size)
 
 
 def course(rng, name, size, instants):
-    """Give loads, shape (size, instants), that make the contacts change their states."""
+    """Loads, shape (size, instants), that make the contacts change their states."""
     steps = rng.normal(size=(size, instants))
     if name == "reversal":
         return np.outer(rng.normal(size=size), np.where(np.arange(instants) % 2, 1.0, -1.0))
@@ -30,7 +30,7 @@ def course(rng, name, size, instants):
 
 
 def substructure(matrix, first, force, extra_rows=0):
-    """Give a body whose every degree of freedom has a row, and the first ones a second."""
+    """A body whose every degree of freedom has a row, and the first ones a second."""
     size = len(matrix)
     trace = np.concatenate([np.arange(size), np.arange(extra_rows)])
     dofs, rows = first[0] + np.arange(size), first[1] + np.arange(size + extra_rows)
@@ -38,7 +38,7 @@ def substructure(matrix, first, force, extra_rows=0):
 
 
 def problem(parts, interfaces, instants):
-    """Give a problem in which every scaled unit is one."""
+    """A problem in which every scaled unit is one."""
     size = sum(len(part.dofs) for part in parts)
     return Problem(
         tuple(parts),
@@ -56,7 +56,7 @@ def friction_of(component, *, bound=0.0, friction=0.0):
 
 
 def contact(normal, tangent, below, gap, friction):
-    """Give a contact of as many points as there are normal rows."""
+    """A contact of as many points as there are normal rows."""
     count = len(normal)
     points, ones = np.arange(count), np.ones(count)
     below = below or (None, None)
@@ -71,7 +71,7 @@ def contact(normal, tangent, below, gap, friction):
 
 
 def rubbing_points(seed, *, opens, two):
-    """Give random numbers, sliders, and what else a contact of them needs: a normal law or none."""
+    """Random numbers, sliders, and what else a contact of them needs: a normal law or none."""
     random, pairs = np.random.default_rng(seed), 4
     rows = random.permutation(4 * pairs).reshape(4, pairs)
     across, along = (Component(rows[n], rows[n + 2] if two else None) for n in (0, 1))
@@ -91,7 +91,7 @@ def rubbing_points(seed, *, opens, two):
 
 
 def local_stage(law, random, *, rows=16, times=20):
-    """Give displacements and forces that a law finds along random search directions, and these."""
+    """Displacements and forces that a law finds along random search directions, and these."""
     k = 10.0 ** random.uniform(-1.0, 1.0, rows)
     incoming = random.normal(size=(rows, times))
     moved = incoming.copy()
@@ -100,7 +100,7 @@ def local_stage(law, random, *, rows=16, times=20):
 
 
 def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
-    """Give one body, tangential and normal displacement of each point in turn, on a support."""
+    """One body, tangential and normal displacement of each point in turn, on a support."""
     size = 2 * points
     part = substructure(stiffness(rng, size), (0, 0), course(rng, load, size, instants))
     gap = rng.choice([0.0, 0.1], size=points) if gap is None else np.full(points, gap)
@@ -109,7 +109,7 @@ def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
 
 
 def two_bodies(rng, points, friction, *, load="random", instants=6):
-    """Give a body on another that is clamped at its first two degrees of freedom."""
+    """A body on another that is clamped at its first two degrees of freedom."""
     size = 2 * points
     below = substructure(stiffness(rng, size + 2), (0, 0), None, extra_rows=2)
     force = course(rng, load, size, instants)
@@ -123,7 +123,7 @@ def two_bodies(rng, points, friction, *, load="random", instants=6):
 
 
 def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
-    """Give bodies that rub on their neighbours with a known bound; the ring closes it."""
+    """Bodies that rub on their neighbours with a known bound; the ring closes it."""
     parts = [
         substructure(
             stiffness(rng, points),
@@ -150,7 +150,7 @@ def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
 
 
 def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, slope=0.0, **given):
-    """Give a block that is pressed on a rough support, then sheared back and forth on its top.
+    """A block that is pressed on a rough support, then sheared back and forth on its top.
 
     Shear and its change along the top are shares of the pressure, 1e-3 E.
     """

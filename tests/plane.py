@@ -24,13 +24,13 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
 
 
 def lengths(iterate, name="support"):
-    """Give the tributary length of every point of a contact, shape (n_points, 1), m."""
+    """Tributary length of every point of a contact, shape (n_points, 1), m."""
     law = iterate.problem.rubbing[name]
     return law.by_point(law.weights[:, None])
 
 
 def reaction(iterate, side):
-    """Give the resultant of the forces on a held side, along x and y, shape (2, n_instants), N."""
+    """Resultant of the forces on a held side, along x and y, shape (2, n_instants), N."""
     problem = iterate.problem
     rows = problem.interfaces[side].rows
     force = iterate.boundary_force[rows] * problem.scales.force
@@ -39,13 +39,13 @@ def reaction(iterate, side):
 
 
 def stress(iterate, instant=-1):
-    """Give stresses (xx, yy, xy) of all elements at an instant, shape (n_elements, 3), Pa."""
+    """Stresses (xx, yy, xy) of all elements at an instant, shape (n_elements, 3), Pa."""
     inside = iterate.problem.inside
     found = inside.displacement(iterate.displacement, [instant])
     return inside.stress(found[:, :, 0])
 
 
 def whole_force_error(reference, iterate):
-    """Give how wrong the contact force is as one field, pressure and friction together, (-)."""
+    """How wrong the contact force is as one field, pressure and friction together, (-)."""
     wanted = reference.contact_force
     return float(np.linalg.norm(iterate.contact_force - wanted) / np.linalg.norm(wanted))

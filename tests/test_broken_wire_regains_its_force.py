@@ -22,7 +22,7 @@ GRIPPED = {"grip": "displacement"}
 
 
 def solved(**changes):
-    """Give the scene of some settings, and its converged iterate."""
+    """Scene of some settings, and its converged iterate."""
     settings = StrandSettings.checked({**FAST, **changes})
     solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
@@ -30,7 +30,7 @@ def solved(**changes):
 
 
 def axial_forces(scene, displacement):
-    """Give the axial force of every element, shape (n_wires, n_elements, n_instants), N."""
+    """Axial force of every element, shape (n_wires, n_elements, n_instants), N."""
     elongation = np.diff(displacement, axis=0)
     between = (scene.elements + 1) * np.arange(1, scene.wires) - 1
     if scene.broken is not None:
@@ -48,7 +48,7 @@ def wire_forces(**changes):
 
 
 def points(scene):
-    """Give the nodes, that of the break twice, which are points of the interfaces: none held."""
+    """Nodes, that of the break twice, which are points of the interfaces: none held."""
     return slice(1, -1 if scene.rigid_grip else None)
 
 
@@ -143,13 +143,13 @@ def test_equal_wires_without_a_break_never_slip(wires, grip):
 
 
 def strain_energy(scene, forces):
-    """Give the energy of axial forces, shape (n_instants,), J."""
+    """Energy of axial forces, shape (n_instants,), J."""
     element = scene.length / scene.elements
     return 0.5 * element / scene.stiffness * (forces**2).sum(axis=(0, 1))
 
 
 def work_of_the_grip(iterate):
-    """Give the work of each step, by the force at its end, shape (n_instants,), J."""
+    """Work of each step, by the force at its end, shape (n_instants,), J."""
     rows, scales = iterate.problem.interfaces["load"].rows, iterate.problem.scales
     steps = np.diff(iterate.boundary_displacement[rows], axis=1, prepend=0.0)
     work = (iterate.boundary_force[rows] * steps).sum(axis=0)
@@ -157,7 +157,7 @@ def work_of_the_grip(iterate):
 
 
 def dissipation(iterate):
-    """Give the bound times the slip of each step, shape (n_instants,), J."""
+    """Bound times the slip of each step, shape (n_instants,), J."""
     found = np.zeros(iterate.problem.n_instants)
     for name, law in iterate.problem.rubbing.items():
         bound = law.by_point(law.tangential.most) * iterate.problem.scales.force

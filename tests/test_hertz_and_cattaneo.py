@@ -134,7 +134,7 @@ def test_the_stuck_part_has_the_width_of_cattaneo_and_mindlin(elements):
 
 
 def stick_half_width(contact):
-    """Give c after a reversal from sliding everywhere: twice the friction is at hand."""
+    """The constant c after a reversal from sliding everywhere: twice the friction is at hand."""
     shear = -contact.fields.tangential_force[:, -1].sum() / (FRICTION * contact.total)
     return contact.exact.stuck(0.5 * (1.0 + shear))
 

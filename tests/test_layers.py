@@ -54,7 +54,7 @@ EXPERIMENTS = ("solver.scenes", *(f"solver.study.{one}" for one in STUDIES))
 
 
 def modules(package):
-    """Give the path of every module of a package, by its full name."""
+    """Path of every module of a package, by its full name."""
     found = {}
     for path in sorted((ROOT / package).rglob("*.py")):
         name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
@@ -88,7 +88,7 @@ def imports(module):
 
 
 def place(module, places):
-    """Give the number of the place that a module has, or that above all."""
+    """Number of the place that a module has, or that above all."""
     part = module.split(".")[1]
     return next((number for number, parts in enumerate(places) if part in parts), len(places))
 

@@ -118,13 +118,13 @@ STEPS = 8
 
 
 def cycles(size):
-    """Give two cycles of a path, at rest until 0.2 s, over 1 s."""
+    """Two cycles of a path, at rest until 0.2 s, over 1 s."""
     times = np.linspace(0.2, 1.0, len(TURNS))
     return [[0.0, 0.0], *([float(t), size * turn] for t, turn in zip(times, TURNS, strict=True))]
 
 
 def at_once(size):
-    """Give a value that is there from 0.1 s on."""
+    """A value that is there from 0.1 s on."""
     return [[0.0, 0.0], [0.1, size], [1.0, size]]
 
 
@@ -147,13 +147,13 @@ SCENES = {
 
 
 def work(force, displacement, first):
-    """Give the work of forces from an instant on; exact for linear elasticity, J."""
+    """Work of forces from an instant on; exact for linear elasticity, J."""
     mean = 0.5 * (force[:, first + 1 :] + force[:, first:-1])
     return float(np.sum(mean * np.diff(displacement[:, first:], axis=1)))
 
 
 def stored(problem, displacement):
-    """Give the elastic energy at every instant, scaled, up to what loads inside hold."""
+    """Elastic energy at every instant, scaled, up to what loads inside hold."""
     energy = np.zeros(problem.n_instants)
     for part in problem.substructures:
         own = displacement[part.dofs]

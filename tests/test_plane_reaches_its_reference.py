@@ -29,7 +29,7 @@ def problem_of(scene, **values):
 
 @cache
 def known(scene):
-    """Give the distance to the reference of a small scene; it is the same however it is cut."""
+    """Distance to the reference of a small scene; it is the same however it is cut."""
     size = SMALL if scene == "block" else {"instants": 41}
     _, problem = problem_of(scene, **size)
     reference = reference_of(problem)
@@ -39,7 +39,7 @@ def known(scene):
 
 
 def errors(scene, most, **values):
-    """Give the error of the contact force after every iteration."""
+    """Error of the contact force after every iteration."""
     size = SMALL if scene == "block" else {"instants": 41}
     settings, problem = problem_of(scene, **{**size, **values})
     distance = known(scene)
@@ -48,7 +48,7 @@ def errors(scene, most, **values):
 
 
 def within(found, level):
-    """Give the iteration from which all errors are below a level."""
+    """Iteration from which all errors are below a level."""
     above = np.flatnonzero(found > level)
     return (above[-1] if len(above) else -1) + 2
 

@@ -24,13 +24,13 @@ def problem_of(scene, **values):
 
 
 def layers_of(ratio, **values):
-    """Give layers so many times as long as thick, pressed so that they slide a part of the time."""
+    """Layers so many times as long as thick, pressed so that they slide a part of the time."""
     own = {"thickness": 0.5 / ratio, "pressure": 2e6 * (50 / ratio) ** 2, "instants": 33}
     return problem_of("layers", **{**own, **values})
 
 
 def error_after(most, settings, problem):
-    """Give the largest error of the contact force in the last three of so many iterations."""
+    """Largest error of the contact force in the last three of so many iterations."""
     reference = reference_of(problem)
     found = islice(iterations(problem, method_of(settings)), most - 3, most)
     return max(whole_force_error(reference, one) for one in found)
@@ -136,7 +136,7 @@ def bent(layers, friction, elements=48, elements_up=2, pressure=1e6):
 
 
 def stiffness(iterate):
-    """Give the end force that bending adds to that of pressing, for a unit of deflection, N/m."""
+    """End force that bending adds to that of pressing, for a unit of deflection, N/m."""
     force = reaction(iterate, "right")[1]
     return (force[-1] - force[-2]) / DEFLECTION
 

@@ -36,7 +36,7 @@ class Slope:
         self.up = values.weight * (np.sin(self.angle) + self.mu * np.cos(self.angle))
 
     def unbalanced(self, values):
-        """Give forces and the moment about the foot that are left over, over the weight."""
+        """Forces and the moment about the foot that are left over, over the weight."""
         along = self.rubbing.sum(axis=0) + self.spring - self.weight * np.sin(self.angle)
         across = self.pressing.sum(axis=0) - self.weight * np.cos(self.angle)
         lever = np.linspace(0.0, values.length, len(self.pressing))
@@ -132,7 +132,7 @@ def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiff
 
 
 def course_of(values, n):
-    """Give the error of the contact force, iteration by iteration."""
+    """Error of the contact force, iteration by iteration."""
     problem = discretise(values)
     distance = distance_to(reference_of(problem), problem)
     found = islice(iterations(problem, method_of(values), resumable=False), n)

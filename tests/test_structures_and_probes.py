@@ -31,7 +31,7 @@ def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Setting
 
 
 def trapezoid(along: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Give the mean over a line of places, in any order; values (n_places, n)."""
+    """Mean over a line of places, in any order; values (n_places, n)."""
     order = np.argsort(along)
     along, values = along[order], values[order]
     pieces = np.diff(along)[:, None] * 0.5 * (values[1:] + values[:-1])
