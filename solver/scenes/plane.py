@@ -181,9 +181,8 @@ class PlaneSettings(SceneSettings):
 
     def _check_shape(self) -> None:
         """Refuse elements so flat that their stiffness has no digits left."""
-        length: float = getattr(self, "length", 1.0)
-        height: float = getattr(self, self.across, length)
-        ratio = length * self.elements_up / (height * self.elements)
+        height: float = getattr(self, self.across)
+        ratio = self.length * self.elements_up / (height * self.elements)
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:
             raise SettingError(
                 self.across,

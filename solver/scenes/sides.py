@@ -43,41 +43,33 @@ def _has_size(side: str, component: str, prescribed: bool) -> Callable[..., bool
     return applies
 
 
-def _sizes(side: str, component: str) -> dict[str, Parameter]:
-    """Define how large a traction and a displacement are."""
+def _settings_of(side: str, component: str) -> dict[str, Parameter]:
+    """Settings of what is given: how large it is, how it varies along the side, and over time."""
     along = "x" if side == "top" else "y"
     towards = "outward" if component == "normal" else f"along {along}"
-    group = side.capitalize()
+    name, group = f"{side}_{component}", side.capitalize()
+    title, given = f"{group} {component}", _is_given(side)
     return {
-        f"{side}_{component}_traction": quantity(
+        f"{name}_traction": quantity(
             0.0,
             (-1e15, 1e15),
             (-2e8, 2e8),
             f"Mean {component} traction on the {side} side, positive {towards}.",
-            title=f"{group} {component} traction",
+            group=group,
+            title=f"{title} traction",
             unit="Pa",
             applies=_has_size(side, component, prescribed=False),
-            group=group,
         ),
-        f"{side}_{component}_displacement": quantity(
+        f"{name}_displacement": quantity(
             0.0,
             (-1e12, 1e12),
             (-1e-4, 1e-4),
             f"Mean {component} displacement of the {side} side, positive {towards}.",
-            title=f"{group} {component} displacement",
+            group=group,
+            title=f"{title} displacement",
             unit="m",
             applies=_has_size(side, component, prescribed=True),
-            group=group,
         ),
-    }
-
-
-def _shapes(side: str, component: str) -> dict[str, Parameter]:
-    """Define how what is given varies along the side, and over time."""
-    name, group = f"{side}_{component}", side.capitalize()
-    title = f"{group} {component}"
-    given = _is_given(side)
-    return {
         f"{name}_slope": quantity(
             0.0,
             (-1e6, 1e6),
@@ -106,16 +98,20 @@ class SideSettings(PlaneSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
     def _behind(self) -> Mapping[str, str]:
-        settings = {}
-        for side in LOADED_SIDES:
-            axes = "yx" if side == "top" else "xy"
-            for component, axis in zip(COMPONENTS, axes, strict=True):
-                kind = "displacement" if self._prescribes(side, component) else "traction"
-                settings[f"{side} {axis}"] = f"{side}_{component}_{kind}"
-        return settings
+        axes = {side: "yx" if side == "top" else "xy" for side in LOADED_SIDES}
+        return {
+            f"{side} {axis}": self._size(side, component)
+            for side in LOADED_SIDES
+            for component, axis in zip(COMPONENTS, axes[side], strict=True)
+        }
 
     def _prescribes(self, side: str, component: str) -> bool:
         return PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
+
+    def _size(self, side: str, component: str) -> str:
+        """Name of the setting that says how large a component is along a side."""
+        kind = "displacement" if self._prescribes(side, component) else "traction"
+        return f"{side}_{component}_{kind}"
 
     def side(self, side: str) -> Side:
         """What is given along a side, for x and y."""
@@ -142,8 +138,7 @@ class SideSettings(PlaneSettings):
     def size_of(self, path: str) -> float:
         """Largest value that a preset of a path over time reaches."""
         side, component, _ = path.split("_")
-        kind = "displacement" if self._prescribes(side, component) else "traction"
-        return float(getattr(self, f"{side}_{component}_{kind}"))
+        return float(getattr(self, self._size(side, component)))
 
 
 def _define(side: str) -> None:
@@ -161,8 +156,7 @@ def _define(side: str) -> None:
         ),
     )
     for component in COMPONENTS:
-        own = _sizes(side, component) | _shapes(side, component)
-        for name, definition in own.items():
+        for name, definition in _settings_of(side, component).items():
             SideSettings.param.add_parameter(name, definition)
 
 
