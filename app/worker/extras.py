@@ -23,10 +23,8 @@ from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_s
 from solver.scenes import kind_of
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import Brought
-from solver.study.quantities.clip_measures import can_be_clipped, clips_in, products_in
-from solver.study.quantities.cycles import cycles_of, ends_of
-from solver.study.quantities.shakedown import Fate, fate_of
-from solver.study.quantities.slips import slips_of
+from solver.study.quantities.cycles import Fate, cycles_of, ends_of, fate_of, slips_of
+from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
