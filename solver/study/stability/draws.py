@@ -1,4 +1,4 @@
-"""Random settings of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
+"""Random runs of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
 
 Every setting is drawn by its own definition, over the range that its slider shows, so that a new
 one is drawn as well. What has to fit together is drawn together: mesh and cuts, elements and
@@ -8,7 +8,7 @@ their aspect, and loads, which are measured by what friction can carry.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
+from solver.study.stability.case import NOT_WRONG, Case
 from solver.study.stability.random_loads import LOADS
 
 LARGEST_FIELD = 12_000
@@ -45,9 +46,38 @@ NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
 CHANGED = 0.15
 """How often a setting differs from its default."""
-FOOLISH = 10.0
-"""Factor on k, or its inverse, from which on it counts as foolish."""
 TRIALS = 1000
+
+
+def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Case]:
+    """Random runs of scenes in turn; row n is of scene n modulo their number.
+
+    Parameters
+    ----------
+    scenes
+        Names of the catalogue; all without.
+    number, seed
+        Of the runs, and of their draws.
+    """
+    names = list(scenes or CATALOGUE)
+    for row in range(number):
+        yield random_case(draw(names[row % len(names)], seed, row), seed, row)
+
+
+def random_case(settings: Settings, seed: int, row: int) -> Case:
+    """Case of settings that were drawn; right are errors of its force within its accuracy."""
+    own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
+    method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
+    return Case(
+        "random",
+        f"row {row} of seed {seed}",
+        settings.changed(),
+        NOT_WRONG,
+        scene=settings.scene,
+        method="pgd" if settings.linear_stage == "pgd" else method,
+        error_force=settings.accuracy,
+        error_displacement=math.inf,
+    )
 
 
 def draw(scene: str, seed: int, row: int) -> Settings:
@@ -73,18 +103,6 @@ def draw(scene: str, seed: int, row: int) -> Settings:
         except SettingError as refusal:
             last = refusal
     raise last
-
-
-def is_foolish(settings: Settings) -> bool:
-    """Whether a factor on k, or what they make together, is far from one."""
-    factors = [
-        value
-        for name, value in settings.values().items()
-        if name.startswith("k_") and name.endswith("_scale")
-    ]
-    common, *others = [math.log(factor) for factor in factors]
-    sizes = [abs(common), *(abs(common + other) for other in others)]
-    return max(sizes) > math.log(FOOLISH) * (1.0 + 1e-12)
 
 
 def log_uniform(generator: Generator, low: float, high: float) -> float:
@@ -171,7 +189,7 @@ def _stretch(
 
 
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
-    """Draw a value by the definition alone."""
+    """A value drawn by the definition alone."""
     if isinstance(definition, CurveParameter):
         if definition.abscissa == "position" and generator.random() < 0.4:
             return _profile(name, generator)
