@@ -16,12 +16,13 @@ from solver.study.figures.figure_report import paper_figures, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.case import rows_of
-from solver.study.speed.crossover import crossover, notes, ratio_table
 from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.growth import growth
+from solver.study.speed.sizes import crossover, growth
 from solver.study.speed.study_report import (
     conditions,
     growth_table,
+    notes,
+    ratio_table,
     table,
     winners,
     write_curves,

@@ -20,8 +20,7 @@ from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
-from solver.study.speed import crossover as measuring
-from solver.study.speed.crossover import FACTORS, crossover, equal_at, notes
+from solver.study.speed import sizes as measuring
 from solver.study.speed.error_against_time import (
     INCREMENTAL,
     LEVELS,
@@ -29,8 +28,8 @@ from solver.study.speed.error_against_time import (
     Study,
     forms_of,
 )
-from solver.study.speed.growth import growth
-from solver.study.speed.study_report import winners
+from solver.study.speed.sizes import FACTORS, crossover, equal_at, growth
+from solver.study.speed.study_report import notes, winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]

@@ -1,30 +1,51 @@
-"""Who is first where: time of LATIN over that of the incremental solver, by size and instants."""
+"""How times grow with the size of a problem, and who is first at which size and number of instants.
+
+The map is of the time of LATIN, as it comes, over that of the incremental solver.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import math
 import statistics
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.definitions import SettingError, about
-from solver.latin import Ending
+from solver.latin import Ending, solve
 from solver.latin.run_cost import run_cost
+from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import distance_to
+from solver.refusal import RefusedError
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.chart import Map, PanelAxis, Runs
-from solver.study.speed.error_against_time import forms_of
-from solver.study.speed.timed import by_increments, by_latin, incremental, latin
+from solver.study.exponent import Exponent, exponent_of
+from solver.study.speed.error_against_time import (
+    INCREMENTAL,
+    by_increments,
+    by_latin,
+    forms_of,
+    incremental,
+    latin,
+    nothing_collected,
+)
 
+MEASURED = "LATIN multiscale", "LATIN auto k, nested, Anderson", "LATIN auto k, Anderson"
+GOAL = 0.01
+"""Error of the friction force to which iterations are counted."""
+LONG: dict[str, Any] = {"accuracy": 1e-3, "max_iterations": 300}
+"""So that the friction force comes as near as that in all runs that can."""
 FACTORS = (0.5, 1.0, 2.0)
 """On the sizes and on the instants of the settings."""
-LARGE = (0.5, 1.0, 2.0, 4.0, 8.0)
+LARGE = (*FACTORS, 4.0, 8.0)
 """On the sizes, where minutes do not matter."""
 LONGEST, LONGEST_OF_LARGE = 10.0, 600.0
 """Seconds from which, by estimate, a point is left out."""
@@ -32,13 +53,84 @@ REPEATS = 3
 SLOW = 1.0
 """Seconds from which one run is enough."""
 FORM = "LATIN fast"
-MAP = "Who is first where"
-TIMES = "LATIN / incremental solver"
+
+
+@dataclass(frozen=True)
+class Size:
+    """One size of one method.
+
+    Attributes
+    ----------
+    seconds
+        Of an iteration (its median over the run), or of the whole incremental solution.
+    iterations, total
+        Iterations and seconds, set-up included, to 1 % of friction force error; None where 300
+        do not suffice, and iterations None for the incremental solver.
+    """
+
+    size: int
+    seconds: float
+    iterations: int | None
+    total: float | None
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A method's sizes along one setting."""
+
+    setting: str
+    method: str
+    sizes: tuple[Size, ...]
+
+    @property
+    def exponent(self) -> Exponent | None:
+        """With which the seconds grow with the size; None below two sizes."""
+        return exponent_of([one.size for one in self.sizes], [one.seconds for one in self.sizes])
+
+
+def growth(settings: Settings) -> list[Growth]:
+    """Measure all sizes; those that a scene cannot have are left out."""
+    methods = {INCREMENTAL: settings}
+    methods |= {name: form for name, form in forms_of(settings).items() if name in MEASURED}
+    curves = []
+    for setting, numbers in entry_of(settings).sizes.items():
+        for method, form in methods.items():
+            measure = _incremental_size if method == INCREMENTAL else _latin_size
+            sizes = []
+            for number in numbers:
+                with contextlib.suppress(RefusedError):
+                    sizes.append(measure(form.replace(**{setting: number}), number))
+            if sizes:
+                curves.append(Growth(setting, method, tuple(sizes)))
+    return curves
+
+
+def _latin_size(form: Settings, number: int) -> Size:
+    """Measure a form of LATIN; the reference that its errors need is not billed."""
+    form = form.replace(**LONG)
+    problem = discretise(form)
+    distance = distance_to(reference_of(problem), problem)
+    with nothing_collected():
+        start = time.perf_counter()
+        problem = discretise(form)
+        spent = time.perf_counter() - start
+        records = solve(problem, method_of(form), distance=distance, spent=spent).records
+    seconds = [record.seconds for record in records]
+    each = float(np.median(np.diff(seconds))) if len(seconds) > 1 else seconds[0]
+    near = (one for one in records if one.error_force <= GOAL)
+    first = next(near, None)
+    return Size(number, each, *((first.iteration, first.seconds) if first else (None, None)))
+
+
+def _incremental_size(settings: Settings, number: int) -> Size:
+    """Measure the incremental solver, which has no iterations to count."""
+    seconds = statistics.median(by_increments(settings, time.perf_counter) for _ in range(REPEATS))
+    return Size(number, seconds, None, seconds)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One size.
+    """Both solvers at one size.
 
     Attributes
     ----------
@@ -64,7 +156,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Crossover:
-    """All sizes of a scene.
+    """Comparisons at all sizes of a scene.
 
     Attributes
     ----------
@@ -92,10 +184,17 @@ class Crossover:
     @property
     def ratios(self) -> Array:
         """Time of LATIN over that of the incremental solver, (instants, sizes); NaN for none."""
-        ratios = np.full((len(self.instants), len(self.sizes)), np.nan)
-        for one in self.comparisons:
-            ratios[self.instants.index(one.instants), self.sizes.index(one.size)] = one.ratio
-        return ratios
+        ratios = {(one.instants, one.size): one.ratio for one in self.comparisons}
+        rows = [[ratios.get((at, size), math.nan) for size in self.sizes] for at in self.instants]
+        return np.array(rows)
+
+    def message(self, one: Comparison) -> str:
+        """What one of the comparisons came to, in a sentence."""
+        where = f"{self.title} {one.size}, {one.instants} instants"
+        if one.message:
+            return f"{where}: {one.message}"
+        times = f"LATIN {1e3 * one.latin:.3g} ms, incremental solver {1e3 * one.incremental:.3g} ms"
+        return f"{where}: {one.ratio:.2g} ({times})"
 
 
 def crossover(settings: Settings, *, large: bool = False) -> Crossover:
@@ -150,10 +249,7 @@ def _compare(
 def equal_at(sizes: Sequence[float], ratios: Sequence[float]) -> float | None:
     """Size from which LATIN is ahead, between two of them by powers; None for nowhere.
 
-    Parameters
-    ----------
-    sizes, ratios
-        Ascending, and the time of LATIN over that of the other; NaN where it is not known.
+    Sizes ascend; the ratio of the time of LATIN over that of the other is NaN where none is known.
     """
     pairs = zip(sizes, ratios, strict=True)
     known = [(size, ratio) for size, ratio in pairs if math.isfinite(ratio)]
@@ -162,62 +258,3 @@ def equal_at(sizes: Sequence[float], ratios: Sequence[float]) -> float | None:
             share = math.log(above) / math.log(above / below)
             return float(before * (after / before) ** share)
     return None
-
-
-def crossover_map(measured: Crossover) -> Map:
-    """Draw the ratio of times over size and instants, with the line where both take as long."""
-    comparisons = measured.comparisons
-    ratios = np.array([one.ratio for one in comparisons])
-    runs = Runs(
-        np.arange(len(comparisons)),
-        np.array([float(one.size) for one in comparisons]),
-        np.array([float(one.instants) for one in comparisons]),
-        ratios,
-        np.ones(len(comparisons), dtype=int),
-        np.isfinite(ratios),
-        [_message(measured, one) for one in comparisons],
-    )
-    return Map(
-        f"Time of {TIMES}",
-        PanelAxis(measured.title, logarithmic=True, whole=True),
-        PanelAxis("Instants", logarithmic=True, whole=True),
-        np.array(measured.sizes, dtype=float),
-        np.array(measured.instants, dtype=float),
-        PanelAxis(TIMES, logarithmic=True),
-        measured.ratios,
-        runs,
-        level=1.0,
-    )
-
-
-def _message(measured: Crossover, one: Comparison) -> str:
-    where = f"{measured.title} {one.size}, {one.instants} instants"
-    if one.message:
-        return f"{where}: {one.message}"
-    times = f"LATIN {1e3 * one.latin:.3g} ms, incremental solver {1e3 * one.incremental:.3g} ms"
-    return f"{where}: {one.ratio:.2g} ({times})"
-
-
-def ratio_table(measured: Crossover) -> list[list[str]]:
-    """The ratios, a row for each number of instants."""
-    head = [TIMES, *(f"{measured.setting} {size}" for size in measured.sizes), "equal at"]
-    rows = [head]
-    for instants, ratios in zip(measured.instants, measured.ratios, strict=True):
-        even = equal_at(measured.sizes, ratios)
-        cells = ("-" if np.isnan(ratio) else f"{ratio:.2g}" for ratio in ratios)
-        rows.append([f"{instants} instants", *cells, "-" if even is None else f"{even:.2g}"])
-    return rows
-
-
-def notes(measured: Crossover) -> list[str]:
-    """What the map shows, and what it leaves out, in sentences."""
-    ratios = measured.ratios[np.isfinite(measured.ratios)]
-    ahead, everything = int((ratios < 1.0).sum()), ratios.size
-    grows = " and ".join([measured.title.lower(), *(other.lower() for other in measured.others)])
-    lines = [
-        f"LATIN is ahead (below 1) at {ahead} of {everything} sizes. From settings to a certified "
-        "or accurate end, in seconds of the processor, medians of up to three runs in turns.",
-    ]
-    if measured.others:
-        lines.append(f"What grows along the axis: {grows}.")
-    return [*lines, *(_message(measured, one) for one in measured.comparisons if one.message)]
