@@ -12,7 +12,7 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.prepared import print_tables
-from solver.study.figures.figure_report import paper_figures, write_figures
+from solver.study.figures import paper_figures, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.case import rows_of
