@@ -11,10 +11,10 @@ import pytest
 from app.views.catalogue import CARDS
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.lessons.checking import CheckedClaim, Said, check
-from solver.lessons.command import line
+from solver.lessons.checking import CheckedClaim, CheckedEnding, check
 from solver.lessons.lesson import Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
+from solver.run_commands import claim_line
 from solver.scenes import discretise
 
 FOLDER = Path(__file__).resolve().parents[1] / "app" / "lessons"
@@ -186,7 +186,7 @@ each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
 
 
 @functools.cache
-def outcomes(name: str) -> list[CheckedClaim | Said]:
+def outcomes(name: str) -> list[CheckedClaim | CheckedEnding]:
     """Give all of a lesson's at once, because they share runs."""
     return list(check(LESSONS[name]))
 
@@ -194,7 +194,7 @@ def outcomes(name: str) -> list[CheckedClaim | Said]:
 @pytest.mark.parametrize(("name", "number"), CHECKPOINTS)
 def test_what_a_lesson_claims_is_measured(name: str, number: int) -> None:
     found = outcomes(name)[number]
-    assert found.holds, line(found)
+    assert found.holds, claim_line(found)
 
 
 @each

@@ -1,4 +1,4 @@
-"""Testing what a lesson claims, by runs of the engine."""
+"""What a lesson claims, tested by runs of the engine."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ class CheckedClaim:
 
 
 @dataclass(frozen=True, eq=False)
-class Said:
-    """A verdict, and what the status of the run says."""
+class CheckedEnding:
+    """A claim about how a run ends, and what the status of the run says."""
 
     checkpoint: EndingClaim
-    words: str
+    message: str
 
     @property
     def holds(self) -> bool:
         """Whether the claim holds."""
-        return self.checkpoint.says in self.words
+        return self.checkpoint.says in self.message
 
 
-def check(lesson: Lesson) -> Iterator[CheckedClaim | Said]:
+def check(lesson: Lesson) -> Iterator[CheckedClaim | CheckedEnding]:
     """Measure what a lesson claims, in order; checkpoints of equal settings share a run."""
     wanted: defaultdict[str, set[str | None]] = defaultdict(set)
     for one in lesson.checkpoints:
@@ -55,16 +55,15 @@ def check(lesson: Lesson) -> Iterator[CheckedClaim | Said]:
     for one in lesson.checkpoints:
         key = dump(one.settings)
         if key not in runs:
-            every = wanted[key]
+            kinds = wanted[key]
             runs[key] = finished_run(
-                one.settings, errors="errors" in every, indicators="indicators" in every
+                one.settings, errors="errors" in kinds, indicators="indicators" in kinds
             )
-        yield _outcome(one, runs[key], lesson.instant)
-
-
-def _outcome(one: Claim | EndingClaim, run: FinishedRun, instant: float) -> CheckedClaim | Said:
-    if isinstance(one, EndingClaim):
-        return Said(one, run.solution.status.advice)
-    taken = one.reading.quantity.at_instant
-    place = round(instant * (run.problem.n_instants - 1))
-    return CheckedClaim(one, one.reading(run), None if taken is None else taken(run, place))
+        run = runs[key]
+        if isinstance(one, EndingClaim):
+            yield CheckedEnding(one, run.solution.status.advice)
+            continue
+        at_instant = one.reading.quantity.at_instant
+        place = round(lesson.instant * (run.problem.n_instants - 1))
+        seen = None if at_instant is None else at_instant(run, place)
+        yield CheckedClaim(one, one.reading(run), seen)

@@ -129,7 +129,7 @@ def _incremental_size(settings: Settings, number: int) -> Size:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class TimesAtSize:
     """Both solvers at one size.
 
     Attributes
@@ -169,7 +169,7 @@ class Crossover:
     setting: str
     title: str
     others: tuple[str, ...]
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[TimesAtSize, ...]
 
     @property
     def sizes(self) -> list[int]:
@@ -188,7 +188,7 @@ class Crossover:
         rows = [[ratios.get((at, size), math.nan) for size in self.sizes] for at in self.instants]
         return np.array(rows)
 
-    def message(self, one: Comparison) -> str:
+    def message(self, one: TimesAtSize) -> str:
         """What one of the comparisons came to, in a sentence."""
         where = f"{self.title} {one.size}, {one.instants} instants"
         if one.message:
@@ -208,7 +208,7 @@ def crossover(settings: Settings, *, large: bool = False) -> Crossover:
         Whether to go on to sizes that take minutes.
     """
     names = entry_of(settings).grows
-    comparisons: dict[tuple[int, int], Comparison] = {}
+    comparisons: dict[tuple[int, int], TimesAtSize] = {}
     for later, size in product(FACTORS, LARGE if large else FACTORS):
         grown = {name: max(1, round(size * getattr(settings, name))) for name in names}
         instants = round(later * (settings.instants - 1)) + 1
@@ -224,26 +224,26 @@ def crossover(settings: Settings, *, large: bool = False) -> Crossover:
 
 def _compare(
     settings: Settings, changes: dict[str, int], at: tuple[int, int], longest: float
-) -> Comparison:
+) -> TimesAtSize:
     try:
         form = forms_of(settings.replace(**changes))[FORM]
     except SettingError:
-        return Comparison(*at, message="there is no such size")
+        return TimesAtSize(*at, message="there is no such size")
     most = form.max_iterations
     cost = run_cost(discretise(form), method_of(form), most, with_reference=True)
     if cost.seconds > longest:
-        return Comparison(*at, message=f"left out: it would take about {cost}")
+        return TimesAtSize(*at, message=f"left out: it would take about {cost}")
     try:
         if not incremental(form).converged.all():
-            return Comparison(*at, message="the incremental solver finds no solution")
+            return TimesAtSize(*at, message="the incremental solver finds no solution")
     except NoReferenceError as refusal:
-        return Comparison(*at, message=str(refusal))
+        return TimesAtSize(*at, message=str(refusal))
     ending = latin(form).status.ending
     seconds = [(by_latin(form), by_increments(form))]
     while len(seconds) < REPEATS and sum(seconds[0]) < SLOW:
         seconds.append((by_latin(form), by_increments(form)))
     mine, others = map(statistics.median, zip(*seconds, strict=True))
-    return Comparison(*at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}")
+    return TimesAtSize(*at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}")
 
 
 def equal_at(sizes: Sequence[float], ratios: Sequence[float]) -> float | None:

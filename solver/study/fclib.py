@@ -1,4 +1,4 @@
-"""One instant of a run as a local contact problem in the public FCLIB format, and its command.
+"""One instant of a run as a local contact problem in the public FCLIB format.
 
 FCLIB is a collection of frictional contact problems, and the layout of their HDF5 files, which
 siconos among others reads: V. Acary, M. Brémond, T. Koziara, F. Pérignon, "FCLIB: a collection of
@@ -17,12 +17,9 @@ slipped before the instant is in q.
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
@@ -32,16 +29,12 @@ from scipy.sparse.linalg import SuperLU
 from solver.arrays import Array, Indices
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
-from solver.disk import check_place, whole_file, why
-from solver.files import settings_from_command
-from solver.latin import Ending, Iterate, solve
-from solver.prepared import prepared
+from solver.latin import Iterate
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.condensation import NotHeldError, factored
 from solver.reference.glued import jumps
 from solver.reference.states import rules_of
 from solver.refusal import RefusedError
-from solver.scenes.method import method_of
 
 SPACEDIM = 2
 MOST = 4000
@@ -66,8 +59,12 @@ class Contacts:
         J at these places, shape (2 n_points, n_dofs).
     compliance
         W, shape (2 n_points, 2 n_points).
+    free
+        Where displacements are not prescribed, shape (n_free,).
+    stiffness
+        Rows of the stiffness without contacts there, shape (n_free, n_dofs).
     factor
-        Of the stiffness without contacts, where displacements are not prescribed.
+        Of its columns there.
     """
 
     problem: Problem
@@ -75,6 +72,8 @@ class Contacts:
     friction: Array
     jumps: sparse.csr_array
     compliance: Array
+    free: Indices
+    stiffness: sparse.csc_array
     factor: SuperLU
 
 
@@ -120,7 +119,9 @@ def contacts_of(problem: Problem) -> Contacts:
         that changes with slip, bodies that contact alone holds; or if it is too large.
     """
     places, friction = _points(problem)
-    own, (free, stiffness) = jumps(problem)[places], _without_contacts(problem)
+    own = jumps(problem)[places]
+    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
+    stiffness = sparse.csc_array(assembled_stiffness(problem)[free])
     try:
         factor = factored(stiffness[:, free])
     except NotHeldError:
@@ -128,7 +129,8 @@ def contacts_of(problem: Problem) -> Contacts:
         raise _no_problem("contact alone holds one of its bodies", remedy) from None
     moving = own[:, free]
     whole = moving @ factor.solve(moving.T.toarray())
-    return Contacts(problem, places, friction, own, 0.5 * (whole + whole.T), factor)
+    compliance = 0.5 * (whole + whole.T)
+    return Contacts(problem, places, friction, own, compliance, free, stiffness, factor)
 
 
 def local_problem(
@@ -227,13 +229,12 @@ def _points(problem: Problem) -> tuple[Indices, Array]:
         )
     pairs = np.concatenate(
         [
-            np.stack([np.arange(one.start, one.stop) for one in places], axis=1)
+            np.stack([np.arange(part.start, part.stop) for part in places], axis=1)
             for places in problem.contact_places.values()
         ]
     )
-    fixed, _ = problem.prescribed
     free = np.ones(problem.n_dofs)
-    free[fixed] = 0.0
+    free[problem.prescribed[0]] = 0.0
     pairs = pairs[(abs(own) @ free > 0.0)[pairs[:, 0]]]
     return pairs.ravel(), rules.friction[pairs[:, 1]]
 
@@ -242,67 +243,9 @@ def _no_problem(reason: str, remedy: str) -> RefusedError:
     return RefusedError("FCLIB", reason, CAN, remedy)
 
 
-def _without_contacts(problem: Problem) -> tuple[Indices, sparse.csc_array]:
-    """What no displacement is prescribed of, and its rows of the stiffness."""
-    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
-    return free, sparse.csc_array(assembled_stiffness(problem)[free])
-
-
 def _free(contacts: Contacts, instant: int) -> Array:
     """The jumps at an instant without contact forces, shape (2 n_points,), scaled."""
-    problem, own = contacts.problem, contacts.jumps
-    free, stiffness = _without_contacts(problem)
+    problem, own, free = contacts.problem, contacts.jumps, contacts.free
     fixed, prescribed = problem.prescribed[0], problem.prescribed[1][:, instant]
-    load = external_force(problem)[free, instant] - stiffness[:, fixed] @ prescribed
+    load = external_force(problem)[free, instant] - contacts.stiffness[:, fixed] @ prescribed
     return np.asarray(own[:, free] @ contacts.factor.solve(load) + own[:, fixed] @ prescribed)
-
-
-def add_fclib(commands: Any) -> None:
-    """Add the command."""
-    parser = commands.add_parser("fclib", help="one instant as a contact problem for others")
-    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
-    parser.add_argument(
-        "--out", type=Path, required=True, metavar="FILE.hdf5", help="write it here"
-    )
-    parser.add_argument(
-        "--instant", type=float, metavar="SECONDS", help="the nearest one; the last without"
-    )
-    parser.set_defaults(command=_fclib)
-
-
-def _fclib(chosen: argparse.Namespace) -> int:
-    settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    if not can_write():
-        remedy = "install it: pip install 'slipfront[peers]'"
-        raise RefusedError("FCLIB", "a file in HDF5", "where h5py is installed", remedy)
-    try:
-        check_place(chosen.out)
-    except OSError as problem_there:
-        raise _no_place(chosen.out, problem_there) from None
-    problem = prepared(settings, chosen.changes, tables)
-    instants = problem.instants
-    time = float(instants[-1]) if chosen.instant is None else chosen.instant
-    contacts, instant = contacts_of(problem), instant_at(time, instants)
-    solution = solve(problem, method_of(settings))
-    is_sure = solution.is_certified
-    local = local_problem(contacts, solution.iterate, instant, settings.scene, certified=is_sure)
-    try:
-        with whole_file(chosen.out, "wb") as file:
-            write_fclib(file, local)
-    except OSError as problem_there:
-        raise _no_place(chosen.out, problem_there) from None
-    if not is_sure:
-        print(
-            "slipfront: the run is not certified: where contacts stood before is what it has "
-            "found, and no solution stands in the file",
-            file=sys.stderr,
-        )
-    print(f"t = {instants[instant]:.6g} s, {len(local.friction)} points: {chosen.out}")
-    return 0 if solution.status.ending is Ending.CONVERGED else 1
-
-
-def _no_place(path: Path, problem: OSError) -> SettingError:
-    return SettingError(
-        "--out", str(path), "a file in an existing folder that can be written", why(problem)
-    )
