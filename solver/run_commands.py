@@ -197,5 +197,5 @@ def _fclib(chosen: argparse.Namespace) -> int:
             "found, and no solution stands in the file",
             file=sys.stderr,
         )
-    print(f"t = {instants[instant]:.6g} s, {len(local.friction)} points: {chosen.out}")
+    print(f"t = {instants[instant]:.6g} s, {len(contacts.friction)} points: {chosen.out}")
     return 0 if solution.status.ending is Ending.CONVERGED else 1

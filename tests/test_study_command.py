@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 import os
 import re
 import subprocess
@@ -28,7 +27,7 @@ from solver.study.speed.error_against_time import (
     Study,
     forms_of,
 )
-from solver.study.speed.sizes import FACTORS, crossover, equal_at, growth
+from solver.study.speed.sizes import FACTORS, crossover, growth
 from solver.study.speed.study_report import notes, winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
@@ -195,10 +194,3 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
     assert any("Wires 4" in line and "left out" in line for line in notes(found))
-
-
-def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
-    assert equal_at([4, 16, 64], [4.0, 2.0, 0.5]) == pytest.approx(32.0)
-    assert equal_at([4, 16, 64], [4.0, math.nan, 0.25]) == pytest.approx(16.0)
-    assert equal_at([4, 16], [0.5, 0.4]) is None
-    assert equal_at([4, 16], [4.0, 2.0]) is None

@@ -18,9 +18,10 @@ slipped before the instant is in q.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import IO, Any
+from typing import IO
 
 import numpy as np
 from scipy import sparse
@@ -77,33 +78,6 @@ class Contacts:
     factor: SuperLU
 
 
-@dataclass(frozen=True, eq=False)
-class LocalProblem:
-    """A local contact problem in the plane, in SI.
-
-    Attributes
-    ----------
-    compliance
-        W, shape (2 n_points, 2 n_points), m/N.
-    free
-        q, shape (2 n_points,), m.
-    friction
-        Coefficient mu of every point, shape (n_points,).
-    move, force
-        u and r as the run has them, shape (2 n_points,), m and N; None unless it is certified.
-    title, description
-        What it is, in words.
-    """
-
-    compliance: Array
-    free: Array
-    friction: Array
-    move: Array | None
-    force: Array | None
-    title: str
-    description: str
-
-
 def can_write() -> bool:
     """Whether there is what writes HDF5: the extra `peers`."""
     return find_spec("h5py") is not None
@@ -135,7 +109,7 @@ def contacts_of(problem: Problem) -> Contacts:
 
 def local_problem(
     contacts: Contacts, iterate: Iterate, instant: int, scene: str, *, certified: bool
-) -> LocalProblem:
+) -> dict[str, Array | bytes | int]:
     """The contact problem of one instant, from where the instant before has left the contacts.
 
     Parameters
@@ -150,27 +124,41 @@ def local_problem(
         What the structure is called.
     certified
         Whether its forces are the solution, which then stands beside the problem.
+
+    Returns
+    -------
+    What a file holds, by name as `src/fclib.h` lays it out, SI: W by columns (nz = -1), m/N.
     """
     problem, places, own = contacts.problem, contacts.places, contacts.jumps
-    size, force_size = problem.scales.displacement, problem.scales.force
-    compliance = contacts.compliance * (size / force_size)
+    size = problem.scales.displacement
+    compliance = contacts.compliance * (size / problem.scales.force)
     free = _free(contacts, instant) * size
     free[::2] += rules_of(problem).gap[places[::2]] * size
     if instant:
         free[1::2] -= (own @ iterate.displacement[:, instant - 1])[1::2]
-    force = iterate.contact_force[places, instant]
-    return LocalProblem(
-        compliance=compliance,
-        free=free,
-        friction=contacts.friction,
-        move=compliance @ force + free if certified else None,
-        force=force if certified else None,
-        title=f"Slipfront, {scene}, t = {float(problem.instants[instant]):.6g} s",
-        description=(
-            f"Instant {instant + 1} of {problem.n_instants} of a quasi-static run. u_N: opening at "
-            "its end, u_T: slip in it (m); r: nodal forces at its end (N), for a metre of thickness"
-        ),
+    matrix = sparse.csc_array(compliance)
+    title = f"Slipfront, {scene}, t = {float(problem.instants[instant]):.6g} s"
+    description = (
+        f"Instant {instant + 1} of {problem.n_instants} of a quasi-static run. u_N: opening at its "
+        "end, u_T: slip in it (m); r: nodal forces at its end (N), for a metre of thickness"
     )
+    values = {
+        "spacedim": SPACEDIM,
+        **{"W/nzmax": matrix.nnz, "W/m": len(free), "W/n": len(free), "W/nz": -1},
+        "W/p": matrix.indptr.astype(np.int32),
+        "W/i": matrix.indices.astype(np.int32),
+        "W/x": matrix.data,
+        "vectors/q": free,
+        "vectors/mu": contacts.friction,
+        # As C has it, with a zero at its end.
+        "info/title": title.encode("ascii", "replace") + b"\0",
+        "info/description": description.encode("ascii", "replace") + b"\0",
+    }
+    local = {f"fclib_local/{name}": value for name, value in values.items()}
+    if certified:
+        force = iterate.contact_force[places, instant]
+        local |= {"solution/u": compliance @ force + free, "solution/r": force}
+    return local
 
 
 def instant_at(time: float, instants: Array) -> int:
@@ -187,25 +175,16 @@ def instant_at(time: float, instants: Array) -> int:
     return int(np.abs(instants - time).argmin())
 
 
-def write_fclib(file: IO[bytes], local: LocalProblem) -> None:
-    """Write HDF5 as `src/fclib.h` lays it out: numbers as arrays of one, W by columns (nz = -1)."""
+def write_fclib(file: IO[bytes], local: Mapping[str, Array | bytes | int]) -> None:
+    """Write a local problem as HDF5, whole numbers as arrays of one."""
     import h5py  # an extra
 
-    matrix = sparse.csc_array(local.compliance)
-    sizes = {"nzmax": matrix.nnz, "m": matrix.shape[0], "n": matrix.shape[1], "nz": -1}
-    arrays: dict[str, Any] = {"spacedim": np.array([SPACEDIM], np.int32)}
-    arrays |= {f"W/{name}": np.array([size], np.int32) for name, size in sizes.items()}
-    arrays |= {"W/p": matrix.indptr.astype(np.int32), "W/i": matrix.indices.astype(np.int32)}
-    arrays |= {"W/x": matrix.data, "vectors/q": local.free, "vectors/mu": local.friction}
-    for name in ("title", "description"):
-        text = getattr(local, name).encode("ascii", "replace")
-        # As C has it, with a zero at its end.
-        arrays[f"info/{name}"] = np.array(text, dtype=f"S{len(text) + 1}")
     with h5py.File(file, "w") as whole:
-        for name, value in arrays.items():
-            whole[f"fclib_local/{name}"] = value
-        if local.move is not None and local.force is not None:
-            whole["solution/u"], whole["solution/r"] = local.move, local.force
+        for name, value in local.items():
+            if isinstance(value, bytes):
+                whole[name] = np.array(value, dtype=f"S{len(value)}")
+            else:
+                whole[name] = np.array([value], np.int32) if isinstance(value, int) else value
 
 
 def _points(problem: Problem) -> tuple[Indices, Array]:

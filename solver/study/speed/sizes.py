@@ -9,9 +9,8 @@ import contextlib
 import math
 import statistics
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -244,17 +243,3 @@ def _compare(
         seconds.append((by_latin(form), by_increments(form)))
     mine, others = map(statistics.median, zip(*seconds, strict=True))
     return TimesAtSize(*at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}")
-
-
-def equal_at(sizes: Sequence[float], ratios: Sequence[float]) -> float | None:
-    """Size from which LATIN is ahead, between two of them by powers; None for nowhere.
-
-    Sizes ascend; the ratio of the time of LATIN over that of the other is NaN where none is known.
-    """
-    pairs = zip(sizes, ratios, strict=True)
-    known = [(size, ratio) for size, ratio in pairs if math.isfinite(ratio)]
-    for (before, above), (after, below) in pairwise(known):
-        if above >= 1.0 > below:
-            share = math.log(above) / math.log(above / below)
-            return float(before * (after / before) ** share)
-    return None

@@ -19,7 +19,7 @@ from solver.study.speed.error_against_time import (
     ErrorCurve,
     Study,
 )
-from solver.study.speed.sizes import MEASURED, Crossover, Growth, equal_at
+from solver.study.speed.sizes import MEASURED, Crossover, Growth
 
 Row = list[str]
 WINNERS_NOTE = (
@@ -116,11 +116,10 @@ def growth_table(growths: Sequence[Growth]) -> list[Row]:
 
 def ratio_table(measured: Crossover) -> list[Row]:
     """Time of LATIN over that of the other, a row for each number of instants."""
-    rows = [[TIMES, *(f"{measured.setting} {size}" for size in measured.sizes), "equal at"]]
+    rows = [[TIMES, *(f"{measured.setting} {size}" for size in measured.sizes)]]
     for instants, ratios in zip(measured.instants, measured.ratios, strict=True):
-        even = equal_at(measured.sizes, ratios)
         cells = ("-" if np.isnan(ratio) else f"{ratio:.2g}" for ratio in ratios)
-        rows.append([f"{instants} instants", *cells, "-" if even is None else f"{even:.2g}"])
+        rows.append([f"{instants} instants", *cells])
     return rows
 
 
