@@ -2,32 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from typing import Literal
 
 from solver.settings import Settings
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities.quantities import Reading
 
 SUBJECTS = "mechanics", "method"
-PLACEHOLDER = re.compile(r"\{(.*?)\}")
-
-
-@dataclass(frozen=True)
-class Control:
-    """A place in a sentence where the widget of a setting stands."""
-
-    setting: str
-
-
-@dataclass(frozen=True)
-class Value:
-    """A place in a sentence where a quantity of the present run stands."""
-
-    reading: Reading
-
-
-Piece = str | Control | Value
 
 
 @dataclass(frozen=True)
@@ -47,7 +27,7 @@ class Expected:
     words: str
 
     def holds(self, value: float) -> bool:
-        """Tell whether a measured value is as expected; NaN never is."""
+        """Whether a measured value is as expected; NaN never is."""
         return self.low <= value <= self.high
 
 
@@ -135,7 +115,7 @@ class Lesson:
     explanation: tuple[str, ...]
     checkpoints: tuple[Claim | EndingClaim, ...]
     instant: float
-    interface: str
+    interface: str = ""
     draw: str = ""
     beside: tuple[str, ...] = ()
     until: float = 1.0
@@ -164,23 +144,3 @@ class Lesson:
         """What that curve shows, in words."""
         claims = (one for one in self.checkpoints if isinstance(one, Claim))
         return next((one.reading.title for one in claims), "")
-
-
-def kind_of_place(place: str) -> tuple[Literal["control", "value", ""], str]:
-    """Split what stands between braces; an empty kind is none that there is."""
-    kind, _, name = place.partition(":")
-    if kind == "control":
-        return "control", name
-    return ("value", name) if kind == "value" else ("", name)
-
-
-def pieces(paragraph: str) -> list[Piece]:
-    """Split a paragraph at its placeholders; what is between them is Markdown."""
-    found: list[Piece] = []
-    for number, part in enumerate(PLACEHOLDER.split(paragraph)):
-        if number % 2 == 0:
-            found.extend([part] if part else [])
-        else:
-            kind, name = kind_of_place(part)
-            found.append(Control(name) if kind == "control" else Value(reading(name)))
-    return found
