@@ -97,7 +97,7 @@ def _mesh(chosen: argparse.Namespace) -> int:
 
 
 def _value(settings: Settings, asked: Reading) -> float:
-    """Take and print a quantity of a run; before it what that will take, if it is much."""
+    """Quantity of a run, printed; before it what that will take, if it is much."""
     most, size = settings.max_iterations, size_of(settings)
     cost = run_cost(discretise(settings), method_of(settings), most, with_reference=False)
     if cost.is_large:

@@ -120,7 +120,7 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
 
 
 def _columns(table: Table) -> tuple[str, list[TableColumn]]:
-    """Choose the columns of x, t, and the quantity that is named."""
+    """The quantity that is named, and the columns of x, t, and of it."""
     if not any(column.quantities[0] for column in table.columns):
         raise table.refuse("name its columns in the first line, as in x,t,friction force")
     kinds = "position", "time", FRICTION, DISPLACEMENT

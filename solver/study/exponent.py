@@ -29,7 +29,7 @@ class Exponent:
     margin: float
 
     def __str__(self) -> str:
-        """Write it with its margin, where it has one."""
+        """Value with its margin, where it has one."""
         known = f"{self.value:.2f}"
         return known if math.isnan(self.margin) else f"{known} ± {self.margin:.2f}"
 

@@ -113,7 +113,7 @@ def instants_around(settings: Settings) -> tuple[list[Settings], int]:
 
 
 def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[list[Settings], int]:
-    """Multiply counts and add to them; give settings, and the place of those as they are."""
+    """Settings with multiples of counts, more added, and the place of those as they are."""
 
     def refined(factor: float) -> Settings:
         sizes = {name: factor * count + more for name, count in counts.items()}
@@ -128,12 +128,12 @@ def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[li
 
 
 def decides(settings: Settings, asked: Reading) -> bool:
-    """Tell whether a mesh decides a quantity: not how a run went, but what it came to."""
+    """Whether a mesh decides a quantity: not how a run went, but what it came to."""
     return not asked.quantity.is_of_course and asked.quantity.applies(settings)
 
 
 def value_on(settings: Settings, asked: Reading) -> float:
-    """Take a quantity of the solution on a mesh; NaN where no run certifies one."""
+    """A quantity of the solution on a mesh; NaN where no run certifies one."""
     run = finished_run(settings.replace(finish="at-once"), errors=False, indicators=False)
     return asked(run) if run.solution.is_certified else math.nan
 
@@ -177,7 +177,7 @@ def answer(found: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
 
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:
-    """Compare what both leave of the error, in a sentence; empty where one tells nothing."""
+    """What both leave of the error, in a sentence; empty where one of them tells nothing."""
     if not (elements.is_told and instants.is_told):
         return ""
     if elements.deviation == instants.deviation == 0.0:

@@ -1,7 +1,7 @@
 """A report: sections of words, tables and charts, and the one HTML page that a command makes of it.
 
-Whoever shows a report takes its words and tables as they are, and draws its charts in its own way.
-For pages they are drawn by an entry point of the group `slipfront.renderers`: the engine has none.
+Words and tables are HTML. Charts are drawn by an entry point of the group `slipfront.renderers`, as
+the engine has none.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pi
 
 @dataclass(frozen=True, eq=False)
 class PlotSection:
-    """Charts side by side, and words for those who cannot see them."""
+    """Charts side by side, and a heading for those who cannot see them."""
 
     heading: str
     charts: Sequence[Chart]
@@ -32,7 +32,7 @@ class PlotSection:
 Section = str | PlotSection
 """Words and tables are HTML."""
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
-"""Gives what all charts of a page need, once, and each section (HTML that loads nothing)."""
+"""From sections, what all charts of a page need, once, and each of them as HTML of its own."""
 PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
@@ -70,19 +70,19 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
     OSError
         When the file cannot be written.
     """
-    plots = [one for one in report if isinstance(one, PlotSection)]
+    plots = [part for part in report if isinstance(part, PlotSection)]
     render = renderer() if plots else None
     head, drawn = render(plots) if render else ("", [""] * len(plots))
     note = NO_CHARTS if plots and render is None else ""
     places = iter(drawn)
-    parts = [one if isinstance(one, str) else next(places) for one in report]
+    parts = [part if isinstance(part, str) else next(places) for part in report]
     body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
     write(file, PAGE.format(title=escape(title), head=head, body=body))
     return note
 
 
 def renderer() -> Renderer | None:
-    """Find who draws charts, if anybody is installed."""
+    """What draws charts, if anything that does is installed."""
     for found in entry_points(group=GROUP):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             render: Renderer = found.load()

@@ -8,9 +8,8 @@ from itertools import groupby
 from pathlib import Path
 
 from solver.study.page import table, write_csv, write_page
+from solver.study.proof.bodies import body_cases
 from solver.study.proof.case import CLOSED_FORMS, INCREMENTAL, LATIN, PUBLISHED, KnownCase, ProofRow
-from solver.study.proof.plane import plane_cases
-from solver.study.proof.published import published_cases
 from solver.study.proof.rods import rod_cases
 
 HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<28} {'deviation':>9} {'allowed':>8}"
@@ -34,7 +33,7 @@ HOLDS, FAILS = "holds", "FAILS"
 
 def cases() -> list[KnownCase]:
     """All cases, none of them solved yet."""
-    return [*rod_cases(), *plane_cases(), *published_cases()]
+    return [*rod_cases(), *body_cases()]
 
 
 def line(row: ProofRow) -> str:

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
-from solver.discrete.probes import AxialForce
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
-from solver.scenes import kind_of, structure_of
+from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of
 from solver.study.quantities.finished import FinishedRun
@@ -23,9 +22,6 @@ EQUAL = 1e-6
 """Relative difference up to which two loads count as equally large."""
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
-REGAINED = 0.9
-"""Share of its tension up to which a broken wire is watched; it regains the rest at that rate. The
-element in which the rest is regained would blur the place."""
 
 
 def _opens(settings: Settings) -> bool:
@@ -273,45 +269,3 @@ def first_slip_time(run: FinishedRun, at: float | None) -> float:
 def first_slip_displacement(run: FinishedRun, at: float | None) -> float:
     """Displacement of the loop at that instant, m."""
     return _at_first_slip(run, run.displacement, at)
-
-
-def recovery_length_at(run: FinishedRun, instant: int) -> float:
-    """How far from its break a wire carries its tension again at an instant, m.
-
-    NaN without a broken wire, or without tension; infinite if it does so on neither side.
-    """
-    described = structure_of(run.settings).described()
-    if described.broken is None or not run.force[instant]:
-        return math.nan
-    wire, place = described.broken
-    axial = AxialForce(run.problem)
-    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire]
-    share = force / run.force[instant]
-    size = described.length / len(share)
-    node = round(place / size)
-    sides = share[node:], share[:node][::-1]
-    return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
-
-
-@quantity(
-    "Length over which a broken wire regains its force",
-    "m",
-    applies=lambda settings: settings.has_break,
-    at_instant=recovery_length_at,
-)
-def recovery_length(run: FinishedRun) -> float:
-    """How far from its break a wire carries its tension again, at the largest tension, m."""
-    return recovery_length_at(run, int(np.argmax(run.force)))
-
-
-def _reached(share: Array, level: float) -> float:
-    """Elements from a break to where the tension, known in their middles, reaches a share of it.
-
-    Linear between the middles, and nothing at the break; infinite if it is not reached.
-    """
-    places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
-    values = np.concatenate([[0.0], share])
-    above = int(np.argmax(values >= level))
-    if above == 0:
-        return math.inf
-    return float(np.interp(level, values[above - 1 : above + 1], places[above - 1 : above + 1]))

@@ -1,4 +1,4 @@
-"""Quantities of a load that repeats itself, and of strands of helical wires under one."""
+"""Quantities of a load that repeats itself, and of strands: of helical wires, or a broken one."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from solver.arrays import RESIDUE
+from solver.arrays import RESIDUE, Array
+from solver.discrete.probes import AxialForce
 from solver.discrete.rope.forces import stress_ranges
 from solver.discrete.rope.rope import Rope
 from solver.laws import OPEN
@@ -21,6 +22,9 @@ from solver.study.quantities.quantity import CYCLE, quantity
 
 NO_ENERGY = 1e-12
 """Share of all energy that rounding makes."""
+REGAINED = 0.9
+"""Share of its tension up to which a broken wire is watched; it regains the rest at that rate. The
+element in which the rest is regained would blur the place."""
 
 
 def has_cycles(settings: Settings) -> bool:
@@ -196,3 +200,45 @@ def wire_work(run: FinishedRun) -> float:
         float((law.by_point(work[:, after].sum(axis=1)) / law.by_point(law.weights)).max())
         for law, _, work in slips_of(run.iterate)
     )
+
+
+def recovery_length_at(run: FinishedRun, instant: int) -> float:
+    """How far from its break a wire carries its tension again at an instant, m.
+
+    NaN without a broken wire, or without tension; infinite if it does so on neither side.
+    """
+    described = structure_of(run.settings).described()
+    if described.broken is None or not run.force[instant]:
+        return math.nan
+    wire, place = described.broken
+    axial = AxialForce(run.problem)
+    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire]
+    share = force / run.force[instant]
+    size = described.length / len(share)
+    node = round(place / size)
+    sides = share[node:], share[:node][::-1]
+    return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
+
+
+@quantity(
+    "Length over which a broken wire regains its force",
+    "m",
+    applies=lambda settings: settings.has_break,
+    at_instant=recovery_length_at,
+)
+def recovery_length(run: FinishedRun) -> float:
+    """How far from its break a wire carries its tension again, at the largest tension, m."""
+    return recovery_length_at(run, int(np.argmax(run.force)))
+
+
+def _reached(share: Array, level: float) -> float:
+    """Elements from a break to where the tension, known in their middles, reaches a share of it.
+
+    Linear between the middles, and nothing at the break; infinite if it is not reached.
+    """
+    places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
+    values = np.concatenate([[0.0], share])
+    above = int(np.argmax(values >= level))
+    if above == 0:
+        return math.inf
+    return float(np.interp(level, values[above - 1 : above + 1], places[above - 1 : above + 1]))

@@ -81,7 +81,7 @@ def random_case(settings: Settings, seed: int, row: int) -> Case:
 
 
 def draw(scene: str, seed: int, row: int) -> Settings:
-    """Draw the settings of one random run; the same numbers give the same settings.
+    """Settings of one random run; the same numbers give the same settings.
 
     Parameters
     ----------
@@ -106,12 +106,12 @@ def draw(scene: str, seed: int, row: int) -> Settings:
 
 
 def log_uniform(generator: Generator, low: float, high: float) -> float:
-    """Draw a positive number, all its decades alike."""
+    """A random positive number, all its decades alike."""
     return float(np.exp(generator.uniform(math.log(low), math.log(high))))
 
 
 def _without_idle(settings: Settings) -> Settings:
-    """Take back what does nothing beside the other settings, so that a row says what matters."""
+    """Settings without what does nothing beside the others, so that a row says what matters."""
     idle = [name for name in settings.changed() if not settings.applies(name)]
     values = {name: value for name, value in settings.changed().items() if name not in idle}
     return type(settings).checked({"method": settings.method, **values})
@@ -159,7 +159,7 @@ def _often(name: str, group: str, mixed: bool) -> float:
 
 
 def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:
-    """Draw the mesh, its cuts, and as many instants as there is room for."""
+    """The mesh, its cuts, and as many instants as there is room for."""
     mesh: dict[str, Any] = {}
     while True:
         usual = BODY if "elements_up" in definitions else ROD
@@ -181,7 +181,7 @@ def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -
 def _stretch(
     across: str, values: dict[str, Any], definitions: dict[str, Parameter], generator: Generator
 ) -> None:
-    """Draw the sides of a body by the aspect of its elements, up to a hundred."""
+    """The sides of a body by the aspect of its elements, up to a hundred."""
     length = values.setdefault("length", definitions["length"].default)
     power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
     aspect = 10.0 ** generator.uniform(-power, power)
@@ -209,13 +209,13 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
 
 
 def _k_scale(generator: Generator) -> float:
-    """Draw a factor on k, every third time a foolish one."""
+    """A factor on k, every third time a foolish one."""
     decades = 3.0 if generator.random() < 0.4 else 1.0
     return float(10.0 ** generator.uniform(-decades, decades))
 
 
 def _poisson(generator: Generator) -> float:
-    """Draw Poisson's ratio, every second time near to one half."""
+    """Poisson's ratio, every second time near to one half."""
     if generator.random() < 0.5:
         return float(generator.uniform(0.0, 0.4999))
     return 0.5 - log_uniform(generator, 1e-4, 1e-1)
@@ -230,7 +230,7 @@ SPECIAL: dict[str, Callable[[Generator], float]] = {
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:
-    """Draw factors along a body, now and then zero but for a section, or with a narrow peak."""
+    """Factors along a body, now and then zero but for a section, or with a narrow peak."""
     places = np.sort(generator.uniform(0.0, 1.0, int(generator.integers(2, 7))))
     factors = 10.0 ** generator.uniform(-1.0, 1.0, len(places))
     if name != "section_profile":
@@ -240,7 +240,7 @@ def _profile(name: str, generator: Generator) -> list[list[float]]:
 
 
 def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:
-    """Draw a path over time through a few points: reversals, jumps, narrow peaks among them."""
+    """A path over time through a few points: reversals, jumps, narrow peaks among them."""
     times = np.sort(generator.uniform(0.0, duration, int(generator.integers(1, 8))))
     values = abs(size) * generator.uniform(-1.0, 1.0, len(times))
     return _with_peak(times, values, size, duration, generator)
