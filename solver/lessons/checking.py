@@ -28,8 +28,8 @@ class CheckedClaim:
     @property
     def holds(self) -> bool:
         """Whether the claim holds, and plots show it."""
-        found = [self.value] if self.seen is None else [self.value, self.seen]
-        return all(map(self.checkpoint.expected.holds, found))
+        values = [self.value] if self.seen is None else [self.value, self.seen]
+        return all(map(self.checkpoint.expected.holds, values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,22 +48,22 @@ class CheckedEnding:
 def check(lesson: Lesson) -> Iterator[CheckedClaim | CheckedEnding]:
     """Measure what a lesson claims, in order; checkpoints of equal settings share a run."""
     wanted: defaultdict[str, set[str | None]] = defaultdict(set)
-    for one in lesson.checkpoints:
-        reads = one.reading.quantity.reads if isinstance(one, Claim) else None
-        wanted[dump(one.settings)].add(reads)
+    for claim in lesson.checkpoints:
+        reads = claim.reading.quantity.reads if isinstance(claim, Claim) else None
+        wanted[dump(claim.settings)].add(reads)
     runs: dict[str, FinishedRun] = {}
-    for one in lesson.checkpoints:
-        key = dump(one.settings)
+    for claim in lesson.checkpoints:
+        key = dump(claim.settings)
         if key not in runs:
             kinds = wanted[key]
             runs[key] = finished_run(
-                one.settings, errors="errors" in kinds, indicators="indicators" in kinds
+                claim.settings, errors="errors" in kinds, indicators="indicators" in kinds
             )
         run = runs[key]
-        if isinstance(one, EndingClaim):
-            yield CheckedEnding(one, run.solution.status.advice)
+        if isinstance(claim, EndingClaim):
+            yield CheckedEnding(claim, run.solution.status.advice)
             continue
-        at_instant = one.reading.quantity.at_instant
+        at_instant = claim.reading.quantity.at_instant
         place = round(lesson.instant * (run.problem.n_instants - 1))
         seen = None if at_instant is None else at_instant(run, place)
-        yield CheckedClaim(one, one.reading(run), seen)
+        yield CheckedClaim(claim, claim.reading(run), seen)

@@ -127,7 +127,7 @@ class Lesson:
         Of the checkpoints that change nothing else and ask for the quantity of the first of them:
         the middle of what is expected, infinite for never.
         """
-        found: dict[float, float] = {}
+        curve: dict[float, float] = {}
         own, asked = self.settings.values(), ""
         for claim in self.checkpoints:
             if not isinstance(claim, Claim):
@@ -136,11 +136,11 @@ class Lesson:
             same = all(values[name] == own[name] for name in own if name != self.draw)
             if self.draw in values and same and asked in ("", claim.reading.name):
                 asked = claim.reading.name
-                found[values[self.draw]] = 0.5 * (claim.expected.low + claim.expected.high)
-        return sorted(found.items())
+                curve[values[self.draw]] = 0.5 * (claim.expected.low + claim.expected.high)
+        return sorted(curve.items())
 
     @property
     def drawn_quantity(self) -> str:
         """What that curve shows, in words."""
-        claims = (one for one in self.checkpoints if isinstance(one, Claim))
-        return next((one.reading.title for one in claims), "")
+        claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
+        return next((claim.reading.title for claim in claims), "")

@@ -148,10 +148,10 @@ def _check_keys(
 
 
 def _names(key: str, values: Mapping[str, Any]) -> tuple[str, ...]:
-    found = values[key]
-    if not found or not all(isinstance(one, str) and one for one in found):
-        raise SettingError(key, found, "a list of texts, at least one", "write them in quotes")
-    return tuple(found)
+    names = values[key]
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise SettingError(key, names, "a list of texts, at least one", "write them in quotes")
+    return tuple(names)
 
 
 def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
@@ -159,11 +159,11 @@ def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
     if len(controls) > MOST_CONTROLS:
         allowed = f"at most {MOST_CONTROLS} settings"
         raise SettingError("controls", controls, allowed, "a lesson is about one thing")
-    working = [one for one in settings.definitions() if settings.applies(one)]
-    for one in controls:
-        if one not in working:
+    working = [name for name in settings.definitions() if settings.applies(name)]
+    for name in controls:
+        if name not in working:
             remedy = "name a setting that does something with the lesson's settings"
-            raise SettingError("controls", one, ", ".join(working), remedy)
+            raise SettingError("controls", name, ", ".join(working), remedy)
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
@@ -207,7 +207,7 @@ def _expected(value: Any, tolerance: float | None) -> Expected:
     if value == "never" and tolerance is None:
         return Expected(math.inf, math.inf, "never")
     if isinstance(value, list) and tolerance is None and len(value) == 2:
-        if all(_is_number(one) for one in value) and value[0] <= value[1]:
+        if all(map(_is_number, value)) and value[0] <= value[1]:
             return Expected(value[0], value[1], f"{value[0]:g} to {value[1]:g}")
     elif _is_number(value) and tolerance is not None:
         if not 0.0 <= tolerance < 1.0:

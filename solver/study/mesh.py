@@ -144,25 +144,29 @@ def size_of(settings: Settings) -> str:
     return f"{elements} elements, {settings.values()['instants']} instants"
 
 
-def answer(found: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
+def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     """Two sentences on what three meshes, or numbers of instants, tell.
 
     Parameters
     ----------
-    found
+    refinement
         What they came to.
     unit
         Of the values; empty for a pure number.
     size
         What is halved.
     """
-    if not found.is_told:
+    if not refinement.is_told:
         return "One of the runs came to no certified solution, or has no such value: no answer."
-    if found.margin == 0.0:
+    if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
-    limit = f"{found.limit:.4g} ± {found.margin:.2g} {unit}".rstrip()
-    own = f"This run is within {_share(found)} of that." if found.limit else "That is nothing."
-    order = found.order
+    limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
+    own = (
+        f"This run is within {_share(refinement)} of that."
+        if refinement.limit
+        else "That is nothing."
+    )
+    order = refinement.order
     if order is None:
         return f"It follows no power of {size}: {limit} is all that is known. {own}"
     if order < LEAST_ORDER:
@@ -187,5 +191,5 @@ def which_to_refine(elements: Refinement, instants: Refinement) -> str:
     return f"Refine {more} first: {left}."
 
 
-def _share(found: Refinement) -> str:
-    return f"{100.0 * found.deviation:.2g} %" if found.deviation < 1.0 else "all of it"
+def _share(refinement: Refinement) -> str:
+    return f"{100.0 * refinement.deviation:.2g} %" if refinement.deviation < 1.0 else "all of it"

@@ -84,12 +84,12 @@ class PaperFigure:
     @property
     def values(self) -> dict[str, float]:
         """All numbers of the findings, by name."""
-        return dict(chain.from_iterable(found.values.items() for found in self.findings))
+        return dict(chain.from_iterable(finding.values.items() for finding in self.findings))
 
     @property
     def verdict(self) -> str:
         """Whether the claim holds: "holds", "holds in part" or "does not hold"."""
-        held = [found.holds for found in self.findings]
+        held = [finding.holds for finding in self.findings]
         return "holds" if all(held) else "holds in part" if any(held) else "does not hold"
 
 
@@ -124,7 +124,7 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> tuple[list[Pa
 
 def _sections(figure: PaperFigure) -> list[Section]:
     """A figure on the page."""
-    findings = bullets([f"{found.text} {SAYS[found.holds]}" for found in figure.findings])
+    findings = bullets([f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings])
     return [
         f"<h2>{escape(figure.heading)}</h2>",
         PlotSection(figure.heading, figure.panels),

@@ -141,7 +141,7 @@ def turning_points(path: Array) -> list[int]:
     Indices, the first of each extreme that is held.
     """
     least = max(SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max()))
-    found: list[int] = []
+    extremes: list[int] = []
     outmost, way = 0, 0.0
     for place, value in enumerate(path):
         if way == 0.0:
@@ -151,10 +151,10 @@ def turning_points(path: Array) -> list[int]:
         elif way * (value - path[outmost]) > 0.0:
             outmost = place
         elif way * (path[outmost] - value) > least:
-            found.append(outmost)
+            extremes.append(outmost)
             outmost, way = place, -way
-    is_closed = len(found) > 1 and way * (path[found[-2]] - path[outmost]) <= least
-    return [*found, outmost] if is_closed else found
+    is_closed = len(extremes) > 1 and way * (path[extremes[-2]] - path[outmost]) <= least
+    return [*extremes, outmost] if is_closed else extremes
 
 
 def _paths(settings: Settings) -> Iterator[Array]:

@@ -52,7 +52,7 @@ def answer(asked: dict[str, Any]) -> int:
 
 def resident(name: str) -> int:
     """A line of what the operating system says of this process, B."""
-    found = re.search(rf"^{name}:\s+(\d+) kB$", STATUS.read_text(encoding="ascii"), re.MULTILINE)
-    if found is None:
+    line = re.search(rf"^{name}:\s+(\d+) kB$", STATUS.read_text(encoding="ascii"), re.MULTILINE)
+    if line is None:
         raise LookupError(name)
-    return 1024 * int(found[1])
+    return 1024 * int(line[1])

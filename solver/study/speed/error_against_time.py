@@ -124,7 +124,7 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
     distance = distance_to(reference, problem)
     forms = forms_of(settings)
     errors = {method: _errors(form, distance) for method, form in forms.items()}
-    steps = {method: np.arange(1.0, len(found) + 1.0) for method, found in errors.items()}
+    steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
     timed: dict[str, Callable[[], list[float]]] = {
         method: partial(_by_iterations, form, len(errors[method])) for method, form in forms.items()
     }

@@ -84,7 +84,9 @@ class Growth:
     @property
     def exponent(self) -> Exponent | None:
         """With which the seconds grow with the size; None below two sizes."""
-        return exponent_of([one.size for one in self.sizes], [one.seconds for one in self.sizes])
+        return exponent_of(
+            [size.size for size in self.sizes], [size.seconds for size in self.sizes]
+        )
 
 
 def growth(settings: Settings) -> list[Growth]:
@@ -116,7 +118,7 @@ def _latin_size(form: Settings, number: int) -> Size:
         records = solve(problem, method_of(form), distance=distance, spent=spent).records
     seconds = [record.seconds for record in records]
     each = float(np.median(np.diff(seconds))) if len(seconds) > 1 else seconds[0]
-    near = (one for one in records if one.error_force <= GOAL)
+    near = (record for record in records if record.error_force <= GOAL)
     first = next(near, None)
     return Size(number, each, *((first.iteration, first.seconds) if first else (None, None)))
 
@@ -173,27 +175,29 @@ class Crossover:
     @property
     def sizes(self) -> list[int]:
         """Sizes, ascending."""
-        return sorted({one.size for one in self.comparisons})
+        return sorted({times.size for times in self.comparisons})
 
     @property
     def instants(self) -> list[int]:
         """Numbers of instants, ascending."""
-        return sorted({one.instants for one in self.comparisons})
+        return sorted({times.instants for times in self.comparisons})
 
     @property
     def ratios(self) -> Array:
         """Time of LATIN over that of the incremental solver, (instants, sizes); NaN for none."""
-        ratios = {(one.instants, one.size): one.ratio for one in self.comparisons}
+        ratios = {(own.instants, own.size): own.ratio for own in self.comparisons}
         rows = [[ratios.get((at, size), math.nan) for size in self.sizes] for at in self.instants]
         return np.array(rows)
 
-    def message(self, one: TimesAtSize) -> str:
+    def message(self, times: TimesAtSize) -> str:
         """What one of the comparisons came to, in a sentence."""
-        where = f"{self.title} {one.size}, {one.instants} instants"
-        if one.message:
-            return f"{where}: {one.message}"
-        times = f"LATIN {1e3 * one.latin:.3g} ms, incremental solver {1e3 * one.incremental:.3g} ms"
-        return f"{where}: {one.ratio:.2g} ({times})"
+        where = f"{self.title} {times.size}, {times.instants} instants"
+        if times.message:
+            return f"{where}: {times.message}"
+        each = (
+            f"LATIN {1e3 * times.latin:.3g} ms, incremental solver {1e3 * times.incremental:.3g} ms"
+        )
+        return f"{where}: {times.ratio:.2g} ({each})"
 
 
 def crossover(settings: Settings, *, large: bool = False) -> Crossover:

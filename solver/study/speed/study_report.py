@@ -98,16 +98,16 @@ def table(study: Study) -> list[Row]:
 def growth_table(growths: Sequence[Growth]) -> list[Row]:
     """Fitted exponents, and the iterations to 1 %, with the sizes they come from."""
     rows = [["growth with", "method", "exponent", "sizes", "ms", "iterations to 1 %"]]
-    for one in growths:
-        whole = one.method == INCREMENTAL
-        iterations = (str(size.iterations or ">300") for size in one.sizes)
+    for curve in growths:
+        whole = curve.method == INCREMENTAL
+        iterations = (str(size.iterations or ">300") for size in curve.sizes)
         rows.append(
             [
-                one.setting,
-                f"{one.method} ({'whole' if whole else 'an iteration'})",
-                str(one.exponent or "-"),
-                " ".join(str(size.size) for size in one.sizes),
-                " ".join(f"{1e3 * size.seconds:.2g}" for size in one.sizes),
+                curve.setting,
+                f"{curve.method} ({'whole' if whole else 'an iteration'})",
+                str(curve.exponent or "-"),
+                " ".join(str(size.size) for size in curve.sizes),
+                " ".join(f"{1e3 * size.seconds:.2g}" for size in curve.sizes),
                 "-" if whole else " ".join(iterations),
             ]
         )
@@ -132,7 +132,7 @@ def notes(measured: Crossover) -> list[str]:
         "settings to a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
         *([f"What grows along the axis: {grows}."] if measured.others else []),
-        *(measured.message(one) for one in measured.comparisons if one.message),
+        *(measured.message(times) for times in measured.comparisons if times.message),
     ]
 
 
@@ -163,10 +163,10 @@ def growth_panels(growths: Sequence[Growth]) -> list[Panel]:
     """Times over sizes, a panel for each setting that changes."""
     hues = {method: hue for hue, method in enumerate((INCREMENTAL, *MEASURED))}
     curves: dict[str, list[PanelCurve]] = {}
-    for one in growths:
-        sizes, seconds = np.array([(size.size, size.seconds) for size in one.sizes]).T
-        curve = PanelCurve(one.method, sizes, seconds, hues[one.method], "points")
-        curves.setdefault(one.setting, []).append(curve)
+    for curve in growths:
+        sizes, seconds = np.array([(size.size, size.seconds) for size in curve.sizes]).T
+        line = PanelCurve(curve.method, sizes, seconds, hues[curve.method], "points")
+        curves.setdefault(curve.setting, []).append(line)
     return [
         Panel(
             setting.capitalize(),
@@ -182,7 +182,7 @@ def crossover_map(measured: Crossover) -> Map:
     """The ratio of times over size and instants, with the line where both take as long."""
     comparisons = measured.comparisons
     sizes, instants, ratios = np.array(
-        [(one.size, one.instants, one.ratio) for one in comparisons], dtype=float
+        [(times.size, times.instants, times.ratio) for times in comparisons], dtype=float
     ).T
     return Map(
         f"Time of {TIMES}",
@@ -241,15 +241,15 @@ def write_growth(growths: Sequence[Growth], folder: Path) -> list[Path]:
     head = ["setting", "exponent", "margin", "method", "size", "seconds"]
     head += ["iterations_to_1_percent", "seconds_to_1_percent"]
     rows = (
-        (one.setting, *_margin(one), one.method, *astuple(size))
-        for one in growths
-        for size in one.sizes
+        (curve.setting, *_margin(curve), curve.method, *astuple(size))
+        for curve in growths
+        for size in curve.sizes
     )
     return [write_csv(folder / "growth.csv", head, rows)] if growths else []
 
 
-def _margin(one: Growth) -> tuple[object, object]:
-    return (one.exponent.value, one.exponent.margin) if one.exponent else ("", "")
+def _margin(curve: Growth) -> tuple[object, object]:
+    return (curve.exponent.value, curve.exponent.margin) if curve.exponent else ("", "")
 
 
 def write_study(
@@ -286,7 +286,7 @@ def write_study(
     page = folder / "study.html"
     message = write_page(page, "Error against run time", sections)
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    rows = ((crossover.setting, *astuple(one)) for one in crossover.comparisons)
+    rows = ((crossover.setting, *astuple(times)) for times in crossover.comparisons)
     sizes = write_csv(folder / "map.csv", head, rows)
     files = [*write_curves(study, folder), *write_growth(growths, folder), sizes, page]
     return files, message
