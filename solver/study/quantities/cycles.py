@@ -193,10 +193,9 @@ class Fate:
         For it.
     since
         First cycle from which on nothing slips, from 1; None where slip goes on.
-    slip
-        Largest slip of any point in the last cycle, m.
     ratio
-        The same over that of the cycle before; NaN where nothing slipped then.
+        Largest slip of any point in the last cycle over that in the cycle before; NaN where nothing
+        slipped then.
     net
         Slip that the last cycle leaves, at the point where it leaves most, m.
     energy
@@ -205,7 +204,6 @@ class Fate:
 
     word: Word
     since: int | None
-    slip: float
     ratio: float
     net: float
     energy: float
@@ -231,7 +229,7 @@ def fate_of(cycles: LoadCycles) -> Fate | None:
     ratio = most[-1] / most[-2] if most[-2] else np.nan
     place = np.abs(cycles.net[:, -1]).argmax()
     net, energy = cycles.net[place, -1], cycles.energy[-1]
-    return Fate(word, since, float(most[-1]), float(ratio), float(net), float(energy))
+    return Fate(word, since, float(ratio), float(net), float(energy))
 
 
 def _word(cycles: LoadCycles, most: Array) -> Word | None:
