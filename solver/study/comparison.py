@@ -123,17 +123,16 @@ def _columns(table: Table) -> tuple[str, list[TableColumn]]:
     """The quantity that is named, and the columns of x, t, and of it."""
     if not any(column.quantities[0] for column in table.columns):
         raise table.refuse("name its columns in the first line, as in x,t,friction force")
-    kinds = "position", "time", FRICTION, DISPLACEMENT
-    x, t, friction, displacement = (table.find(table.columns, {kind}) for kind in kinds)
+    x, t = (table.find(table.columns, {kind}) for kind in ("position", "time"))
     if x is None or t is None:
         raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
-    if friction and displacement:
-        raise table.refuse("its head names both friction force and displacement: give one of them")
-    if friction:
-        return FRICTION, [x, t, friction]
-    if displacement:
-        return DISPLACEMENT, [x, t, displacement]
-    raise table.refuse("its head names neither friction force nor displacement: give one of them")
+    fields = {kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)}
+    named = [(kind, column) for kind, column in fields.items() if column]
+    if len(named) != 1:
+        which = "both friction force and" if named else "neither friction force nor"
+        raise table.refuse(f"its head names {which} displacement: give one of them")
+    quantity, column = named[0]
+    return quantity, [x, t, column]
 
 
 def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refuse: Refuse) -> None:

@@ -119,7 +119,7 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
     }
     law = problem.friction
     lengths = law.by_point(law.weights)[1:]
-    root = np.sqrt(lengths)[:, None]
+    root = np.sqrt(lengths)
     moments = {time: int(np.argmin(np.abs(problem.instants - time))) for time in INSTANTS}
     forces = {label: fields.contact_force[1:] for label, fields in solutions.items()}
     panels = tuple(
@@ -134,8 +134,11 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
         )
         for instant, moment in moments.items()
     )
-    displacements = {label: fields.displacement[1:] * root for label, fields in solutions.items()}
-    weighted = {label: force / root for label, force in forces.items()}
+    early = moments[INSTANTS[0]]
+    displacements = {
+        label: fields.displacement[1:, early] * root for label, fields in solutions.items()
+    }
+    forces_then = {label: force[:, early] for label, force in forces.items()}
     return PaperFigure(
         4,
         f"Friction force after {EARLY} iterations",
@@ -143,9 +146,11 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
         "After a few iterations the multiscale version captures the global behaviour very well, "
         "while the monoscale one is far from the reference, the load not fully propagated.",
         (
-            _balance({label: force[:, moments[0.5]] for label, force in forces.items()}),
-            _distances("the displacement", displacements, moments),
-            _distances("the friction force", weighted, moments),
+            _balance(forces_then),
+            _distance("the displacement", displacements),
+            _distance(
+                "the friction force", {label: force / root for label, force in forces_then.items()}
+            ),
         ),
         "10 substructures. The clamped node is left out: its friction force is part of the "
         "reaction. Here the load is zero at both instants, so that t = 1 s is t = 0.5 s with "
@@ -166,18 +171,14 @@ def _balance(forces: Mapping[str, Array]) -> Finding:
     )
 
 
-def _distances(words: str, solutions: Mapping[str, Array], moments: Mapping[float, int]) -> Finding:
-    """Distances to the reference along the bar at some instants.
-
-    Fields by label have the shape (n_points, n_instants) and the weights of L2 along the bar.
-    """
-    exact, sentences, held = solutions["reference"], [], True
-    for instant, moment in moments.items():
-        size = np.linalg.norm(exact[:, moment])
-        multi, mono = (
-            float(np.linalg.norm((solutions[label] - exact)[:, moment]) / size)
-            for label in ("multiscale", "monoscale")
-        )
-        sentences.append(f"{multi:.0%} multiscale, {mono:.0%} monoscale at t = {instant:g} s")
-        held = held and mono >= GAIN * multi
-    return Finding(f"Error of {words}: {'; '.join(sentences)}.", held)
+def _distance(words: str, solutions: Mapping[str, Array]) -> Finding:
+    """Distances to the reference at t = 0.5 s, of fields with the weights of L2 along the bar."""
+    exact = solutions["reference"]
+    multi, mono = (
+        float(np.linalg.norm(solutions[label] - exact) / np.linalg.norm(exact))
+        for label in ("multiscale", "monoscale")
+    )
+    return Finding(
+        f"Error of {words} at t = 0.5 s: {multi:.0%} multiscale, {mono:.0%} monoscale.",
+        mono >= GAIN * multi,
+    )

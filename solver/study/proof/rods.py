@@ -55,7 +55,7 @@ def rod_cases() -> list[KnownCase]:
         KnownCase("bar pulled", PLAY, 1e-4, "bar", _pull(PEAK), _pulled),
         KnownCase("bar pulled until all slides", PLAY, 1e-9, "bar", _pull(1800.0), _slid),
         KnownCase("bar pulled to and fro", PLAY, 2e-3, "bar", CYCLE, _cycled),
-        KnownCase(loosened, PLAY, 1e-4, "bar", LOOSENED, _loosened),
+        KnownCase(loosened, PLAY, 1e-4, "bar", LOOSENED, _pulled),
         KnownCase(f"{soft} way before it slips", JENKINS, 1e-4, "bar", springs, _gave_way),
         KnownCase(
             f"{soft} way, pulled to and fro", MASING, 2e-3, "bar", {**CYCLE, **SOFT}, _sprung_cycle
@@ -76,20 +76,15 @@ def _end(exact: float, answer: Answer) -> Number:
 
 
 def _pulled(answer: Answer) -> Iterator[Number]:
-    stiffness, bound = answer.bar
-    yield _end(answer.settings.path("load")[-1] ** 2 / (2.0 * stiffness * bound), answer)
+    settings, (stiffness, _) = answer.settings, answer.bar
+    bound = settings.friction * settings.path("pressure_load")[-1]
+    yield _end(settings.path("load")[-1] ** 2 / (2.0 * stiffness * bound), answer)
 
 
 def _slid(answer: Answer) -> Iterator[Number]:
     stiffness, bound = answer.bar
     length, force = answer.settings.length, answer.settings.path("load")[-1]
     yield _end((force * length - 0.5 * bound * length**2) / stiffness, answer)
-
-
-def _loosened(answer: Answer) -> Iterator[Number]:
-    settings, (stiffness, _) = answer.settings, answer.bar
-    bound = settings.friction * settings.path("pressure_load")[-1]
-    yield _end(settings.path("load")[-1] ** 2 / (2.0 * stiffness * bound), answer)
 
 
 def _cycled(answer: Answer) -> Iterator[Number]:
