@@ -55,38 +55,31 @@ FORM = "LATIN fast"
 
 
 @dataclass(frozen=True)
-class Size:
-    """One size of one method.
+class Growth:
+    """A method's times along one setting.
 
     Attributes
     ----------
+    sizes
+        Values of the setting.
     seconds
         Of an iteration (its median over the run), or of the whole incremental solution.
-    iterations, total
+    iterations, totals
         Iterations and seconds, set-up included, to 1 % of friction force error; None where 300
         do not suffice, and iterations None for the incremental solver.
     """
 
-    size: int
-    seconds: float
-    iterations: int | None
-    total: float | None
-
-
-@dataclass(frozen=True)
-class Growth:
-    """A method's sizes along one setting."""
-
     setting: str
     method: str
-    sizes: tuple[Size, ...]
+    sizes: tuple[int, ...]
+    seconds: tuple[float, ...]
+    iterations: tuple[int | None, ...]
+    totals: tuple[float | None, ...]
 
     @property
     def exponent(self) -> Exponent | None:
         """With which the seconds grow with the size; None below two sizes."""
-        return exponent_of(
-            [size.size for size in self.sizes], [size.seconds for size in self.sizes]
-        )
+        return exponent_of(self.sizes, self.seconds)
 
 
 def growth(settings: Settings) -> list[Growth]:
@@ -96,18 +89,18 @@ def growth(settings: Settings) -> list[Growth]:
     curves = []
     for setting, numbers in entry_of(settings).sizes.items():
         for method, form in methods.items():
-            measure = _incremental_size if method == INCREMENTAL else _latin_size
-            sizes = []
+            measure = _incremental_times if method == INCREMENTAL else _latin_times
+            rows = []
             for number in numbers:
                 with contextlib.suppress(RefusedError):
-                    sizes.append(measure(form.replace(**{setting: number}), number))
-            if sizes:
-                curves.append(Growth(setting, method, tuple(sizes)))
+                    rows.append((number, *measure(form.replace(**{setting: number}))))
+            if rows:
+                curves.append(Growth(setting, method, *zip(*rows, strict=True)))
     return curves
 
 
-def _latin_size(form: Settings, number: int) -> Size:
-    """Measure a form of LATIN; the reference that its errors need is not billed."""
+def _latin_times(form: Settings) -> tuple[float, int | None, float | None]:
+    """Times of a form of LATIN; the reference that its errors need is not billed."""
     form = form.replace(**LONG)
     problem = discretise(form)
     distance = distance_to(reference_of(problem), problem)
@@ -120,13 +113,13 @@ def _latin_size(form: Settings, number: int) -> Size:
     each = float(np.median(np.diff(seconds))) if len(seconds) > 1 else seconds[0]
     near = (record for record in records if record.error_force <= GOAL)
     first = next(near, None)
-    return Size(number, each, *((first.iteration, first.seconds) if first else (None, None)))
+    return each, *((first.iteration, first.seconds) if first else (None, None))
 
 
-def _incremental_size(settings: Settings, number: int) -> Size:
-    """Measure the incremental solver, which has no iterations to count."""
+def _incremental_times(settings: Settings) -> tuple[float, int | None, float | None]:
+    """Times of the incremental solver, which has no iterations to count."""
     seconds = statistics.median(by_increments(settings, time.perf_counter) for _ in range(REPEATS))
-    return Size(number, seconds, None, seconds)
+    return seconds, None, seconds
 
 
 @dataclass(frozen=True)

@@ -100,15 +100,14 @@ def growth_table(growths: Sequence[Growth]) -> list[Row]:
     rows = [["growth with", "method", "exponent", "sizes", "ms", "iterations to 1 %"]]
     for curve in growths:
         whole = curve.method == INCREMENTAL
-        iterations = (str(size.iterations or ">300") for size in curve.sizes)
         rows.append(
             [
                 curve.setting,
                 f"{curve.method} ({'whole' if whole else 'an iteration'})",
                 str(curve.exponent or "-"),
-                " ".join(str(size.size) for size in curve.sizes),
-                " ".join(f"{1e3 * size.seconds:.2g}" for size in curve.sizes),
-                "-" if whole else " ".join(iterations),
+                " ".join(map(str, curve.sizes)),
+                " ".join(f"{1e3 * seconds:.2g}" for seconds in curve.seconds),
+                "-" if whole else " ".join(str(number or ">300") for number in curve.iterations),
             ]
         )
     return rows
@@ -164,8 +163,8 @@ def growth_panels(growths: Sequence[Growth]) -> list[Panel]:
     hues = {method: hue for hue, method in enumerate((INCREMENTAL, *MEASURED))}
     curves: dict[str, list[PanelCurve]] = {}
     for curve in growths:
-        sizes, seconds = np.array([(size.size, size.seconds) for size in curve.sizes]).T
-        line = PanelCurve(curve.method, sizes, seconds, hues[curve.method], "points")
+        points = np.array(curve.sizes, dtype=float), np.array(curve.seconds)
+        line = PanelCurve(curve.method, *points, hues[curve.method], "points")
         curves.setdefault(curve.setting, []).append(line)
     return [
         Panel(
@@ -240,16 +239,13 @@ def write_growth(growths: Sequence[Growth], folder: Path) -> list[Path]:
     """Write `growth.csv`, if there is any; raises as `write_curves`."""
     head = ["setting", "exponent", "margin", "method", "size", "seconds"]
     head += ["iterations_to_1_percent", "seconds_to_1_percent"]
-    rows = (
-        (curve.setting, *_margin(curve), curve.method, *astuple(size))
+    rows = [
+        (curve.setting, *margin, curve.method, *row)
         for curve in growths
-        for size in curve.sizes
-    )
+        for margin in [astuple(curve.exponent) if curve.exponent else ("", "")]
+        for row in zip(curve.sizes, curve.seconds, curve.iterations, curve.totals, strict=True)
+    ]
     return [write_csv(folder / "growth.csv", head, rows)] if growths else []
-
-
-def _margin(curve: Growth) -> tuple[object, object]:
-    return (curve.exponent.value, curve.exponent.margin) if curve.exponent else ("", "")
 
 
 def write_study(
