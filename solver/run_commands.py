@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +14,7 @@ from solver.disk import check_place, read_bytes, whole_file, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.latin.run_cost import run_cost
-from solver.lessons.checking import CheckedClaim, CheckedEnding, check
+from solver.lessons.lesson import check
 from solver.lessons.reading import lesson_from_file
 from solver.prepared import prepared, print_tables
 from solver.refusal import RefusedError
@@ -147,28 +146,10 @@ def _lesson(chosen: argparse.Namespace) -> int:
     missed = 0
     for lesson in lessons:
         print(f"{lesson.name}: {lesson.title}")
-        for outcome in check(lesson):
-            print(f"  {claim_line(outcome)}", flush=True)
-            missed += not outcome.holds
+        for holds, line in check(lesson):
+            print(f"  {line}", flush=True)
+            missed += not holds
     return int(missed > 0)
-
-
-def claim_line(outcome: CheckedClaim | CheckedEnding) -> str:
-    """What was claimed, measured and expected, in a line."""
-    sign, claim = "+" if outcome.holds else "-", outcome.checkpoint.claim
-    if isinstance(outcome, CheckedEnding):
-        says = outcome.checkpoint.says
-        return f"{sign} {claim} The run says: {outcome.message}; expected {says}"
-    asked, expected = outcome.checkpoint.reading, outcome.checkpoint.expected
-    unit = asked.quantity.unit
-    measured = _written(outcome.value, unit)
-    if outcome.seen is not None and not expected.holds(outcome.seen):
-        measured += f", but {_written(outcome.seen, unit)} at the instant of the plots"
-    return f"{sign} {claim} {asked.title}: {measured}; expected {expected.words}"
-
-
-def _written(value: float, unit: str) -> str:
-    return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()
 
 
 def _fclib(chosen: argparse.Namespace) -> int:

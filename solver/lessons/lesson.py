@@ -1,10 +1,15 @@
-"""What a lesson is: a question, a prediction, a run with one or two controls, an explanation."""
+"""A lesson: a question, a prediction, a run with one or two controls, claims that runs test."""
 
 from __future__ import annotations
 
+import math
+from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+from solver.checked import dump
 from solver.settings import Settings
+from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantities import Reading
 
 SUBJECTS = "mechanics", "method"
@@ -50,6 +55,25 @@ class Claim:
     reading: Reading
     expected: Expected
 
+    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
+        """Whether it holds in a run, and what was measured there, in words.
+
+        A quantity of one instant has to be as expected where the plots stand, too: at a share of
+        the interval.
+        """
+        quantity, value = self.reading.quantity, self.reading(run)
+        holds, words = self.expected.holds(value), _written(value, quantity.unit)
+        if quantity.at_instant is not None:
+            seen = quantity.at_instant(run, round(share * (run.problem.n_instants - 1)))
+            if not self.expected.holds(seen):
+                holds = False
+                words += f", but {_written(seen, quantity.unit)} at the instant of the plots"
+        return holds, f"{self.reading.title}: {words}; expected {self.expected.words}"
+
+
+def _written(value: float, unit: str) -> str:
+    return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()
+
 
 @dataclass(frozen=True, eq=False)
 class EndingClaim:
@@ -58,6 +82,11 @@ class EndingClaim:
     claim: str
     settings: Settings
     says: str
+
+    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
+        """Whether it holds in a run, and what that says, whatever share the plots stand at."""
+        message = run.solution.status.advice
+        return self.says in message, f"The run says: {message}; expected {self.says}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,3 +173,21 @@ class Lesson:
         """What that curve shows, in words."""
         claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
         return next((claim.reading.title for claim in claims), "")
+
+
+def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
+    """Whether what a lesson claims holds, each with a line; equal settings share a run."""
+    wanted: defaultdict[str, set[str | None]] = defaultdict(set)
+    for claim in lesson.checkpoints:
+        reads = claim.reading.quantity.reads if isinstance(claim, Claim) else None
+        wanted[dump(claim.settings)].add(reads)
+    runs: dict[str, FinishedRun] = {}
+    for claim in lesson.checkpoints:
+        key = dump(claim.settings)
+        if key not in runs:
+            kinds = wanted[key]
+            runs[key] = finished_run(
+                claim.settings, errors="errors" in kinds, indicators="indicators" in kinds
+            )
+        holds, words = claim.tested(runs[key], lesson.instant)
+        yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"
