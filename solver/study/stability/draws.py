@@ -112,8 +112,8 @@ def log_uniform(generator: Generator, low: float, high: float) -> float:
 
 def _without_idle(settings: Settings) -> Settings:
     """Settings without what does nothing beside the others, so that a row says what matters."""
-    idle = [name for name in settings.changed() if not settings.applies(name)]
-    values = {name: value for name, value in settings.changed().items() if name not in idle}
+    changed = settings.changed().items()
+    values = {name: value for name, value in changed if settings.applies(name)}
     return type(settings).checked({"method": settings.method, **values})
 
 
@@ -130,16 +130,16 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
             values[name] = _drawn(name, definition, generator)
     if "elements_up" in definitions:
         _stretch(kind.across, values, definitions, generator)
-    usual = {name: definition.default for name, definition in definitions.items()}
+    defaults = {name: definition.default for name, definition in definitions.items()}
     if "cycles" in values:
         most = max((values["instants"] - 1) // INSTANTS_A_CYCLE, 1)
         values["cycles"] = min(values["cycles"], most)
     loads = LOADS.get(kind.scene)
-    sizes = loads({**usual, **values}, generator) if loads is not None else {}
+    sizes = loads({**defaults, **values}, generator) if loads is not None else {}
     for name, size in sizes.items():
         if isinstance(definitions[name], CurveParameter):
             if generator.random() < CHANGED:
-                values[name] = _path(size, {**usual, **values}["duration"], generator)
+                values[name] = _path(size, {**defaults, **values}["duration"], generator)
         else:
             values[name] = size
     return values
@@ -162,8 +162,8 @@ def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -
     """The mesh, its cuts, and as many instants as there is room for."""
     mesh: dict[str, Any] = {}
     while True:
-        usual = BODY if "elements_up" in definitions else ROD
-        for name, (low, high) in MESHES.get(scene, usual).items():
+        sizes = MESHES.get(scene, BODY if "elements_up" in definitions else ROD)
+        for name, (low, high) in sizes.items():
             mesh[name] = min(int(log_uniform(generator, low, high + 1)), high)
         unknowns = math.prod(mesh.values()) * (2 if "elements_up" in mesh else 1)
         if unknowns <= LARGEST_FIELD // 3:
