@@ -49,6 +49,9 @@ th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: le
   vertical-align: top; }}
 td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
 td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
+td.right {{ border-left-color: #0072B2; }} td.unsolved {{ border-left-color: #E69F00; }}
+td.refused {{ border-left-color: #56B4E9; }} td.unclear {{ border-left-color: #999999; }}
+td.wrong {{ border-left-color: #D55E00; }}
 td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
 </style>
 {head}
@@ -56,6 +59,7 @@ td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
 {body}
 </html>
 """
+"""Colours of verdicts are of Okabe and Ito's palette, told apart by the colour-blind."""
 
 
 def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
@@ -91,21 +95,26 @@ def renderer() -> Renderer | None:
 
 
 def bullets(lines: Sequence[str]) -> str:
-    """Write sentences as a list."""
+    """Sentences as a list."""
     return "<ul>\n" + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
 
 
+def cell(text: str, kind: str = "") -> str:
+    """A cell of a table; kinds are "number", "verdict right" and others of the style sheet."""
+    return f'<td class="{kind}">{escape(text)}</td>' if kind else f"<td>{escape(text)}</td>"
+
+
 def table(heads: Sequence[str], rows: Sequence[str]) -> str:
-    """Write a table of rows that are cells already."""
+    """A table of rows that are cells already."""
     head = "".join(f"<th>{escape(text)}</th>" for text in heads)
     body = "\n".join(f"<tr>{row}</tr>" for row in rows)
     return f"<table>\n<tr>{head}</tr>\n{body}\n</table>"
 
 
 def plain_table(rows: Sequence[Sequence[str]]) -> str:
-    """Write a table of texts, whose first row is its head."""
+    """A table of texts, whose first row is its head."""
     head, *rest = rows
-    return table(head, ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest])
+    return table(head, ["".join(map(cell, row)) for row in rest])
 
 
 def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:

@@ -7,7 +7,7 @@ from html import escape
 from itertools import groupby
 from pathlib import Path
 
-from solver.study.page import table, write_csv, write_page
+from solver.study.page import cell, table, write_csv, write_page
 from solver.study.proof.bodies import body_cases
 from solver.study.proof.case import CLOSED_FORMS, INCREMENTAL, LATIN, PUBLISHED, KnownCase, ProofRow
 from solver.study.proof.rods import rod_cases
@@ -98,7 +98,5 @@ def _cells(rows: Mapping[str, ProofRow]) -> str:
         row = rows.get(solver)
         texts += [f"{row.found:.6g}", f"{row.deviation:.1e}"] if row else ["", ""]
     texts.append(f"{first.case.allowed:g}")
-    unit = "" if first.unit == "-" else first.unit
-    words = f"<td>{escape(first.quantity)}</td><td>{escape(unit)}</td>"
-    cells = "".join(f'<td class="number">{text}</td>' for text in texts)
-    return f'<td class="verdict {kind}">{word}</td>{words}{cells}'
+    known = cell(first.quantity) + cell("" if first.unit == "-" else first.unit)
+    return cell(word, f"verdict {kind}") + known + "".join(cell(text, "number") for text in texts)

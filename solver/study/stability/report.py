@@ -12,7 +12,7 @@ from itertools import groupby
 from pathlib import Path
 
 from solver.scenes import CATALOGUE
-from solver.study.page import aligned, bullets, plain_table, table, write_csv, write_page
+from solver.study.page import aligned, bullets, cell, plain_table, table, write_csv, write_page
 from solver.study.stability.case import METHODS, Case, Verdict
 from solver.study.stability.outcome import MEANING, JudgedRun
 from solver.study.stability.plane_cases import block_cases, fault_cases, incline_cases, layers_cases
@@ -24,8 +24,6 @@ COLUMNS = (
     *("iterations", "estimated_error", "error_displacement", "error_force", "residual"),
     *("indicator", "behaviour", "seconds", "doubt", "advice", "settings"),
 )
-COLOURS = dict(zip(Verdict, ("#0072B2", "#E69F00", "#56B4E9", "#999999", "#D55E00"), strict=True))
-"""Of Okabe and Ito's palette, told apart by the colour-blind."""
 LONG = {"expected": "Expected: ", "doubt": "", "advice": "", "settings": ""}
 """Columns of words, and how these begin: beside numbers there is no room for them on a screen."""
 HEAD = (
@@ -179,15 +177,12 @@ def _html_rows(row: Mapping[str, object]) -> Iterator[str]:
 
 def _cell(column: str, value: object) -> str:
     if column == "verdict":
-        colour = COLOURS[Verdict(str(value))]
-        return f'<td class="verdict {value}" style="border-left-color: {colour}">{value}</td>'
+        return cell(str(value), f"verdict {value}")
     if isinstance(value, bool):
-        return f"<td>{'yes' if value else 'no'}</td>"
+        return cell("yes" if value else "no")
     if isinstance(value, float):
-        text = _number(value, ".2f" if column == "seconds" else ".1e")
-        return f'<td class="number">{text}</td>'
-    kind = ' class="number"' if isinstance(value, int) else ""
-    return f"<td{kind}>{escape(str(value))}</td>"
+        return cell(_number(value, ".2f" if column == "seconds" else ".1e"), "number")
+    return cell(str(value), "number" if isinstance(value, int) else "")
 
 
 def _number(value: float, digits: str = ".1e") -> str:
