@@ -161,14 +161,8 @@ def options(**values):
 
 
 @pytest.fixture(scope="module")
-def histories():
-    found = {}
-    for multiscale in (True, False):
-        chosen = options(multiscale=multiscale, max_iterations=800, tolerance=1e-30)
-        problem = discretise(chosen)
-        distance = distance_to(incremental(problem), problem)
-        found[multiscale] = solve(problem, method_of(chosen), distance=distance).records
-    return found
+def histories(paper_runs):
+    return {True: paper_runs.multiscale.records, False: paper_runs.monoscale.records}
 
 
 def first_below(records, name, limit):
