@@ -25,7 +25,7 @@ from solver.refusal import RefusedError
 from solver.remarks import ends_of_tables
 from solver.scenes import points_of
 from solver.settings import Settings
-from solver.study.other_programs.brought import Brought, read_brought
+from solver.study.comparison import OtherResults, read_results
 from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
@@ -38,7 +38,7 @@ MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""
 
 
-def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | Brought, str]:
+def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | OtherResults, str]:
     """Read a file: settings (.toml), else results if it has places, else a load path.
 
     Returns
@@ -55,7 +55,7 @@ def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | Bro
         return read, f"{source}: settings of the scene {read.scene}."
     table = _table(data, source)
     if {"x", "position"} & {column.key for column in table.columns}:
-        brought = read_brought(data, source, settings)
+        brought = read_results(data, source, settings)
         return brought, f"{source}: {brought.message}."
     return with_path(settings, _path_of(table, source, settings), table)
 
@@ -151,7 +151,7 @@ class FilesPanel:
         except RefusedError as refused:
             state.refusal = self.message.object = message_of(refused, state.settings)
             return
-        if isinstance(content, Brought):
+        if isinstance(content, OtherResults):
             state.brought = content
         else:
             state.adopt(content)

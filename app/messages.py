@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.frame import Frame
 from solver.settings import Settings
-from solver.study.other_programs.brought import Brought
+from solver.study.comparison import OtherResults
 
 WHOLE = -1.0
 """Pace at which the whole search takes three seconds."""
@@ -49,7 +49,7 @@ class Needs:
     substructure: int | None = None
     place: float | None = None
     readings: tuple[str, ...] = ()
-    brought: Brought | None = None
+    brought: OtherResults | None = None
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.other_programs.brought import Brought
+from solver.study.comparison import OtherResults
 
 LIMIT = 24_000_000
 """Bytes that the frames of a run may take; beyond, every other one is dropped."""
@@ -116,7 +116,9 @@ class PageState(param.Parameterized):
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
     plots = param.String(doc="Names of the views on top of their cards, between commas.")
     room = param.String(doc="Code of the class that is followed.")
-    brought = param.ClassSelector(class_=Brought, default=None, doc="Another program's results.")
+    brought = param.ClassSelector(
+        class_=OtherResults, default=None, doc="Another program's results."
+    )
     refusal = param.String(doc="What was refused and why.")
     message = param.String(doc="What the page says of itself: a loss, a cost, a fault.")
     is_costly = param.Boolean(default=False, doc="Whether the run waits to be agreed to.")

@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.compare_command import add_compare
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
@@ -29,8 +28,6 @@ from solver.files import (
 )
 from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
-from solver.lessons.command import add_lesson
-from solver.mesh_command import add_mesh
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
@@ -38,10 +35,10 @@ from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
 from solver.remarks import print_tables, remarks_before, warn
 from solver.report_commands import REFUSED, add_reports
+from solver.run_commands import add_checks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.other_programs.fclib import add_fclib
 from solver.sweep_command import add_sweep
 
 OUT_OF_MEMORY, INTERRUPTED = 3, 130
@@ -123,10 +120,7 @@ def _parser() -> argparse.ArgumentParser:
     settings.set_defaults(command=_settings)
     add_reports(commands)
     add_sweep(commands)
-    add_mesh(commands)
-    add_compare(commands)
-    add_fclib(commands)
-    add_lesson(commands)
+    add_checks(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             further.load()(commands)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,24 +12,26 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.remarks import print_tables
-from solver.study.figures.figure_report import paper_figures, write_figures
+from solver.study.figures import paper_figures, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.case import rows_of
-from solver.study.speed.crossover import crossover, notes, ratio_table
 from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.growth import growth
+from solver.study.speed.sizes import crossover, growth
 from solver.study.speed.study_report import (
     conditions,
     growth_table,
+    notes,
+    ratio_table,
     table,
     winners,
     write_curves,
     write_growth,
     write_study,
 )
-from solver.study.stability import units
-from solver.study.stability.all_cases import by_all_methods, cases_of, random_cases
+from solver.study.stability.case import Case
+from solver.study.stability.draws import random_cases
+from solver.study.stability.outcome import JudgedRun, judged_runs
 from solver.study.stability.report import (
     FILES,
     HEAD,
@@ -38,9 +40,9 @@ from solver.study.stability.report import (
     RANDOM_TITLE,
     TITLE,
     StabilityReport,
+    cases_of,
     line,
 )
-from solver.study.stability.verdict import JudgedRun, judged_runs
 
 REFUSED = 2
 """Exit code of refused input."""
@@ -136,31 +138,26 @@ def _stability(chosen: argparse.Namespace) -> int:
         value = getattr(chosen, name)
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
-    is_random = chosen.random is not None
-    if is_random:
+    cases: Iterable[Case] = cases_of(scenes, quick=chosen.quick)
+    title, notes = TITLE, NOTES
+    if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
-    else:
-        cases = iter(by_all_methods(cases_of(scenes, quick=chosen.quick)))
+        title, notes = RANDOM_TITLE, RANDOM_NOTES
     runs: list[JudgedRun] = []
-    notes, is_same = list(RANDOM_NOTES if is_random else NOTES), True
     with writing(chosen.out, *FILES):
         print(HEAD)
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
-            for run in judged_runs(cases, conditions=not is_random):
+            for run in judged_runs(cases):
                 print(line(run), flush=True)
                 runs.append(run)
             is_whole = True
-        if is_whole and not is_random and scenes in ([], [units.SCENE]):
-            differences = units.invariance()
-            is_same = units.is_same(differences)
-            notes.append(units.message(differences))
-        report = StabilityReport(runs, RANDOM_TITLE if is_random else TITLE, notes)
+        report = StabilityReport(runs, title, notes)
         files = report.write(chosen.out)
     print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
     if not is_whole:
         raise KeyboardInterrupt
-    return 0 if report.passes and is_same else 1
+    return 0 if report.passes else 1
 
 
 def _proof(chosen: argparse.Namespace) -> int:

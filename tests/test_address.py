@@ -15,7 +15,7 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.definitions import CurveParameter
 from solver.scenes import CATALOGUE, points_of
-from solver.study.other_programs.brought import read_brought
+from solver.study.comparison import read_results
 
 PARTS: dict[str, Any] = {
     "tab": "What if",
@@ -160,7 +160,7 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
         for j, t in enumerate(problem.instants.tolist())
     ]
     table = "\n".join(["x,t,friction force", *rows]).replace("np.float64(", "").replace(")", "")
-    brought = read_brought(table, "other.csv", settings)
+    brought = read_results(table, "other.csv", settings)
     frame = runner.frame(Needs(frozenset({"beside"}), brought=brought))
     beside = frame.extras["beside"]
     assert beside["distance"] == pytest.approx(0.1 / 1.1, rel=1e-6)

@@ -16,8 +16,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
 from solver.study.stability.case import Verdict
-from solver.study.stability.outcome import run
-from solver.study.stability.verdict import judge
+from solver.study.stability.outcome import judge, run
 
 BLOCK = (
     "block gap=flat plane=stress poisson=0.499 length=0.01 height=0.321 elements=59 elements_up=5 "

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options, relative, sample, table
 
-from solver.latin import Iterate
+from solver.latin import Iterate, iterations
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Contact, Dirichlet, Neumann
 from solver.reference.incremental import incremental
@@ -43,6 +45,30 @@ def test_scaling_load_and_pressure_scales_the_answer(factor):
     assert relative(scaled.displacement, factor * plain.displacement) < 1e-12
     assert relative(scaled.friction_force, factor * plain.friction_force) < 1e-12
     assert latin_indicator(scaled) == pytest.approx(latin_indicator(plain), rel=1e-9)
+
+
+@pytest.mark.parametrize("method", ["fast", "paper"])
+@pytest.mark.parametrize(
+    ("metre", "newton"),
+    [(1e3, 1.0), (1.0 / 0.0254, 1.0 / 4.4482216152605)],
+    ids=["millimetres", "inches and pounds"],
+)
+def test_other_units_give_the_same_iterates(method, metre, newton):
+    def iterates(metre, newton):
+        table = BarSettings.checked({})
+        values = {
+            "length": table.length * metre,
+            "section": table.section * metre**2,
+            "young": table.young * newton / metre**2,
+            "pressure": table.pressure * newton / metre,
+            "peak": table.peak * newton,
+        }
+        settings = BarSettings.checked({"method": method, **SMALL, **values})
+        return islice(iterations(discretise(settings), method_of(settings)), 40)
+
+    for own, other in zip(iterates(1.0, 1.0), iterates(metre, newton), strict=True):
+        assert relative(other.displacement, own.displacement * metre) < 1e-10
+        assert relative(other.friction_force, own.friction_force * newton) < 1e-10
 
 
 def test_reversing_the_load_reverses_the_answer():

@@ -13,6 +13,7 @@ from app.frame import Frame
 from app.lessons.catalogue import (
     LESSONS,
     PENDING,
+    Control,
     filled,
     kinds_of,
     parts_of,
@@ -25,7 +26,7 @@ from app.lessons.panel import WITHOUT, LessonPanel
 from app.messages import Needs
 from app.state import PageState, Poll, default_settings
 from app.worker.sampling import Sampler
-from solver.lessons.lesson import Control, Lesson
+from solver.lessons.lesson import Lesson
 from solver.scenes import discretise
 from solver.study.quantities.finished import finished_run
 from solver.study.quantities.quantities import reading

@@ -19,10 +19,9 @@ from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
-from solver.study.other_programs import fclib
-from solver.study.other_programs.beside import Beside
-from solver.study.other_programs.brought import read_brought
-from solver.study.other_programs.fclib import contacts_of, local_problem, write_fclib
+from solver.study import fclib
+from solver.study.comparison import Comparison, read_results
+from solver.study.fclib import contacts_of, local_problem, write_fclib
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -72,8 +71,8 @@ def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
 ) -> None:
     settings, problem, reference = solved(scene)
     x, t, values = own_friction(scene)
-    brought = read_brought(table("friction force", x, t, factor * values), "a.csv", settings)
-    beside = Beside(brought, problem)
+    brought = read_results(table("friction force", x, t, factor * values), "a.csv", settings)
+    beside = Comparison(brought, problem)
     assert beside.counted == len(brought.times) > 50
     expected = abs((factor - 1.0) / factor)
     assert beside.of(reference) == pytest.approx(expected, abs=1e-12)
@@ -97,9 +96,9 @@ def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
             t,
             friction.up[np.ix_(where, when)],
         )
-        brought = read_brought(text, "exact.csv", settings)
+        brought = read_results(text, "exact.csv", settings)
         problem = discretise(settings)
-        distances.append(Beside(brought, problem).of(reference_of(problem)))
+        distances.append(Comparison(brought, problem).of(reference_of(problem)))
     assert distances[0] > distances[1] > distances[2]
 
 
@@ -109,8 +108,8 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
     text = table("friction force", x, t, values)
     # The clamped node shares its friction with the clamp, and the run is over after a second.
     text += "\n0.0,0.5,1e9\n0.1,1.5,1e9\n0.1,-0.5,1e9"
-    brought = read_brought(text, "a.csv", settings)
-    beside = Beside(brought, problem)
+    brought = read_results(text, "a.csv", settings)
+    beside = Comparison(brought, problem)
     assert beside.counted == len(brought.times) - 3
     assert beside.of(reference) < 1e-12
 
@@ -136,7 +135,7 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
 )
 def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str) -> None:
     with pytest.raises(SettingError, match=why) as caught:
-        read_brought(text, "theirs.csv", settings_of())
+        read_results(text, "theirs.csv", settings_of())
     assert "theirs.csv" in str(caught.value)
 
 

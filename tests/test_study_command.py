@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 import os
 import re
 import subprocess
@@ -20,8 +19,7 @@ from solver.executors import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
-from solver.study.speed import crossover as measuring
-from solver.study.speed.crossover import FACTORS, crossover, equal_at, notes
+from solver.study.speed import sizes as measuring
 from solver.study.speed.error_against_time import (
     INCREMENTAL,
     LEVELS,
@@ -29,8 +27,8 @@ from solver.study.speed.error_against_time import (
     Study,
     forms_of,
 )
-from solver.study.speed.growth import growth
-from solver.study.speed.study_report import winners
+from solver.study.speed.sizes import FACTORS, crossover, growth
+from solver.study.speed.study_report import notes, winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
@@ -142,11 +140,11 @@ def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     found = growth(
         BarSettings.checked({"method": "paper", "elements": 8, "instants": 5, "substructures": 3})
     )
-    assert {one.setting: [size.size for size in one.sizes] for one in found} == {
-        "elements": [8, 16],
-        "substructures": [1, 4],
+    assert {one.setting: one.sizes for one in found} == {
+        "elements": (8, 16),
+        "substructures": (1, 4),
     }
-    assert all(size.seconds > 0.0 for one in found for size in one.sizes)
+    assert all(seconds > 0.0 for one in found for seconds in one.seconds)
 
 
 PROGRAM = "import solver.__main__, solver.executors as found; print(found.machine())"
@@ -196,10 +194,3 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
     assert any("Wires 4" in line and "left out" in line for line in notes(found))
-
-
-def test_sizes_between_which_latin_comes_ahead_are_joined_by_powers() -> None:
-    assert equal_at([4, 16, 64], [4.0, 2.0, 0.5]) == pytest.approx(32.0)
-    assert equal_at([4, 16, 64], [4.0, math.nan, 0.25]) == pytest.approx(16.0)
-    assert equal_at([4, 16], [0.5, 0.4]) is None
-    assert equal_at([4, 16], [4.0, 2.0]) is None

@@ -21,9 +21,9 @@ from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study.proof import report
-from solver.study.proof.case import Answer, KnownCase, KnownNumber
+from solver.study.proof.case import Answer, KnownCase, Number
 
-CASES = list(report.cases())
+CASES = report.cases()
 
 
 def read(folder: Path) -> list[dict[str, str]]:
@@ -34,9 +34,9 @@ def read(folder: Path) -> list[dict[str, str]]:
 def wrong(case: KnownCase) -> KnownCase:
     """Give a case that claims one more in a hundred than is true."""
 
-    def numbers(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
-        for number in case.numbers(settings, answer):
-            yield replace(number, exact=1.01 * number.exact)
+    def numbers(answer: Answer) -> Iterator[Number]:
+        for quantity, unit, exact, found in case.numbers(answer):
+            yield quantity, unit, 1.01 * exact, found
 
     return replace(case, numbers=numbers)
 
@@ -65,7 +65,7 @@ def test_each_scene_is_proven() -> None:
 def test_a_wrong_number_fails_and_says_so(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(report, "cases", lambda: iter([CASES[number], wrong(CASES[number])]))
+    monkeypatch.setattr(report, "cases", lambda: [CASES[number], wrong(CASES[number])])
     assert main(["proof", "--out", str(tmp_path)]) == 1
     assert "FAILS" in capsys.readouterr().out
     verdicts = [row["holds"] for row in read(tmp_path)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.frame import Frame
@@ -11,7 +12,7 @@ from app.state import SEARCH
 from app.units import number, percent, unit_for
 from app.views.catalogue import CARDS
 from app.views.view import View
-from solver.lessons.lesson import SUBJECTS, Control, Lesson
+from solver.lessons.lesson import SUBJECTS, Lesson
 from solver.lessons.reading import lesson_from_file
 from solver.settings import Settings
 from solver.study.quantities.quantities import reading
@@ -27,6 +28,13 @@ VALUE = re.compile(r"\{value:(.*?)\}")
 PENDING = "…"
 """What only the rest of the run will tell."""
 _KINDS = {kind.name: kind for card in CARDS for kind in card}
+
+
+@dataclass(frozen=True)
+class Control:
+    """A place in a sentence where the widget of a setting stands."""
+
+    setting: str
 
 
 def settings_of(lesson: Lesson) -> Settings:

@@ -15,6 +15,7 @@ from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.catalogue import (
     LESSONS,
+    Control,
     filled,
     kinds_of,
     parts_of,
@@ -28,7 +29,7 @@ from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
 from app.widgets import button, dialog, download
-from solver.lessons.lesson import SUBJECTS, Control, Lesson
+from solver.lessons.lesson import SUBJECTS, Lesson
 
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1

@@ -14,7 +14,7 @@ from app.views.view import ExtraView, color_bar, extent, hover, whole
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
-from solver.study.quantities.clip_measures import can_be_clipped
+from solver.study.quantities.reduction_measures import can_be_clipped
 
 LEAST, FEWEST = 1e-4, 8
 """Of singular values, the least size and the fewest that the axes show."""

@@ -21,12 +21,9 @@ from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.scenes import kind_of
-from solver.study.other_programs.beside import Beside
-from solver.study.other_programs.brought import Brought
-from solver.study.quantities.clip_measures import can_be_clipped, clips_in, products_in
-from solver.study.quantities.cycles import cycles_of, ends_of
-from solver.study.quantities.shakedown import Fate, fate_of
-from solver.study.quantities.slips import slips_of
+from solver.study.comparison import Comparison, OtherResults
+from solver.study.quantities.cycles import Fate, cycles_of, ends_of, fate_of, slips_of
+from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
@@ -225,8 +222,8 @@ def _pairs(sizes: Sizes) -> Floats:
 
 
 @lru_cache(maxsize=1)
-def _laid_beside(brought: Brought, sampler: Sampler, interface: str) -> Beside:
-    return Beside(brought, sampler.problem, interface)
+def _laid_beside(brought: OtherResults, sampler: Sampler, interface: str) -> Comparison:
+    return Comparison(brought, sampler.problem, interface)
 
 
 def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:

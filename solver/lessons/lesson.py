@@ -1,33 +1,18 @@
-"""What a lesson is: a question, a prediction, a run with one or two controls, an explanation."""
+"""A lesson: a question, a prediction, a run with one or two controls, claims that runs test."""
 
 from __future__ import annotations
 
-import re
+import math
+from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
 
+from solver.checked import dump
 from solver.settings import Settings
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantities import Reading
 
 SUBJECTS = "mechanics", "method"
-PLACEHOLDER = re.compile(r"\{(.*?)\}")
-
-
-@dataclass(frozen=True)
-class Control:
-    """A place in a sentence where the widget of a setting stands."""
-
-    setting: str
-
-
-@dataclass(frozen=True)
-class Value:
-    """A place in a sentence where a quantity of the present run stands."""
-
-    reading: Reading
-
-
-Piece = str | Control | Value
 
 
 @dataclass(frozen=True)
@@ -47,7 +32,7 @@ class Expected:
     words: str
 
     def holds(self, value: float) -> bool:
-        """Tell whether a measured value is as expected; NaN never is."""
+        """Whether a measured value is as expected; NaN never is."""
         return self.low <= value <= self.high
 
 
@@ -70,6 +55,25 @@ class Claim:
     reading: Reading
     expected: Expected
 
+    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
+        """Whether it holds in a run, and what was measured there, in words.
+
+        A quantity of one instant has to be as expected where the plots stand, too: at a share of
+        the interval.
+        """
+        quantity, value = self.reading.quantity, self.reading(run)
+        holds, words = self.expected.holds(value), _written(value, quantity.unit)
+        if quantity.at_instant is not None:
+            seen = quantity.at_instant(run, round(share * (run.problem.n_instants - 1)))
+            if not self.expected.holds(seen):
+                holds = False
+                words += f", but {_written(seen, quantity.unit)} at the instant of the plots"
+        return holds, f"{self.reading.title}: {words}; expected {self.expected.words}"
+
+
+def _written(value: float, unit: str) -> str:
+    return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()
+
 
 @dataclass(frozen=True, eq=False)
 class EndingClaim:
@@ -78,6 +82,11 @@ class EndingClaim:
     claim: str
     settings: Settings
     says: str
+
+    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
+        """Whether it holds in a run, and what that says, whatever share the plots stand at."""
+        message = run.solution.status.advice
+        return self.says in message, f"The run says: {message}; expected {self.says}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +144,7 @@ class Lesson:
     explanation: tuple[str, ...]
     checkpoints: tuple[Claim | EndingClaim, ...]
     instant: float
-    interface: str
+    interface: str = ""
     draw: str = ""
     beside: tuple[str, ...] = ()
     until: float = 1.0
@@ -147,7 +156,7 @@ class Lesson:
         Of the checkpoints that change nothing else and ask for the quantity of the first of them:
         the middle of what is expected, infinite for never.
         """
-        found: dict[float, float] = {}
+        curve: dict[float, float] = {}
         own, asked = self.settings.values(), ""
         for claim in self.checkpoints:
             if not isinstance(claim, Claim):
@@ -156,31 +165,29 @@ class Lesson:
             same = all(values[name] == own[name] for name in own if name != self.draw)
             if self.draw in values and same and asked in ("", claim.reading.name):
                 asked = claim.reading.name
-                found[values[self.draw]] = 0.5 * (claim.expected.low + claim.expected.high)
-        return sorted(found.items())
+                curve[values[self.draw]] = 0.5 * (claim.expected.low + claim.expected.high)
+        return sorted(curve.items())
 
     @property
     def drawn_quantity(self) -> str:
         """What that curve shows, in words."""
-        claims = (one for one in self.checkpoints if isinstance(one, Claim))
-        return next((one.reading.title for one in claims), "")
+        claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
+        return next((claim.reading.title for claim in claims), "")
 
 
-def kind_of_place(place: str) -> tuple[Literal["control", "value", ""], str]:
-    """Split what stands between braces; an empty kind is none that there is."""
-    kind, _, name = place.partition(":")
-    if kind == "control":
-        return "control", name
-    return ("value", name) if kind == "value" else ("", name)
-
-
-def pieces(paragraph: str) -> list[Piece]:
-    """Split a paragraph at its placeholders; what is between them is Markdown."""
-    found: list[Piece] = []
-    for number, part in enumerate(PLACEHOLDER.split(paragraph)):
-        if number % 2 == 0:
-            found.extend([part] if part else [])
-        else:
-            kind, name = kind_of_place(part)
-            found.append(Control(name) if kind == "control" else Value(reading(name)))
-    return found
+def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
+    """Whether what a lesson claims holds, each with a line; equal settings share a run."""
+    wanted: defaultdict[str, set[str | None]] = defaultdict(set)
+    for claim in lesson.checkpoints:
+        reads = claim.reading.quantity.reads if isinstance(claim, Claim) else None
+        wanted[dump(claim.settings)].add(reads)
+    runs: dict[str, FinishedRun] = {}
+    for claim in lesson.checkpoints:
+        key = dump(claim.settings)
+        if key not in runs:
+            kinds = wanted[key]
+            runs[key] = finished_run(
+                claim.settings, errors="errors" in kinds, indicators="indicators" in kinds
+            )
+        holds, words = claim.tested(runs[key], lesson.instant)
+        yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"

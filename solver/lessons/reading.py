@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -12,15 +13,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import read_text, why
 from solver.files import scene_settings
-from solver.lessons.lesson import (
-    PLACEHOLDER,
-    SUBJECTS,
-    Claim,
-    EndingClaim,
-    Expected,
-    Lesson,
-    kind_of_place,
-)
+from solver.lessons.lesson import SUBJECTS, Claim, EndingClaim, Expected, Lesson
 from solver.settings import Settings
 from solver.study.quantities.quantities import reading
 
@@ -58,6 +51,7 @@ OF_CHECKPOINT = {
 OF_VERDICT = {"claim": str, "settings": dict, "says": str}
 """Keys of one that tells with which words a run ends; `settings` may be left out."""
 WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
+INTERVAL = "a share of the interval, from 0 to 1"
 MOST_CONTROLS = 2
 FEWEST_POINTS = 3
 """Of a curve that one may draw."""
@@ -94,7 +88,7 @@ def lesson_from_file(path: Path) -> Lesson:
 
 @contextlib.contextmanager
 def _in(place: str) -> Iterator[None]:
-    """Say of a refusal where it is."""
+    """Put a place before what is refused in it."""
     try:
         yield
     except SettingError as refusal:
@@ -106,61 +100,36 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
     kind = scene_settings(values["scene"])
     with _in("settings"):
         settings = kind.checked(values["settings"])
-    choices, controls = _names("choices", values), _names("controls", values)
-    if not 1 <= values["right"] <= len(choices) or len(choices) < 2:
-        allowed = f"the number of one of at least two choices, of which there are {len(choices)}"
-        raise SettingError("right", values["right"], allowed, "count from 1")
-    until = values.get("until", 1.0)
-    _check_moments(values["instant"], until)
-    if values["subject"] not in SUBJECTS:
-        raise SettingError(
-            "subject", values["subject"], ", ".join(SUBJECTS), "say what it is about"
-        )
-    views = _names("views", values)
+    choices, controls, views = (_names(key, values) for key in ("choices", "controls", "views"))
     beside = _names("beside", values) if "beside" in values else ()
-    if not set(beside) <= set(views):
-        raise SettingError("beside", beside, ", ".join(views), "choose some of its views")
+    right, until, subject = values["right"], values.get("until", 1.0), values["subject"]
+    allowed = f"the number of one of at least two choices, of which there are {len(choices)}"
+    for key, is_right, can, remedy in (
+        ("right", len(choices) >= 2 and 1 <= right <= len(choices), allowed, "count from 1"),
+        ("instant", 0.0 <= values["instant"] <= 1.0, INTERVAL, "say where its plots stand"),
+        ("until", 0.0 < until <= 1.0, f"{INTERVAL} and above 0", "say how far its picture moves"),
+        ("subject", subject in SUBJECTS, ", ".join(SUBJECTS), "say what it is about"),
+        ("beside", set(beside) <= set(views), ", ".join(views), "choose some of its views"),
+    ):
+        if not is_right:
+            raise SettingError(key, values.get(key), can, remedy)
     _check_controls(controls, settings)
-    with _in("text"):
-        text = _paragraphs(values["text"], controls)
-    with _in("explanation"):
-        explanation = _paragraphs(values["explanation"], controls)
-    found = Lesson(
-        name=name,
-        order=values["order"],
-        subject=values["subject"],
-        title=values["title"],
-        question=values["question"],
-        choices=choices,
-        right=values["right"] - 1,
-        why=values["why"],
-        settings=settings,
-        controls=controls,
-        views=views,
-        text=text,
-        explanation=explanation,
-        checkpoints=tuple(_checkpoints(values["checkpoints"], settings)),
-        instant=float(values["instant"]),
-        interface=values.get("interface", ""),
-        draw=values.get("draw", ""),
-        beside=beside,
-        until=float(until),
-    )
-    points = [place for place, value in found.curve if place > 0.0 and math.isfinite(value)]
-    if found.draw and len(points) < FEWEST_POINTS:
+    paragraphs = {}
+    for key in ("text", "explanation"):
+        with _in(key):
+            paragraphs[key] = _paragraphs(values[key], controls)
+    read = {
+        **{key: value for key, value in values.items() if key != "scene"},
+        **{"settings": settings, "choices": choices, "controls": controls, "views": views},
+        **{"beside": beside, "right": right - 1, "until": until, **paragraphs},
+        "checkpoints": tuple(_checkpoints(values["checkpoints"], settings)),
+    }
+    lesson = Lesson(name=name, **read)
+    points = [place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)]
+    if lesson.draw and len(points) < FEWEST_POINTS:
         allowed = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
-        raise SettingError("draw", found.draw, allowed, "write more checkpoints, or leave it out")
-    return found
-
-
-def _check_moments(instant: float, until: float) -> None:
-    """Refuse moments outside the interval."""
-    if not 0.0 <= instant <= 1.0:
-        allowed = "a share of the interval, from 0 to 1"
-        raise SettingError("instant", instant, allowed, "say where its plots stand")
-    if not 0.0 < until <= 1.0:
-        allowed = "a share of the interval, above 0 and up to 1"
-        raise SettingError("until", until, allowed, "say how far its picture moves")
+        raise SettingError("draw", lesson.draw, allowed, "write more checkpoints, or leave it out")
+    return lesson
 
 
 def _check_keys(
@@ -179,10 +148,10 @@ def _check_keys(
 
 
 def _names(key: str, values: Mapping[str, Any]) -> tuple[str, ...]:
-    found = values[key]
-    if not found or not all(isinstance(one, str) and one for one in found):
-        raise SettingError(key, found, "a list of texts, at least one", "write them in quotes")
-    return tuple(found)
+    names = values[key]
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise SettingError(key, names, "a list of texts, at least one", "write them in quotes")
+    return tuple(names)
 
 
 def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
@@ -190,21 +159,21 @@ def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
     if len(controls) > MOST_CONTROLS:
         allowed = f"at most {MOST_CONTROLS} settings"
         raise SettingError("controls", controls, allowed, "a lesson is about one thing")
-    working = [one for one in settings.definitions() if settings.applies(one)]
-    for one in controls:
-        if one not in working:
+    working = [name for name in settings.definitions() if settings.applies(name)]
+    for name in controls:
+        if name not in working:
             remedy = "name a setting that does something with the lesson's settings"
-            raise SettingError("controls", one, ", ".join(working), remedy)
+            raise SettingError("controls", name, ", ".join(working), remedy)
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
-    """Split text at empty lines, and refuse placeholders that stand for nothing."""
-    for place in PLACEHOLDER.findall(text):
-        kind, name = kind_of_place(place)
+    """Paragraphs between empty lines; placeholders that stand for nothing are refused."""
+    for place in re.findall(r"\{(.*?)\}", text):
+        kind, _, name = place.partition(":")
         if kind == "value":
             reading(name)
         elif kind != "control" or name not in controls:
-            known = ", ".join(f"{{control:{one}}}" for one in controls)
+            known = ", ".join(f"{{control:{control}}}" for control in controls)
             remedy = "correct what stands in braces"
             raise SettingError("placeholder", place, f"{known}, {{value:QUANTITY}}", remedy)
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
@@ -238,7 +207,7 @@ def _expected(value: Any, tolerance: float | None) -> Expected:
     if value == "never" and tolerance is None:
         return Expected(math.inf, math.inf, "never")
     if isinstance(value, list) and tolerance is None and len(value) == 2:
-        if all(_is_number(one) for one in value) and value[0] <= value[1]:
+        if all(map(_is_number, value)) and value[0] <= value[1]:
             return Expected(value[0], value[1], f"{value[0]:g} to {value[1]:g}")
     elif _is_number(value) and tolerance is not None:
         if not 0.0 <= tolerance < 1.0:

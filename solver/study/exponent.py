@@ -29,7 +29,7 @@ class Exponent:
     margin: float
 
     def __str__(self) -> str:
-        """Write it with its margin, where it has one."""
+        """Value with its margin, where it has one."""
         known = f"{self.value:.2f}"
         return known if math.isnan(self.margin) else f"{known} ± {self.margin:.2f}"
 
@@ -50,12 +50,9 @@ def exponent_of(x: Sequence[float], y: Sequence[float]) -> Exponent | None:
     points = points[np.isfinite(points).all(axis=1) & (points > 0.0).all(axis=1)]
     if len(np.unique(points[:, 0])) < 2:
         return None
-    along, up = np.log(points).T
-    along = along - along.mean()
-    slope = float(along @ up / (along @ along))
-    free = len(points) - 2
-    if free == 0:
-        return Exponent(slope, math.nan)
-    scatter = up - up.mean() - slope * along
-    deviation = math.sqrt(scatter @ scatter / free / (along @ along))
-    return Exponent(slope, float(stdtrit(free, 0.5 + 0.5 * CONFIDENCE)) * deviation)
+    x, y = np.log(points).T
+    if len(points) == 2:
+        return Exponent(float(np.polyfit(x, y, 1)[0]), math.nan)
+    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
+    quantile = stdtrit(len(points) - 2, 0.5 + 0.5 * CONFIDENCE)
+    return Exponent(float(slope), float(quantile * math.sqrt(covariance[0, 0])))

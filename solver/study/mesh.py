@@ -113,7 +113,7 @@ def instants_around(settings: Settings) -> tuple[list[Settings], int]:
 
 
 def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[list[Settings], int]:
-    """Multiply counts and add to them; give settings, and the place of those as they are."""
+    """Settings with multiples of counts, more added, and the place of those as they are."""
 
     def refined(factor: float) -> Settings:
         sizes = {name: factor * count + more for name, count in counts.items()}
@@ -128,12 +128,12 @@ def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[li
 
 
 def decides(settings: Settings, asked: Reading) -> bool:
-    """Tell whether a mesh decides a quantity: not how a run went, but what it came to."""
+    """Whether a mesh decides a quantity: not how a run went, but what it came to."""
     return not asked.quantity.is_of_course and asked.quantity.applies(settings)
 
 
 def value_on(settings: Settings, asked: Reading) -> float:
-    """Take a quantity of the solution on a mesh; NaN where no run certifies one."""
+    """A quantity of the solution on a mesh; NaN where no run certifies one."""
     run = finished_run(settings.replace(finish="at-once"), errors=False, indicators=False)
     return asked(run) if run.solution.is_certified else math.nan
 
@@ -144,25 +144,29 @@ def size_of(settings: Settings) -> str:
     return f"{elements} elements, {settings.values()['instants']} instants"
 
 
-def answer(found: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
+def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     """Two sentences on what three meshes, or numbers of instants, tell.
 
     Parameters
     ----------
-    found
+    refinement
         What they came to.
     unit
         Of the values; empty for a pure number.
     size
         What is halved.
     """
-    if not found.is_told:
+    if not refinement.is_told:
         return "One of the runs came to no certified solution, or has no such value: no answer."
-    if found.margin == 0.0:
+    if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
-    limit = f"{found.limit:.4g} ± {found.margin:.2g} {unit}".rstrip()
-    own = f"This run is within {_share(found)} of that." if found.limit else "That is nothing."
-    order = found.order
+    limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
+    own = (
+        f"This run is within {_share(refinement)} of that."
+        if refinement.limit
+        else "That is nothing."
+    )
+    order = refinement.order
     if order is None:
         return f"It follows no power of {size}: {limit} is all that is known. {own}"
     if order < LEAST_ORDER:
@@ -177,7 +181,7 @@ def answer(found: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
 
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:
-    """Compare what both leave of the error, in a sentence; empty where one tells nothing."""
+    """What both leave of the error, in a sentence; empty where one of them tells nothing."""
     if not (elements.is_told and instants.is_told):
         return ""
     if elements.deviation == instants.deviation == 0.0:
@@ -187,5 +191,5 @@ def which_to_refine(elements: Refinement, instants: Refinement) -> str:
     return f"Refine {more} first: {left}."
 
 
-def _share(found: Refinement) -> str:
-    return f"{100.0 * found.deviation:.2g} %" if found.deviation < 1.0 else "all of it"
+def _share(refinement: Refinement) -> str:
+    return f"{100.0 * refinement.deviation:.2g} %" if refinement.deviation < 1.0 else "all of it"

@@ -1,7 +1,7 @@
 """A report: sections of words, tables and charts, and the one HTML page that a command makes of it.
 
-Whoever shows a report takes its words and tables as they are, and draws its charts in its own way.
-For pages they are drawn by an entry point of the group `slipfront.renderers`: the engine has none.
+Words and tables are HTML. Charts are drawn by an entry point of the group `slipfront.renderers`, as
+the engine has none.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pi
 
 @dataclass(frozen=True, eq=False)
 class PlotSection:
-    """Charts side by side, and words for those who cannot see them."""
+    """Charts side by side, and a heading for those who cannot see them."""
 
     heading: str
     charts: Sequence[Chart]
@@ -32,7 +32,7 @@ class PlotSection:
 Section = str | PlotSection
 """Words and tables are HTML."""
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
-"""Gives what all charts of a page need, once, and each section (HTML that loads nothing)."""
+"""From sections, what all charts of a page need, once, and each of them as HTML of its own."""
 PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
@@ -49,6 +49,9 @@ th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: le
   vertical-align: top; }}
 td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
 td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
+td.right {{ border-left-color: #0072B2; }} td.unsolved {{ border-left-color: #E69F00; }}
+td.refused {{ border-left-color: #56B4E9; }} td.unclear {{ border-left-color: #999999; }}
+td.wrong {{ border-left-color: #D55E00; }}
 td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
 </style>
 {head}
@@ -56,6 +59,7 @@ td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
 {body}
 </html>
 """
+"""Colours of verdicts are of Okabe and Ito's palette, told apart by the colour-blind."""
 
 
 def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
@@ -70,19 +74,19 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
     OSError
         When the file cannot be written.
     """
-    plots = [one for one in report if isinstance(one, PlotSection)]
+    plots = [part for part in report if isinstance(part, PlotSection)]
     render = renderer() if plots else None
     head, drawn = render(plots) if render else ("", [""] * len(plots))
     note = NO_CHARTS if plots and render is None else ""
     places = iter(drawn)
-    parts = [one if isinstance(one, str) else next(places) for one in report]
+    parts = [part if isinstance(part, str) else next(places) for part in report]
     body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
     write(file, PAGE.format(title=escape(title), head=head, body=body))
     return note
 
 
 def renderer() -> Renderer | None:
-    """Find who draws charts, if anybody is installed."""
+    """What draws charts, if anything that does is installed."""
     for found in entry_points(group=GROUP):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             render: Renderer = found.load()
@@ -91,21 +95,26 @@ def renderer() -> Renderer | None:
 
 
 def bullets(lines: Sequence[str]) -> str:
-    """Write sentences as a list."""
+    """Sentences as a list."""
     return "<ul>\n" + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
 
 
+def cell(text: str, kind: str = "") -> str:
+    """A cell of a table; kinds are "number", "verdict right" and others of the style sheet."""
+    return f'<td class="{kind}">{escape(text)}</td>' if kind else f"<td>{escape(text)}</td>"
+
+
 def table(heads: Sequence[str], rows: Sequence[str]) -> str:
-    """Write a table of rows that are cells already."""
+    """A table of rows that are cells already."""
     head = "".join(f"<th>{escape(text)}</th>" for text in heads)
     body = "\n".join(f"<tr>{row}</tr>" for row in rows)
     return f"<table>\n<tr>{head}</tr>\n{body}\n</table>"
 
 
 def plain_table(rows: Sequence[Sequence[str]]) -> str:
-    """Write a table of texts, whose first row is its head."""
+    """A table of texts, whose first row is its head."""
     head, *rest = rows
-    return table(head, ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rest])
+    return table(head, ["".join(map(cell, row)) for row in rest])
 
 
 def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:

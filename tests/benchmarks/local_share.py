@@ -21,7 +21,7 @@ from solver.latin.local_stage import LocalStage
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.quantities.clip_measures import can_be_clipped, clips_in
+from solver.study.quantities.reduction_measures import can_be_clipped, clips_in
 
 CASES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("bar", {"elements": 50, "instants": 101}),

@@ -23,9 +23,8 @@ from solver.remarks import print_tables
 from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.page import aligned
-from solver.study.speed.error_against_time import error_against_time
+from solver.study.speed.error_against_time import error_against_time, seconds_of
 from solver.study.speed.study_report import conditions, table, winners
-from solver.study.speed.timed import seconds_of
 
 
 def rows(settings: Settings, repeats: int) -> Iterator[list[str]]:

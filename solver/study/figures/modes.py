@@ -22,7 +22,7 @@ MODE = PanelAxis("Space mode", "1/√m")
 
 
 def figure_5(runs: PaperRuns) -> PaperFigure:
-    """Draw the singular values of the friction force in every substructure."""
+    """Singular values of the friction force in every substructure."""
     parts = runs.friction_forces
     largest = max(part.values[0] for part in parts)
     noise = runs.five.records[-1].error_force
@@ -51,7 +51,7 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
         panels,
         "In substructures 1 and 2, which mostly stick, the singular values fall very rapidly; in 3 "
         "to 5, which a large sliding front sweeps, very slowly.",
-        (_mode_counts(parts, noise * largest), _decay(parts, largest), _as_a_front(parts[2:])),
+        (_mode_counts(parts, noise * largest), _as_a_front(parts[2:])),
         "SVD of the converged friction force per length, weighted in space and time, relative to "
         "the largest value of all substructures; dotted: a front of constant speed. Values below "
         f"{noise:.0e} of the largest are below the solution's own error: at 900 N nothing slides "
@@ -74,23 +74,8 @@ def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
     return Finding(
         f"Modes that leave at most 10/1/0.1 % of a substructure's friction force: {words}. All "
         f"would be {len(parts[0].values)}.",
-        {
-            f"modes_{number}_{share:g}": count
-            for number, row in enumerate(counts, start=1)
-            for share, count in zip(SHARES, row, strict=True)
-        },
         3 * max(one_percent[:2]) <= min(one_percent[2:]),
-    )
-
-
-def _decay(parts: Sequence[Decomposition], largest: float) -> Finding:
-    """The fifth singular value of every substructure beside the largest of all."""
-    shares = [float(part.values[4] / largest) for part in parts]
-    words = ", ".join(f"{share:.1g}" for share in shares)
-    return Finding(
-        f"Fifth singular value over the largest of all, substructures 1 to 5: {words}.",
-        {f"fifth_{number}": share for number, share in enumerate(shares, start=1)},
-        1000.0 * max(shares[:2]) <= min(shares[2:]),
+        {f"modes_{number}": count for number, count in enumerate(one_percent, start=1)},
     )
 
 
@@ -101,13 +86,13 @@ def _as_a_front(parts: Sequence[Decomposition]) -> Finding:
     return Finding(
         f"In substructures 3 to 5 the singular values 1 to 5, over the first, are {low:.2f} to "
         f"{high:.2f} times 1/(2n − 1), that of a front of constant speed.",
-        {"front_low": low, "front_high": high},
         low >= 0.5 and high <= 1.5,
+        {"front_low": low, "front_high": high},
     )
 
 
 def figure_6(runs: PaperRuns) -> PaperFigure:
-    """Draw the friction force's space modes 1, 3 and 5 in substructures 4 and 5."""
+    """The friction force's space modes 1, 3 and 5 in substructures 4 and 5."""
     fourth, fifth = runs.friction_forces[3:]
     alike = fourth.correlations(fifth.space_modes)
     turned = fifth.space_modes * np.sign(alike)
@@ -129,8 +114,8 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     words = ", ".join(f"{value:.3f}" for value in values.values())
     likeness = Finding(
         f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}.",
-        {f"likeness_4_5_{order}": value for order, value in values.items()},
         min(values.values()) >= ALIKE,
+        {f"likeness_{order}": value for order, value in values.items()},
     )
     return PaperFigure(
         6,
@@ -144,27 +129,22 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     )
 
 
-def _sign_changes(fourth: Decomposition, fifth: Decomposition) -> Finding:
+def _sign_changes(*parts: Decomposition) -> Finding:
     """Numbers of sign changes along modes 1, 3, 5: how local they are."""
     counts = [
-        [int(np.count_nonzero(np.diff(np.sign(part.space_modes[:, order])))) for order in (0, 2, 4)]
-        for part in (fourth, fifth)
+        np.count_nonzero(np.diff(np.sign(part.space_modes[:, :5:2]), axis=0), axis=0).tolist()
+        for part in parts
     ]
     words = " and ".join(", ".join(map(str, row)) for row in counts)
     return Finding(
         f"Modes 1, 3, 5 change sign {words} times (substructures 4 and 5): later modes are more "
         "local.",
-        {
-            f"sign_changes_{number}_{order}": count
-            for number, row in zip((4, 5), counts, strict=True)
-            for order, count in zip((1, 3, 5), row, strict=True)
-        },
         all(row[0] < row[1] < row[2] for row in counts),
     )
 
 
 def figure_7(runs: PaperRuns) -> PaperFigure:
-    """Draw the first three SVD modes of the displacement of substructure 5."""
+    """The first three SVD modes of the displacement of substructure 5."""
     displacement, force = runs.displacements[-1], runs.friction_forces[-1]
     curves = tuple(
         PanelCurve(
@@ -178,9 +158,9 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
         f"The first 1, 2, 3 modes leave {left[1]:.1%}, {left[2]:.2%}, {left[3]:.2%} of the "
         f"displacement; 1 % takes {counts[0]} modes, where the friction force takes {counts[1]} of "
         f"its {len(force.values)}.",
+        left[3] <= 0.01,
         {f"left_by_{rank}": share for rank, share in left.items()}
         | {"modes_displacement": counts[0], "modes_force": counts[1]},
-        left[3] <= 0.01,
     )
     return PaperFigure(
         7,
@@ -194,7 +174,7 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
 
 
 def figure_8(runs: PaperRuns) -> PaperFigure:
-    """Draw the first three displacement modes of the PGD in substructure 5."""
+    """The first three displacement modes of the PGD in substructure 5."""
     exact, last = runs.displacements[-1], runs.five_reduced.last
     kept = _displacement_modes(last)[:, :3]
     root = np.sqrt(exact.space_weights)[:, None]
@@ -227,10 +207,8 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
 
 def _displacement_modes(iterate: Iterate) -> Array:
     """The PGD's displacement modes of the last substructure on its friction rows."""
-    part = iterate.problem.substructures[-1]
-    rubs = np.isin(part.rows, iterate.problem.friction.tangent.above)
-    modes: Array = iterate.bases[-1].displacement_modes[rubs]
-    return modes
+    rubs = np.isin(iterate.problem.substructures[-1].rows, iterate.problem.friction.tangent.above)
+    return np.asarray(iterate.bases[-1].displacement_modes[rubs])
 
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
@@ -251,8 +229,8 @@ def _correlation(exact: Decomposition, modes: Array, name: str, words: str) -> F
     shown = ", ".join(f"{value:.3f}" for value in values)
     return Finding(
         f"Correlation of PGD with SVD modes 1, 2, 3, {words}: {shown}.",
-        {f"{name}_{order}": float(value) for order, value in enumerate(values, start=1)},
         bool(values.min() >= ALIKE),
+        {f"{name}_{order}": float(value) for order, value in enumerate(values, start=1)},
     )
 
 
@@ -269,10 +247,10 @@ def _reduced_errors(runs: PaperRuns) -> Finding:
         f"displacement is then {last.error_displacement:.1%} wrong, the friction force "
         f"{last.error_force:.1%}. In substructure {len(modes)} an SVD takes {best} modes for "
         f"10/1/0.1 % of the displacement alone, {best_force} for the friction force alone.",
+        last.error_displacement <= 0.01,
         {
             "largest_basis": max(modes),
             "error_displacement": last.error_displacement,
             "error_force": last.error_force,
         },
-        last.error_displacement <= 0.01,
     )

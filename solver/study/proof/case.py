@@ -5,16 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import urlencode
 
-import numpy as np
-
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 
 LATIN, INCREMENTAL = "LATIN", "incremental"
@@ -22,26 +21,37 @@ CLOSED_FORMS, PUBLISHED = "Closed forms", "Published numbers"
 """Parts of the report, by where what is known is from."""
 
 
-@dataclass(frozen=True)
-class KnownNumber:
-    """A number that is known, and what a run has for it, in the same unit."""
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A problem with its settings, and what a run or a reference has for it."""
 
-    quantity: str
-    unit: str
-    exact: float
-    found: float
-
-    @property
-    def deviation(self) -> float:
-        """Distance of the two over what is known."""
-        return float(np.abs(self.found - self.exact) / np.abs(self.exact))
-
-
-class Answer(NamedTuple):
-    """A problem, and what a run or a reference has for it."""
-
+    settings: Any
     problem: Problem
     fields: LoopFields
+
+    @property
+    def bar(self) -> tuple[float, float]:
+        """ES, N, and mu p, N/m, of a uniform bar."""
+        settings = self.settings
+        return settings.young * settings.section, settings.friction * settings.pressure
+
+    @property
+    def support(self) -> tuple[Array, Array]:
+        """Pressing force and friction on a support, N, each of shape (n_points, n_instants)."""
+        contact = self.fields.contact("support")
+        assert contact.normal_force is not None
+        return contact.normal_force, contact.tangential_force
+
+    @property
+    def loop_force(self) -> Array:
+        """Force of the scene's loop, shape (n_instants,)."""
+        force = loop_of(self.settings, self.problem).force
+        assert callable(force)
+        return force(self.fields)
+
+
+Number = tuple[str, str, float, float]
+"""Quantity, unit, what is known, and what an answer has."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +69,7 @@ class KnownCase:
     scene, values
         The problem: a name of the catalogue, and settings that differ from its own.
     numbers
-        What is known, beside what an iterate or a reference has; called with settings and answer.
+        What is known of an answer, beside what it has.
     part
         Of the report.
     """
@@ -69,7 +79,7 @@ class KnownCase:
     allowed: float
     scene: str
     values: Mapping[str, Any]
-    numbers: Callable[[Any, Answer], Iterable[KnownNumber]]
+    numbers: Callable[[Answer], Iterable[Number]]
     part: str = CLOSED_FORMS
 
     @property
@@ -96,18 +106,35 @@ class KnownCase:
 
 @dataclass(frozen=True)
 class ProofRow:
-    """One number of one case by one solver."""
+    """One number of one case by one solver.
+
+    Attributes
+    ----------
+    solver
+        `LATIN` or `INCREMENTAL`.
+    exact, found
+        What is known, and what the solver has, in the same unit.
+    ended
+        Whether the run came to its end; a number of one that did not proves nothing.
+    """
 
     case: KnownCase
     solver: str
-    number: KnownNumber
     ended: bool
-    """Whether the run came to its end; a number of one that did not proves nothing."""
+    quantity: str
+    unit: str
+    exact: float
+    found: float
+
+    @property
+    def deviation(self) -> float:
+        """Distance of the two over what is known."""
+        return float(abs(self.found - self.exact) / abs(self.exact))
 
     @property
     def holds(self) -> bool:
         """Whether it is as it has to be."""
-        return self.ended and self.number.deviation <= self.case.allowed
+        return self.ended and self.deviation <= self.case.allowed
 
 
 def rows_of(case: KnownCase) -> Iterator[ProofRow]:
@@ -116,8 +143,8 @@ def rows_of(case: KnownCase) -> Iterator[ProofRow]:
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     ended = solution.status.ending is Ending.CONVERGED
-    for number in case.numbers(settings, Answer(problem, solution.iterate)):
-        yield ProofRow(case, LATIN, number, ended)
+    for number in case.numbers(Answer(settings, problem, solution.iterate)):
+        yield ProofRow(case, LATIN, ended, *number)
     reference = reference_of(problem)
-    for number in case.numbers(settings, Answer(problem, reference)):
-        yield ProofRow(case, INCREMENTAL, number, bool(reference.converged.all()))
+    for number in case.numbers(Answer(settings, problem, reference)):
+        yield ProofRow(case, INCREMENTAL, bool(reference.converged.all()), *number)

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from itertools import groupby
 from pathlib import Path
 
-from solver.study.page import table, write_csv, write_page
-from solver.study.proof.case import (
-    CLOSED_FORMS,
-    INCREMENTAL,
-    LATIN,
-    PUBLISHED,
-    KnownCase,
-    ProofRow,
-)
-from solver.study.proof.plane import plane_cases
-from solver.study.proof.published import published_cases
+from solver.study.page import cell, table, write_csv, write_page
+from solver.study.proof.bodies import body_cases
+from solver.study.proof.case import CLOSED_FORMS, INCREMENTAL, LATIN, PUBLISHED, KnownCase, ProofRow
 from solver.study.proof.rods import rod_cases
 
 HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<28} {'deviation':>9} {'allowed':>8}"
@@ -39,18 +31,16 @@ HEADS = "", "quantity", "unit", "known", LATIN, "deviation", INCREMENTAL, "devia
 HOLDS, FAILS = "holds", "FAILS"
 
 
-def cases() -> Iterator[KnownCase]:
+def cases() -> list[KnownCase]:
     """All cases, none of them solved yet."""
-    yield from rod_cases()
-    yield from plane_cases()
-    yield from published_cases()
+    return [*rod_cases(), *body_cases()]
 
 
 def line(row: ProofRow) -> str:
     """One row of the console's table."""
     return (
-        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.number.quantity:<28} "
-        f"{row.number.deviation:9.1e} {row.case.allowed:8.0e}"
+        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.quantity:<28} "
+        f"{row.deviation:9.1e} {row.case.allowed:8.0e}"
     )
 
 
@@ -77,39 +67,36 @@ def _verdict(row: ProofRow) -> str:
 
 
 def _entries(row: ProofRow) -> list[str]:
-    number, case = row.number, row.case
+    case = row.case
     return [
-        *(_verdict(row), case.part, case.title, row.solver, number.quantity, number.unit),
-        *(repr(float(number.exact)), repr(float(number.found)), f"{number.deviation:.3g}"),
+        *(_verdict(row), case.part, case.title, row.solver, row.quantity, row.unit),
+        *(repr(float(row.exact)), repr(float(row.found)), f"{row.deviation:.3g}"),
         *(f"{case.allowed:g}", case.mesh, case.source, case.address),
     ]
 
 
 def _html_rows(rows: Iterable[ProofRow]) -> Iterator[str]:
-    """For each case what it is, and below it a line for each of its numbers."""
+    """For each case what it is, and below it a line for each of its numbers, by both solvers."""
     for case, own in groupby(rows, lambda row: row.case):
         link = (
             f'<a class="run" href="{escape(PAGE + case.address)}"><b>{escape(case.title)}</b></a>'
         )
         words = f"{link} · {escape(case.mesh)}<br><small>{escape(case.source)}</small>"
         yield f'<td colspan="{len(HEADS)}" class="more">{words}</td>'
-        by_number: dict[str, list[ProofRow]] = {}
+        numbers: dict[str, dict[str, ProofRow]] = {}
         for row in own:
-            by_number.setdefault(row.number.quantity, []).append(row)
-        yield from map(_cells, by_number.values())
+            numbers.setdefault(row.quantity, {})[row.solver] = row
+        yield from map(_cells, numbers.values())
 
 
-def _cells(rows: Sequence[ProofRow]) -> str:
-    """The line of one number, by both solvers."""
-    first = rows[0]
-    word, kind = (HOLDS, "right") if all(row.holds for row in rows) else (FAILS, "wrong")
-    numbers = {row.solver: row.number for row in rows}
-    texts = [f"{first.number.exact:.6g}"]
+def _cells(rows: Mapping[str, ProofRow]) -> str:
+    """The line of one number, by solver."""
+    first = next(iter(rows.values()))
+    word, kind = (HOLDS, "right") if all(row.holds for row in rows.values()) else (FAILS, "wrong")
+    texts = [f"{first.exact:.6g}"]
     for solver in (LATIN, INCREMENTAL):
-        number = numbers.get(solver)
-        texts += [f"{number.found:.6g}", f"{number.deviation:.1e}"] if number else ["", ""]
+        row = rows.get(solver)
+        texts += [f"{row.found:.6g}", f"{row.deviation:.1e}"] if row else ["", ""]
     texts.append(f"{first.case.allowed:g}")
-    unit = "" if first.number.unit == "-" else first.number.unit
-    words = f"<td>{escape(first.number.quantity)}</td><td>{escape(unit)}</td>"
-    cells = "".join(f'<td class="number">{text}</td>' for text in texts)
-    return f'<td class="verdict {kind}">{word}</td>{words}{cells}'
+    known = cell(first.quantity) + cell("" if first.unit == "-" else first.unit)
+    return cell(word, f"verdict {kind}") + known + "".join(cell(text, "number") for text in texts)

@@ -1,4 +1,4 @@
-"""What contacts and bodies are asked for beside their motion: pressure, extent, stick, stress."""
+"""Quantities of what a run came to: displacement, slip, forces, pressure, stress, its loop."""
 
 from __future__ import annotations
 
@@ -7,69 +7,130 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
 from solver.laws import OPEN
+from solver.reference.distance import determinate_forces
 from solver.scenes import kind_of
 from solver.settings import Settings
+from solver.study.quantities.cycles import ends_of
 from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.measures import largest_load
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import CYCLE, Parameter, quantity
+
+SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
+EQUAL = 1e-6
+"""Relative difference up to which two loads count as equally large."""
+UNLOADED = 1e-3
+"""Share of the largest force below which a structure counts as unloaded."""
 
 
-def peak_pressure(run: FinishedRun, at: float | None) -> float:
-    """Give the largest pressure at any point of an interface, Pa; NaN where it is given.
+def _opens(settings: Settings) -> bool:
+    return settings.opens
+
+
+def _in_the_plane(settings: Settings) -> bool:
+    return kind_of(settings) == "plane"
+
+
+def _over_a_displacement(settings: Settings) -> bool:
+    return settings.loop_is_over_displacement
+
+
+@quantity("Largest displacement", "m")
+def peak_displacement(run: FinishedRun) -> float:
+    """Largest displacement of any node at any instant, m."""
+    inside, moved = run.problem.inside, run.iterate.displacement
+    if inside is None:
+        return float(np.abs(moved).max())
+    return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
+
+
+@quantity("Largest slip", "m")
+def peak_slip(run: FinishedRun) -> float:
+    """Farthest that any point in contact has come along what it rubs on, m."""
+    contacts = map(run.iterate.contact, run.problem.rubbing)
+    return float(max(np.abs(part.slip * (part.status != OPEN)).max() for part in contacts))
+
+
+@quantity("Largest friction, all points", "N")
+def peak_friction(run: FinishedRun) -> float:
+    """Largest sum over all points of the sizes of the friction force, N."""
+    return float(np.abs(run.iterate.friction_force).sum(axis=0).max())
+
+
+def _normal_forces(run: FinishedRun) -> dict[str, Array]:
+    """Pressing forces by interface, where they are unknowns."""
+    forces = {name: run.iterate.contact(name).normal_force for name in run.problem.rubbing}
+    return {name: force for name, force in forces.items() if force is not None}
+
+
+@quantity("Largest pressing force, all points", "N", applies=_opens)
+def peak_pressing(run: FinishedRun) -> float:
+    """Largest sum over all points of the pressing force, N; NaN where it is given."""
+    pressing = list(_normal_forces(run).values())
+    return float(np.concatenate(pressing).sum(axis=0).max()) if pressing else math.nan
+
+
+@quantity("Largest pressure", "Pa", applies=_opens)
+def peak_pressure(run: FinishedRun) -> float:
+    """Largest pressure at any point of an interface, Pa; NaN where it is given.
 
     Force of a point over its tributary length, one metre thick. A single point, as that under a
     spring, has a force and no pressure.
     """
-    found = [
-        float((normal / length[:, None]).max())
-        for name, length in _extended(run).items()
-        if (normal := run.iterate.contact(name).normal_force) is not None
+    lengths, forces = _lengths(run), _normal_forces(run)
+    peaks = [
+        float((forces[name] / lengths[name][:, None]).max()) for name in forces.keys() & lengths
     ]
-    return max(found, default=math.nan)
+    return max(peaks, default=math.nan)
 
 
-def contact_width(run: FinishedRun, at: float | None) -> float:
-    """Give the largest length over which bodies touch at once, m; NaN where they always do."""
-    return max(_contact_width_at(run, instant) for instant in range(run.problem.n_instants))
+@quantity("Largest length in contact", "m", applies=_opens)
+def contact_width(run: FinishedRun) -> float:
+    """Largest length over which bodies touch at once, m; NaN where they always do."""
+    if run.problem.inside is None:
+        return math.nan
+    length, status = _touching(run)
+    return float((length[:, None] * (status != OPEN)).sum(axis=0).max())
 
 
-def stuck_share(run: FinishedRun, at: float | None) -> float:
-    """Give the share of what touches that sticks at the largest load."""
-    return stuck_share_at(run, largest_load(run))
+def _lengths(run: FinishedRun) -> dict[str, Array]:
+    """Tributary lengths of all interfaces that are more than a point, m."""
+    lengths = {name: law.by_point(law.weights) for name, law in run.problem.rubbing.items()}
+    return {name: length for name, length in lengths.items() if len(length) > 1}
 
 
-def stuck_share_at(run: FinishedRun, instant: int) -> float:
-    """Give the share of what touches that sticks at an instant, by length; NaN if nothing does."""
-    length, status = _touching(run, instant)
-    touching = length[status != OPEN].sum()
-    return float(length[status == 0].sum() / touching) if touching else math.nan
+def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
+    """Length and status of the points of these interfaces, one interface after the other."""
+    lengths = _lengths(run)
+    status = [run.iterate.contact(name).status for name in lengths]
+    return np.concatenate(list(lengths.values())), np.concatenate(status)
 
 
-def peak_stress(run: FinishedRun, at: float | None) -> float:
-    """Give the largest von Mises stress at the centre of an element at any instant, Pa; or NaN."""
+@quantity("Largest von Mises stress", "Pa", applies=_in_the_plane)
+def peak_stress(run: FinishedRun) -> float:
+    """Largest von Mises stress at the centre of an element at any instant, Pa."""
     return _peak_stress(run)[0]
 
 
-def peak_stress_x(run: FinishedRun, at: float | None) -> float:
-    """Give where that is along the body, m; NaN without stress."""
+@quantity("x of the largest stress", "m", applies=_in_the_plane)
+def peak_stress_x(run: FinishedRun) -> float:
+    """Place of the largest stress along the body, m; NaN without stress."""
     return float(_peak_stress(run)[1][0])
 
 
-def peak_stress_y(run: FinishedRun, at: float | None) -> float:
-    """Give how high above the lowest side that is, m; NaN without stress."""
+@quantity("y of the largest stress", "m", applies=_in_the_plane)
+def peak_stress_y(run: FinishedRun) -> float:
+    """Height of the largest stress above the lowest side, m; NaN without stress."""
     return float(_peak_stress(run)[1][1])
 
 
 def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
-    """Give the largest von Mises stress, Pa, and the centre of the element that has it first, m."""
+    """Largest von Mises stress, Pa, and the centre of the element that has it first, m."""
     inside, values = run.problem.inside, run.settings.values()
-    nowhere = np.full(2, np.nan)
+    largest, place = 0.0, np.full(2, np.nan)
     if inside is None:
-        return math.nan, nowhere
-    largest, place = 0.0, nowhere
+        return math.nan, place
     for instant in range(run.problem.n_instants):
         moved = inside.displacement(run.iterate.displacement, [instant])[:, :, 0]
         stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
@@ -80,38 +141,131 @@ def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
     return largest, place
 
 
-def spring_force(run: FinishedRun, at: float | None) -> float:
-    """Give the largest force in the spring, N; NaN without one."""
-    return float(run.force.max()) if run.settings.has_spring else math.nan
+@quantity("Largest force in the spring", "N", applies=lambda settings: settings.has_spring)
+def spring_force(run: FinishedRun) -> float:
+    """Largest force in the spring, N."""
+    return float(run.force.max())
 
 
-def _contact_width_at(run: FinishedRun, instant: int) -> float:
-    """Give the length over which bodies touch at an instant, m; NaN where they always do."""
-    if run.problem.inside is None:
+@quantity("Smallest friction that holds")
+def holding_friction(run: FinishedRun) -> float:
+    """Smallest coefficient of friction at which no interface slides as a whole.
+
+    All its friction over all that presses, at the worst instant. NaN where one slides: the run
+    then cannot tell how much more it would take.
+    """
+    needed, friction = 0.0, run.settings.friction
+    if not friction:
         return math.nan
-    length, status = _touching(run, instant)
-    return float(length[status != OPEN].sum())
+    # A point that a clamp holds, too, never slips.
+    determinate = determinate_forces(run.problem)
+    for name, law in run.problem.rubbing.items():
+        contact = run.iterate.contact(name)
+        *_, tangential = run.problem.contact_places[name]
+        is_free = (contact.status == OPEN) | ~determinate[tangential]
+        ways = [(contact.status == way) | is_free for way in (-1, 1)]
+        if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
+            return math.nan
+        if contact.normal_force is None:
+            bound = law.tangential.bound.sum(axis=0) * run.problem.scales.force
+            pressing = np.broadcast_to(bound / friction, run.problem.n_instants)
+        else:
+            pressing = contact.normal_force.sum(axis=0)
+        held = np.abs(contact.tangential_force.sum(axis=0))[pressing > 0.0]
+        needed = max(needed, float((held / pressing[pressing > 0.0]).max(initial=0.0)))
+    return needed if needed > RESIDUE else 0.0
 
 
-def _extended(run: FinishedRun) -> dict[str, Array]:
-    """Give the tributary lengths of all interfaces that are more than a point, m."""
-    lengths = {name: law.by_point(law.weights) for name, law in run.problem.rubbing.items()}
-    return {name: length for name, length in lengths.items() if len(length) > 1}
+def largest_load(run: FinishedRun) -> int:
+    """Instant at which the loop's force first is largest."""
+    size = np.abs(run.force)
+    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
 
-def _touching(run: FinishedRun, instant: int) -> tuple[Array, NDArray[np.int8]]:
-    """Give length and status of the points of these interfaces, one interface after the other."""
-    lengths = _extended(run)
-    status = [run.iterate.contact(name).status[:, instant] for name in lengths]
-    return np.concatenate(list(lengths.values())), np.concatenate(status)
+def displacement_at(run: FinishedRun, instant: int) -> float:
+    """Displacement of the loop at an instant, m; NaN for an angle."""
+    is_length = run.settings.loop_is_over_displacement
+    return float(run.displacement[instant]) if is_length else math.nan
 
 
-def _has_stress(settings: Settings) -> bool:
-    return kind_of(settings) == "plane"
-
-
-OF_STRESS = (
-    Quantity("peak_stress", "Largest von Mises stress", "Pa", peak_stress, applies=_has_stress),
-    Quantity("peak_stress_x", "x of the largest stress", "m", peak_stress_x, applies=_has_stress),
-    Quantity("peak_stress_y", "y of the largest stress", "m", peak_stress_y, applies=_has_stress),
+@quantity(
+    "Displacement at the largest load",
+    "m",
+    applies=_over_a_displacement,
+    at_instant=displacement_at,
 )
+def end_displacement(run: FinishedRun) -> float:
+    """Displacement of the loop where its force first is largest, m."""
+    return displacement_at(run, largest_load(run))
+
+
+@quantity("Displacement left without load", "m", applies=_over_a_displacement)
+def residual_displacement(run: FinishedRun) -> float:
+    """What is left of the loop's displacement without load, m; NaN if the end is loaded."""
+    size = np.abs(run.force)
+    return math.nan if size[-1] > UNLOADED * size.max() else float(run.displacement[-1])
+
+
+@quantity("Largest load over its displacement", "N/m", applies=_over_a_displacement)
+def stiffness(run: FinishedRun) -> float:
+    """Largest force of the loop over its displacement, N/m."""
+    instant = largest_load(run)
+    moved = displacement_at(run, instant)
+    return float(run.force[instant]) / moved if moved else math.nan
+
+
+@quantity("Energy dissipated", "J", parameter=CYCLE)
+def dissipation(run: FinishedRun, at: float | None) -> float:
+    """Energy that friction takes, J: of the whole run, or of a cycle; NaN if there are fewer."""
+    if at is None:
+        return float(run.dissipated.sum())
+    ends, number = ends_of(run.settings), int(at)
+    if len(ends) <= number:
+        return math.nan
+    return float(run.dissipated[ends[number - 1] + 1 : ends[number] + 1].sum())
+
+
+@quantity("Share of the points that slip", is_share=True)
+def slipped_share(run: FinishedRun) -> float:
+    """Share of the points that slip at any instant."""
+    return float(_has_slipped(run)[:, -1].mean())
+
+
+def stuck_share_at(run: FinishedRun, instant: int) -> float:
+    """Share of what touches that sticks at an instant, by length; NaN if nothing does."""
+    length, every = _touching(run)
+    status = every[:, instant]
+    touching = length[status != OPEN].sum()
+    return float(length[status == 0].sum() / touching) if touching else math.nan
+
+
+@quantity(
+    "Share of the contact that sticks at the largest load", is_share=True, at_instant=stuck_share_at
+)
+def stuck_share(run: FinishedRun) -> float:
+    """Share of what touches that sticks at the largest load."""
+    return stuck_share_at(run, largest_load(run))
+
+
+def _has_slipped(run: FinishedRun) -> NDArray[np.bool_]:
+    """Which points have slipped by every instant, shape (n_points, n_instants)."""
+    return np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
+
+
+def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
+    """Value at the instant by which a share of the points, or any, has slipped; or infinite."""
+    share = _has_slipped(run).mean(axis=0)
+    slips = (share > 0.0) & (share >= (at or 0.0))
+    return float(values[np.argmax(slips)]) if slips.any() else math.inf
+
+
+@quantity("Time of the first slip", "s", parameter=SHARE)
+def first_slip_time(run: FinishedRun, at: float | None) -> float:
+    """First instant by which points have slipped, s; infinite if none do."""
+    return _at_first_slip(run, run.problem.instants, at)
+
+
+@quantity("Displacement at the first slip", "m", parameter=SHARE, applies=_over_a_displacement)
+def first_slip_displacement(run: FinishedRun, at: float | None) -> float:
+    """Displacement of the loop at that instant, m."""
+    return _at_first_slip(run, run.displacement, at)

@@ -1,4 +1,4 @@
-"""What sweeps ask of a run whose load repeats itself; NaN with fewer cycles than that takes."""
+"""Quantities of a load that repeats itself, and of strands: of helical wires, or a broken one."""
 
 from __future__ import annotations
 
@@ -6,86 +6,90 @@ import math
 
 import numpy as np
 
-from solver.arrays import RESIDUE
+from solver.arrays import RESIDUE, Array
+from solver.discrete.probes import AxialForce
+from solver.discrete.rope import Rope
+from solver.discrete.wire_forces import stress_ranges
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
-from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of
+from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, slips_of
 from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import CYCLE, quantity
 
 NO_ENERGY = 1e-12
 """Share of all energy that rounding makes."""
+REGAINED = 0.9
+"""Share of its tension up to which a broken wire is watched; it regains the rest at that rate. The
+element in which the rest is regained would blur the place."""
 
 
 def has_cycles(settings: Settings) -> bool:
-    """Tell whether a load has a cycle."""
+    """Whether a load has a cycle."""
     return cycles_in(settings) > 0
 
 
-def has_several(settings: Settings) -> bool:
-    """Tell whether a load has a second cycle, to compare others with."""
-    return cycles_in(settings) > 1
-
-
 def has_a_limit(settings: Settings) -> bool:
-    """Tell whether slip that stays is known: of rods, and in the plane of closed contacts."""
+    """Whether slip that stays is known: of rods, and in the plane of closed contacts.
+
+    Contacts stay closed where surfaces without a gap rub by Coulomb's law.
+    """
     if not has_cycles(settings) or settings.applies("friction_ratio"):
         return False
-    return kind_of(settings) != "plane" or _may_stay_closed(settings)
-
-
-def _may_stay_closed(settings: Settings) -> bool:
-    """Tell whether surfaces rub by Coulomb's law that are closed as long as something presses."""
+    if kind_of(settings) != "plane":
+        return True
     if not settings.opens or settings.has_spring or settings.applies("contact_stiffness"):
         return False
-    holds = structure_of(settings).described().holds
-    gaps = [hold.gap for hold in holds if hold.gap is not None]
+    gaps = [hold.gap for hold in structure_of(settings).described().holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
 
-def energy_ratio(run: FinishedRun, at: float | None) -> float:
-    """Give the energy of the last cycle over that of the second; NaN where that took none."""
+@quantity(
+    "Energy of the last cycle over the second", applies=lambda settings: cycles_in(settings) > 1
+)
+def cycle_energy_ratio(run: FinishedRun) -> float:
+    """Energy of the last cycle over that of the second; NaN where that took none."""
     energy = cycles_of(run.settings, run.iterate).energy
-    if len(energy) < 2 or energy[1] <= NO_ENERGY * np.abs(run.dissipated).sum():
+    if energy[1] <= NO_ENERGY * np.abs(run.dissipated).sum():
         return math.nan
     return float(energy[-1] / energy[1])
 
 
-def ratchet(run: FinishedRun, at: float | None) -> float:
-    """Give the slip that the last cycle leaves, at the point where it leaves most, m."""
+@quantity("Slip that the last cycle leaves", "m", applies=has_cycles)
+def ratchet(run: FinishedRun) -> float:
+    """Slip that the last cycle leaves, at the point where it leaves most, m."""
     cycles = cycles_of(run.settings, run.iterate)
-    if not cycles.net.size:
-        return math.nan
     left = np.abs(cycles.net[:, -1]).max()
     return float(left) if left > RESIDUE * cycles.slip.max() else 0.0
 
 
-def sliding_share(run: FinishedRun, at: float | None) -> float:
-    """Give the largest share of the contact that slips at once in the last cycle, by length.
+@quantity(
+    "Share of the contact that slips at once in the last cycle", is_share=True, applies=has_cycles
+)
+def sliding_share(run: FinishedRun) -> float:
+    """Largest share of the contact that slips at once in the last cycle, by length.
 
     0 is stick, 1 gross slip, anything between partial slip (O. Vingsbo, S. Söderberg, On fretting
     maps, Wear 126, 1988). A point that a clamp holds never slips, and is left out.
     """
-    ends = ends_of(run.settings)
-    if len(ends) < 2:
-        return math.nan
-    last, held = slice(ends[-2] + 1, ends[-1] + 1), run.problem.is_held
+    ends, held = ends_of(run.settings), run.problem.is_held
     lengths = [
         law.by_point(law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0))
         for law in run.problem.rubbing.values()
     ]
-    length, status = np.concatenate(lengths)[:, None], run.iterate.status[:, last]
+    length = np.concatenate(lengths)[:, None]
+    status = run.iterate.status[:, ends[-2] + 1 : ends[-1] + 1]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
     shares = slipping[touching > 0.0] / touching[touching > 0.0]
     return float(shares.max(initial=0.0))
 
 
-def shakedown_factor(run: FinishedRun, at: float | None) -> float:
-    """Give the largest factor on the swing of the loads under which there is slip that stays.
+@quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
+def shakedown_factor(run: FinishedRun) -> float:
+    """Largest factor on the swing of the loads under which there is slip that stays.
 
     The swing is about the mean of the last cycle, as often as one likes. On rods the mean does not
     matter, so that it is the factor on all loads, too, and slip ceases below it wherever it began.
@@ -95,8 +99,6 @@ def shakedown_factor(run: FinishedRun, at: float | None) -> float:
     NaN where none is known, or not even the mean keeps all contacts closed.
     """
     ends = ends_of(run.settings)
-    if len(ends) < 2 or not has_a_limit(run.settings):
-        return math.nan
     last = slice(ends[-2], ends[-1] + 1)
     try:
         if run.problem.opens:
@@ -106,29 +108,136 @@ def shakedown_factor(run: FinishedRun, at: float | None) -> float:
         return math.nan
 
 
-OF_CYCLES = (
-    Quantity(
-        "cycle_energy_ratio",
-        "Energy of the last cycle over the second",
-        "",
-        energy_ratio,
-        applies=has_several,
-    ),
-    Quantity("ratchet", "Slip that the last cycle leaves", "m", ratchet, applies=has_cycles),
-    Quantity(
-        "sliding_share",
-        "Share of the contact that slips at once in the last cycle",
-        "",
-        sliding_share,
-        is_share=True,
-        applies=has_cycles,
-    ),
-    Quantity(
-        "shakedown_factor",
-        "Shakedown factor on the swing of the load",
-        "",
-        shakedown_factor,
-        applies=has_a_limit,
-    ),
+def is_rope(settings: Settings) -> bool:
+    """Whether there are wires around a core."""
+    return kind_of(settings) == "helices"
+
+
+def is_bent_alike(settings: Settings) -> bool:
+    """Whether a strand is bent alike all along, so that a metre of it has a meaning."""
+    return is_rope(settings) and not _rope(settings).is_clamped
+
+
+def _rope(settings: Settings) -> Rope:
+    rope = structure_of(settings)
+    assert isinstance(rope, Rope)
+    return rope
+
+
+def _last(run: FinishedRun) -> slice:
+    """Instants of the last cycle, its beginning among them; or all without one."""
+    ends = ends_of(run.settings)
+    return slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else slice(0, None)
+
+
+@quantity("Bending stiffness while nothing slips", "N·m^2", applies=is_rope)
+def stuck_bending(run: FinishedRun) -> float:
+    """Bending stiffness while nothing slips, N m^2."""
+    return _rope(run.settings).section.stuck_bending
+
+
+@quantity("Bending stiffness once all slips", "N·m^2", applies=is_rope)
+def slipping_bending(run: FinishedRun) -> float:
+    """Bending stiffness of wires that all slip, N m^2."""
+    return _rope(run.settings).section.slipping_bending
+
+
+def bending_stiffness_at(run: FinishedRun, instant: int) -> float:
+    """Moment over the curvature at an instant, N m^2."""
+    curvature = float(run.displacement[instant])
+    return float(run.force[instant]) / curvature if curvature else math.nan
+
+
+@quantity(
+    "Moment over the largest curvature",
+    "N·m^2",
+    applies=is_rope,
+    at_instant=bending_stiffness_at,
 )
-"""Quantities of cycles."""
+def bending_stiffness(run: FinishedRun) -> float:
+    """Moment at the largest curvature over that, N m^2."""
+    return bending_stiffness_at(run, int(np.argmax(np.abs(run.displacement))))
+
+
+@quantity("Energy dissipated, a metre of strand", "J/m", parameter=CYCLE, applies=is_bent_alike)
+def energy_per_metre(run: FinishedRun, at: float | None) -> float:
+    """Energy that friction takes in a metre of strand, J/m: of the whole run, or of a cycle.
+
+    NaN near a clamp, and with fewer cycles.
+    """
+    ends, number = ends_of(run.settings), 0 if at is None else int(at)
+    if number and len(ends) <= number:
+        return math.nan
+    some = slice(ends[number - 1] + 1, ends[number] + 1) if number else slice(None)
+    works = (work[:, some].sum() for _, _, work in slips_of(run.iterate))
+    shares = (wire.stands_for / wire.along[-1] for wire in _rope(run.settings).wires)
+    return float(sum(share * work for share, work in zip(shares, works, strict=True)))
+
+
+@quantity("Largest stress range of a wire in the last cycle", "Pa", applies=is_rope)
+def stress_range(run: FinishedRun) -> float:
+    """How far the stress of a wire swings in the last cycle, the wire where it is most, Pa."""
+    rope = _rope(run.settings)
+    return float(stress_ranges(rope, run.iterate.displacement, _last(run)).max())
+
+
+@quantity("Largest slip of a wire in the last cycle, to and fro", "m", applies=is_rope)
+def wire_slip(run: FinishedRun) -> float:
+    """How far a wire slips to and fro in the last cycle, at the point that slips most, m."""
+    return float(np.ptp(run.iterate.displacement[:, _last(run)], axis=1).max())
+
+
+@quantity("Largest friction work in the last cycle, a metre of wire", "J/m", applies=is_rope)
+def wire_work(run: FinishedRun) -> float:
+    """What friction takes of a metre of wire in the last cycle, where it is most, J/m.
+
+    There fretting is worst; near a clamp it is beside it.
+    """
+    last = _last(run)
+    after = slice(last.start + 1 if last.stop else 0, last.stop)
+    return max(
+        float((law.by_point(work[:, after].sum(axis=1)) / law.by_point(law.weights)).max())
+        for law, _, work in slips_of(run.iterate)
+    )
+
+
+def recovery_length_at(run: FinishedRun, instant: int) -> float:
+    """How far from its break a wire carries its tension again at an instant, m.
+
+    NaN without a broken wire, or without tension; infinite if it does so on neither side.
+    """
+    described = structure_of(run.settings).described()
+    if described.broken is None or not run.force[instant]:
+        return math.nan
+    wire, place = described.broken
+    axial = AxialForce(run.problem)
+    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire]
+    share = force / run.force[instant]
+    size = described.length / len(share)
+    node = round(place / size)
+    sides = share[node:], share[:node][::-1]
+    return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
+
+
+@quantity(
+    "Length over which a broken wire regains its force",
+    "m",
+    applies=lambda settings: settings.has_break,
+    at_instant=recovery_length_at,
+)
+def recovery_length(run: FinishedRun) -> float:
+    """How far from its break a wire carries its tension again, at the largest tension, m."""
+    return recovery_length_at(run, int(np.argmax(run.force)))
+
+
+def _reached(share: Array, level: float) -> float:
+    """Elements from a break to where the tension, known in their middles, reaches a share of it.
+
+    Linear between the middles, and nothing at the break; infinite if it is not reached.
+    """
+    places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
+    values = np.concatenate([[0.0], share])
+    above = int(np.argmax(values >= level))
+    if above == 0:
+        return math.inf
+    return float(np.interp(level, values[above - 1 : above + 1], places[above - 1 : above + 1]))

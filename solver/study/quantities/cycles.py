@@ -1,7 +1,9 @@
-"""A run cut into the cycles of its load: what each of them takes, and what it leaves behind.
+"""A run cut into the cycles of its load: what each takes and leaves, and what becomes of slip.
 
 Cycles go from one turning point of a load to the next but one, so that the way there from rest is
-none of them.
+none of them. Slip ceases, dies out, goes to and fro, or goes on one way (J. R. Barber, Frictional
+systems subjected to oscillating loads, Ann. Solid Struct. Mech. 2, 2011). A word is said only where
+the last three cycles have earned it (solver/README.md, 15).
 """
 
 from __future__ import annotations
@@ -10,14 +12,15 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.latin import Iterate
+from solver.laws import Contact
 from solver.scenes import structure_of
 from solver.settings import Settings
-from solver.study.quantities.slips import slips_of
 
 SMALLEST_SWING = 0.05
 """Share of the whole range that a path must turn back by to begin another half cycle."""
@@ -27,6 +30,30 @@ LAST = 3
 """Cycles from which one tells what becomes of slip, whatever came before them."""
 REPEATED = 1e-3
 """Share of its range by which a load may differ from a cycle to the next."""
+
+ALIKE = 0.02
+"""Share by which the slip of the last cycles may differ where it counts as the same."""
+ONE_WAY = 0.05
+"""Share of the slip of a cycle that is left at its end, from which on a point goes one way."""
+DIES = 0.9
+"""Slip of a cycle over that of the one before, up to which it dies, if it tends to nothing."""
+TENDS = 0.1
+"""Slip that it may tend to, as a share of that two cycles ago, to count as nothing."""
+Word = Literal["elastic shakedown", "shakedown with slip that dies", "steady slip", "ratcheting"]
+
+
+def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
+    """Interfaces with friction, the slip of their pairs, m, and the work it takes, J.
+
+    Both from each instant to the next, shape (n_pairs, n_instants), and both of the local stage,
+    whose laws hold at every iterate. A point slips at the bound of the instant that it slips to.
+    """
+    scales = iterate.problem.scales
+    moved, force = iterate.local_displacement, iterate.boundary_local_force
+    for law in iterate.problem.rubbing.values():
+        slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
+        slip *= scales.displacement
+        yield law, slip, force[law.tangent.above] * slip * -scales.force
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +92,7 @@ class LoadCycles:
 
 
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
-    """Cut an iterate into the cycles of its load; points stand interface by interface."""
+    """Cycles of an iterate; points stand interface by interface."""
     ends = ends_of(settings)
     slips, works = [], []
     for law, slip, work in slips_of(iterate):
@@ -87,7 +114,7 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
 
 
 def ends_of(settings: Settings) -> list[int]:
-    """Find the instants at which the cycles of a load begin, and the last one ends.
+    """Instants at which the cycles of a load begin, and the last one ends.
 
     Of several loads that which turns back most often counts, the first of equals. Fewer than two
     instants are no cycle.
@@ -97,12 +124,12 @@ def ends_of(settings: Settings) -> list[int]:
 
 
 def cycles_in(settings: Settings) -> int:
-    """Count the cycles of a load."""
+    """Number of cycles of a load."""
     return max(len(ends_of(settings)) - 1, 0)
 
 
 def turning_points(path: Array) -> list[int]:
-    """Find where a path turns back by more than a small swing, and its end if it is as far out.
+    """Where a path turns back by more than a small swing, and its end if it is as far out.
 
     Parameters
     ----------
@@ -114,7 +141,7 @@ def turning_points(path: Array) -> list[int]:
     Indices, the first of each extreme that is held.
     """
     least = max(SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max()))
-    found: list[int] = []
+    extremes: list[int] = []
     outmost, way = 0, 0.0
     for place, value in enumerate(path):
         if way == 0.0:
@@ -124,14 +151,14 @@ def turning_points(path: Array) -> list[int]:
         elif way * (value - path[outmost]) > 0.0:
             outmost = place
         elif way * (path[outmost] - value) > least:
-            found.append(outmost)
+            extremes.append(outmost)
             outmost, way = place, -way
-    is_closed = len(found) > 1 and way * (path[found[-2]] - path[outmost]) <= least
-    return [*found, outmost] if is_closed else found
+    is_closed = len(extremes) > 1 and way * (path[extremes[-2]] - path[outmost]) <= least
+    return [*extremes, outmost] if is_closed else extremes
 
 
 def _paths(settings: Settings) -> Iterator[Array]:
-    """Give what acts over time; of what varies along a side, the place that changes most."""
+    """What acts over time; of what varies along a side, the place that changes most."""
     described = structure_of(settings).described()
     if described.tilt is not None:
         yield described.tilt
@@ -141,16 +168,90 @@ def _paths(settings: Settings) -> Iterator[Array]:
 
 
 def _is_repeated(settings: Settings, ends: list[int]) -> bool:
-    """Tell whether all that acts begins the last cycles alike, and reaches as far in them."""
+    """Whether all that acts begins the last cycles alike, and reaches as far in them."""
     for path in _paths(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
-        seen = np.array([[one[0], one[-1], one.min(), one.max()] for one in parts])
+        seen = np.array([[part[0], part[-1], part.min(), part.max()] for part in parts])
         if len(seen) and np.ptp(seen, axis=0).max() > REPEATED * np.ptp(path):
             return False
     return True
 
 
 def _summed(values: Array, ends: list[int]) -> Array:
-    """Add up what belongs to the instants of each cycle, shape (..., n_cycles)."""
+    """Sums over the instants of each cycle, shape (..., n_cycles)."""
     parts = [values[..., a + 1 : b + 1].sum(axis=-1) for a, b in pairwise(ends)]
     return np.stack(parts, axis=-1) if parts else np.zeros((*values.shape[:-1], 0))
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What becomes of slip.
+
+    Attributes
+    ----------
+    word
+        For it.
+    since
+        First cycle from which on nothing slips, from 1; None where slip goes on.
+    ratio
+        Largest slip of any point in the last cycle over that in the cycle before; NaN where nothing
+        slipped then.
+    net
+        Slip that the last cycle leaves, at the point where it leaves most, m.
+    energy
+        What friction takes in the last cycle, J.
+    """
+
+    word: Word
+    since: int | None
+    ratio: float
+    net: float
+    energy: float
+
+
+def fate_of(cycles: LoadCycles) -> Fate | None:
+    """What becomes of slip.
+
+    None where that is not settled: with fewer than three cycles, cycles that are not alike, slip
+    that still changes, or no slip ever.
+    """
+    if len(cycles) < LAST or not cycles.is_repeated or not cycles.slip.size:
+        return None
+    most = cycles.slip.max(axis=0)
+    if not most.any() and not cycles.before.any():
+        return None
+    slipping = np.flatnonzero(most)
+    ceased = int(slipping[-1]) + 2 if len(slipping) else 1
+    since = ceased if ceased <= len(cycles) else None
+    word = "elastic shakedown" if since is not None else _word(cycles, most)
+    if word is None:
+        return None
+    ratio = most[-1] / most[-2] if most[-2] else np.nan
+    place = np.abs(cycles.net[:, -1]).argmax()
+    net, energy = cycles.net[place, -1], cycles.energy[-1]
+    return Fate(word, since, float(ratio), float(net), float(energy))
+
+
+def _word(cycles: LoadCycles, most: Array) -> Word | None:
+    """Word for slip that goes on in the last cycle."""
+    net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
+    if np.abs(net[-1]) > ONE_WAY * most[-1] and _settled(net[None]):
+        return "ratcheting"
+    if most[-1] <= DIES * most[-2] and _limit(most[-3:]) <= TENDS * most[-3]:
+        return "shakedown with slip that dies"
+    if _settled(cycles.slip):
+        return "steady slip"
+    return None
+
+
+def _settled(values: Array) -> bool:
+    """Whether values of points, (n_points, n_cycles), are the same in the last cycles."""
+    last = values[:, -LAST:]
+    return bool(np.ptp(last, axis=1).max() <= ALIKE * np.abs(last[:, -1]).max())
+
+
+def _limit(values: Array) -> float:
+    """Limit of three values of a geometric sequence (Aitken); infinite if they grow."""
+    first, second, third = map(float, values)
+    bend = first + third - 2.0 * second
+    return (first * third - second**2) / bend if bend > 0.0 else np.inf

@@ -25,7 +25,7 @@ from solver.reference.solution import States
 from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.quantities.slips import slips_of
+from solver.study.quantities.cycles import slips_of
 
 REFUSED, BROKEN = "refused", "broken"
 """How a run ends that never was one: by refused settings, by a fault of the engine."""
@@ -68,11 +68,6 @@ class FinishedRun:
     @cached_property
     def _loop(self) -> Loop:
         return self.loop or loop_of(self.settings, self.problem)
-
-    @property
-    def measures_displacement(self) -> bool:
-        """Whether its loop goes over a displacement, not over an angle."""
-        return self._loop.across[1] == "m"
 
     @property
     def states(self) -> States:

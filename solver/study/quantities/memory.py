@@ -33,7 +33,7 @@ TINY: dict[str, dict[str, object]] = {
 
 
 def memory_of(settings: Settings) -> float:
-    """Run a scene once more for the memory that it takes, B; NaN where none is told (not Linux)."""
+    """Memory that a scene takes, B, by one run more; NaN where the system says none (not Linux)."""
     if not STATUS.exists():
         return math.nan
     done = subprocess.run(
@@ -55,7 +55,7 @@ def settle() -> None:
 
 
 def answer(asked: dict[str, Any]) -> int:
-    """Run what is asked for, and give the memory that it took, B."""
+    """Memory that a run of these settings took in this process, B."""
     settings = CATALOGUE[asked["scene"]].settings.checked(asked["changed"])
     settle()
     before = resident("VmRSS")
@@ -64,8 +64,8 @@ def answer(asked: dict[str, Any]) -> int:
 
 
 def resident(name: str) -> int:
-    """Read a line of what the operating system says of this process, B."""
-    found = re.search(rf"^{name}:\s+(\d+) kB$", STATUS.read_text(encoding="ascii"), re.MULTILINE)
-    if found is None:
+    """A line of what the operating system says of this process, B."""
+    line = re.search(rf"^{name}:\s+(\d+) kB$", STATUS.read_text(encoding="ascii"), re.MULTILINE)
+    if line is None:
         raise LookupError(name)
-    return 1024 * int(found[1])
+    return 1024 * int(line[1])

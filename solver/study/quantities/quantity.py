@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
@@ -48,8 +49,8 @@ class Quantity:
     unit
         SI unit, empty for a pure number.
     of
-        Gives it, with the parameter or None: NaN where the run has none, infinity where what is
-        waited for never comes.
+        Takes it of a run, and of the parameter or None if there is one: NaN where the run has none,
+        infinity where what is waited for never comes.
     parameter
         What it may be asked with.
     reads
@@ -61,18 +62,35 @@ class Quantity:
         Whether it follows from how the run went, not only from what it came to: then a run that
         starts elsewhere has another.
     applies
-        Whether runs of these settings may have it.
+        Whether runs of these settings may have it; others have NaN.
     at_instant
-        Gives what it would be at an instant, for one that is taken at the largest load.
+        Takes what it would be at an instant, for one that is taken at the largest load.
     """
 
     name: str
     title: str
     unit: str
-    of: Callable[[FinishedRun, float | None], float]
+    of: Callable[..., float]
     parameter: Parameter | None = None
     reads: Literal["errors", "indicators"] | None = None
     is_share: bool = False
     is_of_course: bool = False
     applies: Callable[[Settings], bool] = lambda settings: True
     at_instant: Callable[[FinishedRun, int], float] | None = None
+
+    def __call__(self, run: FinishedRun, at: float | None = None) -> float:
+        """Value of a run, with a parameter or without."""
+        if not self.applies(run.settings):
+            return math.nan
+        return float(self.of(run) if self.parameter is None else self.of(run, at))
+
+
+def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:
+    """Decorator of a function of a run that makes it the quantity of its name.
+
+    Parameters
+    ----------
+    title, unit, options
+        As `Quantity` has them.
+    """
+    return lambda of: Quantity(of.__name__, title, unit, of, **options)

@@ -3,14 +3,21 @@
 Each method pays for what it needs: discretisation, factorisation, the coarser mesh, iterations. One
 pass without the clock finds the errors, and warms up; then timed passes run every method once, in
 turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
+
+Nothing is kept of what was solved before, and no garbage is collected meanwhile, as with `timeit`:
+to collect it bills all that the process holds. On a machine that others use too, seconds of the
+processor say what seconds of the clock do not; what is set side by side is of one clock.
 """
 
 from __future__ import annotations
 
+import gc
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -18,13 +25,13 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.executors import machine
-from solver.latin import judged
+from solver.latin import Solution, judged, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
+from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.speed.timed import by_increments, nothing_collected
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
 """Errors of the friction force whose times make the table."""
@@ -42,6 +49,7 @@ PLAIN: dict[str, Any] = {
 }
 """Settings that the forms of LATIN start from; all others are those of the run."""
 INCREMENTAL = "incremental solver"
+Clock = Callable[[], float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,42 +117,29 @@ class Study:
     curves: tuple[ErrorCurve, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class _Entry:
-    """A method's errors and steps, and how to time it again."""
-
-    method: str
-    steps: list[float]
-    errors: list[tuple[float, float]]
-    timed: Callable[[], list[float]]
-
-
 def error_against_time(settings: Settings, repeats: int) -> Study:
-    """Run every method `repeats` times, in turns.
-
-    Parameters
-    ----------
-    settings
-        Checked settings of a scene.
-    repeats
-        Timed passes, at least 1.
-    """
+    """Run every method `repeats` times, at least once, in turns."""
     problem = discretise(settings)
     reference = reference_of(problem)
     distance = distance_to(reference, problem)
-    entries = [_latin_entry(method, form, distance) for method, form in forms_of(settings).items()]
-    steps = [float(reference.steps)]
-    entries.append(
-        _Entry(
-            INCREMENTAL, steps, [(0.0, 0.0)], lambda: [by_increments(settings, time.perf_counter)]
-        )
-    )
-    samples: list[list[list[float]]] = [[] for _ in entries]
+    forms = forms_of(settings)
+    errors = {method: _errors(form, distance) for method, form in forms.items()}
+    steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
+    timed: dict[str, Callable[[], list[float]]] = {
+        method: partial(_by_iterations, form, len(errors[method])) for method, form in forms.items()
+    }
+    errors[INCREMENTAL] = np.zeros((1, 2))
+    steps[INCREMENTAL] = np.array([float(reference.steps)])
+    timed[INCREMENTAL] = lambda: [by_increments(settings, time.perf_counter)]
+    samples: dict[str, list[list[float]]] = {method: [] for method in timed}
     for _ in range(repeats):
-        for entry, times in zip(entries, samples, strict=True):
+        for method, times in samples.items():
             with nothing_collected():
-                times.append(entry.timed())
-    curves = [_curve(entry, times) for entry, times in zip(entries, samples, strict=True)]
+                times.append(timed[method]())
+    curves = (
+        ErrorCurve(method, steps[method], np.median(times, axis=0), *errors[method].T)
+        for method, times in samples.items()
+    )
     return Study(settings, repeats, machine(), tuple(curves))
 
 
@@ -166,16 +161,15 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
     return {method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()}
 
 
-def _latin_entry(method: str, settings: Settings, distance: Distance) -> _Entry:
-    """Find the errors of a form of LATIN, until its friction force is as near as the goal."""
+def _errors(settings: Settings, distance: Distance) -> Array:
+    """Errors of both fields, (n, 2), until the friction force is as near as the goal."""
     errors: list[tuple[float, float]] = []
     for iterate, _ in islice(judged(discretise(settings), method_of(settings)), MOST_ITERATIONS):
-        errors.append((distance.of_displacement(iterate), distance.of_friction_force(iterate)))
-        force = errors[-1][1]
+        force = distance.of_friction_force(iterate)
+        errors.append((distance.of_displacement(iterate), force))
         if not math.isfinite(force) or (force <= GOAL and iterate.number > 1):
             break
-    steps = [float(number) for number in range(1, len(errors) + 1)]
-    return _Entry(method, steps, errors, lambda: _by_iterations(settings, len(steps)))
+    return np.array(errors)
 
 
 def _by_iterations(settings: Settings, number: int) -> list[float]:
@@ -183,18 +177,45 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
     start = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - start
-    return [
-        verdict.seconds
-        for _, verdict in islice(judged(problem, method_of(settings), None, spent), number)
-    ]
+    decisions = islice(judged(problem, method_of(settings), None, spent), number)
+    return [decision.seconds for _, decision in decisions]
 
 
-def _curve(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
-    displacement, force = np.array(entry.errors).T
-    return ErrorCurve(
-        method=entry.method,
-        steps=np.array(entry.steps),
-        seconds=np.median(np.array(times), axis=0),
-        error_displacement=displacement,
-        error_force=force,
-    )
+@contextmanager
+def nothing_collected() -> Iterator[None]:
+    """Collect no garbage meanwhile."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
+    """Time of some work, s; of the processor unless another clock is given."""
+    with nothing_collected():
+        start = clock()
+        work()
+        return clock() - start
+
+
+def by_latin(settings: Settings) -> float:
+    """Time of LATIN up to its stop rule, s."""
+    return seconds_of(lambda: latin(settings))
+
+
+def by_increments(settings: Settings, clock: Clock = time.process_time) -> float:
+    """Time of the incremental solver, s."""
+    return seconds_of(lambda: incremental(settings), clock)
+
+
+def latin(settings: Settings) -> Solution:
+    """Solve as the settings say, with nothing beside that the run does not need."""
+    return solve(discretise(settings), method_of(settings), watch=False)
+
+
+def incremental(settings: Settings) -> Reference:
+    """Solve by increments."""
+    return reference_of(discretise(settings))

@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.chart import Map, Panel, PanelAxis, PanelCurve, Runs
 from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
-from solver.study.speed.crossover import MAP, Crossover, crossover_map, notes, ratio_table
 from solver.study.speed.error_against_time import (
     GOAL,
     INCREMENTAL,
@@ -20,11 +19,9 @@ from solver.study.speed.error_against_time import (
     ErrorCurve,
     Study,
 )
-from solver.study.speed.growth import MEASURED, Growth
+from solver.study.speed.sizes import MEASURED, Crossover, Growth
 
 Row = list[str]
-TITLE = "Error against run time"
-WINNERS = "Who is first"
 WINNERS_NOTE = (
     "The last column is the time of the best form of LATIN over that of the incremental solver: "
     "below 1, LATIN is quicker."
@@ -34,14 +31,13 @@ CAPTION = (
     "A line is a form of LATIN, iteration by iteration; the dashed line is when the incremental "
     "solver is done. Errors below the lower edge are drawn on it."
 )
-TIMES = "Time to an error of the friction force"
-TIMES_NOTE = "In brackets: iterations of LATIN."
 GROWTH = "Growth with the size of the problem"
 GROWTH_NOTE = (
     "Time of one iteration of LATIN, and of the whole solution by increments. Twice the size takes "
     "2 to the power of the exponent as long (a least-squares fit over all sizes, with its margin "
     "at 95 %)."
 )
+MAP, TIMES = "Who is first where", "LATIN / incremental solver"
 BILLED = (
     "The time of a method is all that it takes from settings to result: discretisation, "
     "factorisation, the coarser mesh, iterations. Imports and the computation of errors are not "
@@ -102,20 +98,41 @@ def table(study: Study) -> list[Row]:
 def growth_table(growths: Sequence[Growth]) -> list[Row]:
     """Fitted exponents, and the iterations to 1 %, with the sizes they come from."""
     rows = [["growth with", "method", "exponent", "sizes", "ms", "iterations to 1 %"]]
-    for one in growths:
-        whole = one.method == INCREMENTAL
-        iterations = (str(size.iterations or ">300") for size in one.sizes)
+    for curve in growths:
+        whole = curve.method == INCREMENTAL
         rows.append(
             [
-                one.setting,
-                f"{one.method} ({'whole' if whole else 'an iteration'})",
-                str(one.exponent or "-"),
-                " ".join(str(size.size) for size in one.sizes),
-                " ".join(f"{1e3 * size.seconds:.2g}" for size in one.sizes),
-                "-" if whole else " ".join(iterations),
+                curve.setting,
+                f"{curve.method} ({'whole' if whole else 'an iteration'})",
+                str(curve.exponent or "-"),
+                " ".join(map(str, curve.sizes)),
+                " ".join(f"{1e3 * seconds:.2g}" for seconds in curve.seconds),
+                "-" if whole else " ".join(str(number or ">300") for number in curve.iterations),
             ]
         )
     return rows
+
+
+def ratio_table(measured: Crossover) -> list[Row]:
+    """Time of LATIN over that of the other, a row for each number of instants."""
+    rows = [[TIMES, *(f"{measured.setting} {size}" for size in measured.sizes)]]
+    for instants, ratios in zip(measured.instants, measured.ratios, strict=True):
+        cells = ("-" if np.isnan(ratio) else f"{ratio:.2g}" for ratio in ratios)
+        rows.append([f"{instants} instants", *cells])
+    return rows
+
+
+def notes(measured: Crossover) -> list[str]:
+    """What the map shows, and what it leaves out, in sentences."""
+    ratios = measured.ratios[np.isfinite(measured.ratios)]
+    grows = " and ".join(title.lower() for title in (measured.title, *measured.others))
+    return [
+        f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
+        "settings to a certified or accurate end, in seconds of the processor, medians of up to "
+        "three runs in turns.",
+        *([f"What grows along the axis: {grows}."] if measured.others else []),
+        *(measured.message(times) for times in measured.comparisons if times.message),
+    ]
 
 
 def error_panels(study: Study) -> list[Panel]:
@@ -144,25 +161,47 @@ def _curve(curve: ErrorCurve, errors: Array, hue: int) -> PanelCurve:
 def growth_panels(growths: Sequence[Growth]) -> list[Panel]:
     """Times over sizes, a panel for each setting that changes."""
     hues = {method: hue for hue, method in enumerate((INCREMENTAL, *MEASURED))}
+    curves: dict[str, list[PanelCurve]] = {}
+    for curve in growths:
+        points = np.array(curve.sizes, dtype=float), np.array(curve.seconds)
+        line = PanelCurve(curve.method, *points, hues[curve.method], "points")
+        curves.setdefault(curve.setting, []).append(line)
     return [
         Panel(
             setting.capitalize(),
             PanelAxis(f"Number of {setting}", logarithmic=True, whole=True),
             PanelAxis("Time", "s", logarithmic=True),
-            tuple(
-                PanelCurve(
-                    one.method,
-                    np.array([float(size.size) for size in one.sizes]),
-                    np.array([size.seconds for size in one.sizes]),
-                    hues[one.method],
-                    "points",
-                )
-                for one in growths
-                if one.setting == setting
-            ),
+            tuple(own),
         )
-        for setting in dict.fromkeys(one.setting for one in growths)
+        for setting, own in curves.items()
     ]
+
+
+def crossover_map(measured: Crossover) -> Map:
+    """The ratio of times over size and instants, with the line where both take as long."""
+    comparisons = measured.comparisons
+    sizes, instants, ratios = np.array(
+        [(times.size, times.instants, times.ratio) for times in comparisons], dtype=float
+    ).T
+    return Map(
+        f"Time of {TIMES}",
+        PanelAxis(measured.title, logarithmic=True, whole=True),
+        PanelAxis("Instants", logarithmic=True, whole=True),
+        np.array(measured.sizes, dtype=float),
+        np.array(measured.instants, dtype=float),
+        PanelAxis(TIMES, logarithmic=True),
+        measured.ratios,
+        Runs(
+            np.arange(len(comparisons)),
+            sizes,
+            instants,
+            ratios,
+            np.ones(len(comparisons), dtype=int),
+            np.isfinite(ratios),
+            list(map(measured.message, comparisons)),
+        ),
+        level=1.0,
+    )
 
 
 def write_curves(study: Study, folder: Path) -> list[Path]:
@@ -200,30 +239,19 @@ def write_growth(growths: Sequence[Growth], folder: Path) -> list[Path]:
     """Write `growth.csv`, if there is any; raises as `write_curves`."""
     head = ["setting", "exponent", "margin", "method", "size", "seconds"]
     head += ["iterations_to_1_percent", "seconds_to_1_percent"]
-    rows = (
-        (
-            one.setting,
-            *(astuple(one.exponent) if one.exponent else ("", "")),
-            one.method,
-            *astuple(size),
-        )
-        for one in growths
-        for size in one.sizes
-    )
+    rows = [
+        (curve.setting, *margin, curve.method, *row)
+        for curve in growths
+        for margin in [astuple(curve.exponent) if curve.exponent else ("", "")]
+        for row in zip(curve.sizes, curve.seconds, curve.iterations, curve.totals, strict=True)
+    ]
     return [write_csv(folder / "growth.csv", head, rows)] if growths else []
 
 
 def write_study(
     study: Study, growths: Sequence[Growth], crossover: Crossover, folder: Path
 ) -> tuple[list[Path], str]:
-    """Write the tables and `study.html`.
-
-    Parameters
-    ----------
-    study, growths, crossover
-        Errors against run time; growth with the size, or nothing; who is first at which size.
-    folder
-        An existing folder; files of these names are replaced.
+    """Write the tables and `study.html` into an existing folder.
 
     Returns
     -------
@@ -240,10 +268,11 @@ def write_study(
         plain_table(growth_table(growths)),
     ]
     sections = [
-        f"<h2>{WINNERS}</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
+        f"<h2>Who is first</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
         f"<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(study)),
-        f"<p>{CAPTION}</p>\n<h2>{TIMES}</h2>\n<p>{TIMES_NOTE}</p>\n{plain_table(table(study))}",
+        f"<p>{CAPTION}</p>\n<h2>Time to an error of the friction force</h2>\n"
+        f"<p>In brackets: iterations of LATIN.</p>\n{plain_table(table(study))}",
         *(growth if growths else []),
         f"<h2>{MAP}</h2>",
         PlotSection(MAP, [crossover_map(crossover)]),
@@ -251,9 +280,9 @@ def write_study(
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
     ]
     page = folder / "study.html"
-    message = write_page(page, TITLE, sections)
+    message = write_page(page, "Error against run time", sections)
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    rows = ((crossover.setting, *astuple(one)) for one in crossover.comparisons)
+    rows = ((crossover.setting, *astuple(times)) for times in crossover.comparisons)
     sizes = write_csv(folder / "map.csv", head, rows)
     files = [*write_curves(study, folder), *write_growth(growths, folder), sizes, page]
     return files, message

@@ -1,4 +1,4 @@
-"""A case: a run that is to be made, and what may come of it; loads and sections that many share."""
+"""A case: a run that is to be made, and what may come of it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-
-import numpy as np
 
 from solver.definitions import Pairs
 
@@ -90,7 +88,7 @@ class Case:
         return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
-def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
+def cases_with(scene: str, common: Mapping[str, object]) -> Callable[..., Case]:
     """A function that makes cases of a scene which have some settings in common."""
 
     def case(
@@ -100,7 +98,7 @@ def cases_with(scene: str, usual: Mapping[str, object]) -> Callable[..., Case]:
         expected: str = RIGHT,
         quick: bool = False,
     ) -> Case:
-        return Case(group, name, {**usual, **values}, expected, quick, scene)
+        return Case(group, name, {**common, **values}, expected, quick, scene)
 
     return case
 
@@ -109,36 +107,3 @@ def reversals(instants: int, peak: float) -> Pairs:
     """A load of full size that turns at every instant of a second, (s, N)."""
     step = 1.0 / (instants - 1)
     return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
-
-
-JUMP_WIDTH = 1e-9
-"""Share of an element beside its ends, within which a section changes to that of the next."""
-
-
-def graded(contrast: float, elements: int) -> Pairs:
-    """A section that grows by equal factors from element to element of a bar of 1 m.
-
-    Parameters
-    ----------
-    contrast
-        Last over first section; their geometric mean stays what it was.
-    elements
-        Number of elements.
-    """
-    factors = contrast ** np.linspace(-0.5, 0.5, elements)
-    return tuple(
-        ((i + end) / elements, float(factor))
-        for i, factor in enumerate(factors)
-        for end in (JUMP_WIDTH, 1.0 - JUMP_WIDTH)
-    )
-
-
-JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
-PLATEAUS: Pairs = (
-    (0.0, 0.0),
-    (0.2, 800.0),
-    (0.4, 800.0),
-    (0.6, -400.0),
-    (0.8, -400.0),
-    (1.0, 700.0),
-)

@@ -1,4 +1,4 @@
-"""Random settings of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
+"""Random runs of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
 
 Every setting is drawn by its own definition, over the range that its slider shows, so that a new
 one is drawn as well. What has to fit together is drawn together: mesh and cuts, elements and
@@ -8,7 +8,7 @@ their aspect, and loads, which are measured by what friction can carry.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
+from solver.study.stability.case import NOT_WRONG, Case
 from solver.study.stability.random_loads import LOADS
 
 LARGEST_FIELD = 12_000
@@ -45,13 +46,42 @@ NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
 CHANGED = 0.15
 """How often a setting differs from its default."""
-FOOLISH = 10.0
-"""Factor on k, or its inverse, from which on it counts as foolish."""
 TRIALS = 1000
 
 
+def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Case]:
+    """Random runs of scenes in turn; row n is of scene n modulo their number.
+
+    Parameters
+    ----------
+    scenes
+        Names of the catalogue; all without.
+    number, seed
+        Of the runs, and of their draws.
+    """
+    names = list(scenes or CATALOGUE)
+    for row in range(number):
+        yield random_case(draw(names[row % len(names)], seed, row), seed, row)
+
+
+def random_case(settings: Settings, seed: int, row: int) -> Case:
+    """Case of settings that were drawn; right are errors of its force within its accuracy."""
+    own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
+    method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
+    return Case(
+        "random",
+        f"row {row} of seed {seed}",
+        settings.changed(),
+        NOT_WRONG,
+        scene=settings.scene,
+        method="pgd" if settings.linear_stage == "pgd" else method,
+        error_force=settings.accuracy,
+        error_displacement=math.inf,
+    )
+
+
 def draw(scene: str, seed: int, row: int) -> Settings:
-    """Draw the settings of one random run; the same numbers give the same settings.
+    """Settings of one random run; the same numbers give the same settings.
 
     Parameters
     ----------
@@ -75,27 +105,15 @@ def draw(scene: str, seed: int, row: int) -> Settings:
     raise last
 
 
-def is_foolish(settings: Settings) -> bool:
-    """Whether a factor on k, or what they make together, is far from one."""
-    factors = [
-        value
-        for name, value in settings.values().items()
-        if name.startswith("k_") and name.endswith("_scale")
-    ]
-    common, *others = [math.log(factor) for factor in factors]
-    sizes = [abs(common), *(abs(common + other) for other in others)]
-    return max(sizes) > math.log(FOOLISH) * (1.0 + 1e-12)
-
-
 def log_uniform(generator: Generator, low: float, high: float) -> float:
-    """Draw a positive number, all its decades alike."""
+    """A random positive number, all its decades alike."""
     return float(np.exp(generator.uniform(math.log(low), math.log(high))))
 
 
 def _without_idle(settings: Settings) -> Settings:
-    """Take back what does nothing beside the other settings, so that a row says what matters."""
-    idle = [name for name in settings.changed() if not settings.applies(name)]
-    values = {name: value for name, value in settings.changed().items() if name not in idle}
+    """Settings without what does nothing beside the others, so that a row says what matters."""
+    changed = settings.changed().items()
+    values = {name: value for name, value in changed if settings.applies(name)}
     return type(settings).checked({"method": settings.method, **values})
 
 
@@ -112,16 +130,16 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
             values[name] = _drawn(name, definition, generator)
     if "elements_up" in definitions:
         _stretch(kind.across, values, definitions, generator)
-    usual = {name: definition.default for name, definition in definitions.items()}
+    defaults = {name: definition.default for name, definition in definitions.items()}
     if "cycles" in values:
         most = max((values["instants"] - 1) // INSTANTS_A_CYCLE, 1)
         values["cycles"] = min(values["cycles"], most)
     loads = LOADS.get(kind.scene)
-    sizes = loads({**usual, **values}, generator) if loads is not None else {}
+    sizes = loads({**defaults, **values}, generator) if loads is not None else {}
     for name, size in sizes.items():
         if isinstance(definitions[name], CurveParameter):
             if generator.random() < CHANGED:
-                values[name] = _path(size, {**usual, **values}["duration"], generator)
+                values[name] = _path(size, {**defaults, **values}["duration"], generator)
         else:
             values[name] = size
     return values
@@ -141,11 +159,11 @@ def _often(name: str, group: str, mixed: bool) -> float:
 
 
 def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:
-    """Draw the mesh, its cuts, and as many instants as there is room for."""
+    """The mesh, its cuts, and as many instants as there is room for."""
     mesh: dict[str, Any] = {}
     while True:
-        usual = BODY if "elements_up" in definitions else ROD
-        for name, (low, high) in MESHES.get(scene, usual).items():
+        sizes = MESHES.get(scene, BODY if "elements_up" in definitions else ROD)
+        for name, (low, high) in sizes.items():
             mesh[name] = min(int(log_uniform(generator, low, high + 1)), high)
         unknowns = math.prod(mesh.values()) * (2 if "elements_up" in mesh else 1)
         if unknowns <= LARGEST_FIELD // 3:
@@ -163,7 +181,7 @@ def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -
 def _stretch(
     across: str, values: dict[str, Any], definitions: dict[str, Parameter], generator: Generator
 ) -> None:
-    """Draw the sides of a body by the aspect of its elements, up to a hundred."""
+    """The sides of a body by the aspect of its elements, up to a hundred."""
     length = values.setdefault("length", definitions["length"].default)
     power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
     aspect = 10.0 ** generator.uniform(-power, power)
@@ -171,7 +189,7 @@ def _stretch(
 
 
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
-    """Draw a value by the definition alone."""
+    """A value drawn by the definition alone."""
     if isinstance(definition, CurveParameter):
         if definition.abscissa == "position" and generator.random() < 0.4:
             return _profile(name, generator)
@@ -191,13 +209,13 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
 
 
 def _k_scale(generator: Generator) -> float:
-    """Draw a factor on k, every third time a foolish one."""
+    """A factor on k, every third time a foolish one."""
     decades = 3.0 if generator.random() < 0.4 else 1.0
     return float(10.0 ** generator.uniform(-decades, decades))
 
 
 def _poisson(generator: Generator) -> float:
-    """Draw Poisson's ratio, every second time near to one half."""
+    """Poisson's ratio, every second time near to one half."""
     if generator.random() < 0.5:
         return float(generator.uniform(0.0, 0.4999))
     return 0.5 - log_uniform(generator, 1e-4, 1e-1)
@@ -212,7 +230,7 @@ SPECIAL: dict[str, Callable[[Generator], float]] = {
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:
-    """Draw factors along a body, now and then zero but for a section, or with a narrow peak."""
+    """Factors along a body, now and then zero but for a section, or with a narrow peak."""
     places = np.sort(generator.uniform(0.0, 1.0, int(generator.integers(2, 7))))
     factors = 10.0 ** generator.uniform(-1.0, 1.0, len(places))
     if name != "section_profile":
@@ -222,7 +240,7 @@ def _profile(name: str, generator: Generator) -> list[list[float]]:
 
 
 def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:
-    """Draw a path over time through a few points: reversals, jumps, narrow peaks among them."""
+    """A path over time through a few points: reversals, jumps, narrow peaks among them."""
     times = np.sort(generator.uniform(0.0, duration, int(generator.integers(1, 8))))
     values = abs(size) * generator.uniform(-1.0, 1.0, len(times))
     return _with_peak(times, values, size, duration, generator)

@@ -1,35 +1,47 @@
-"""What a run comes to, measured against the reference and by the equations."""
+"""What a run comes to, measured against the reference and by the equations, and its verdict."""
 
 from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import eigvalsh
 
 from solver.arrays import Array
 from solver.discrete import Problem
-from solver.latin import Solution, solve
+from solver.latin import Ending, Solution, solve
 from solver.latin.indicators import behaviour_indicator, latin_indicator
-from solver.reference.assembly import assembled_stiffness
+from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
-from solver.reference.distance import distance_to
+from solver.reference.distance import Fields, determinate_forces, distance_to
+from solver.reference.glued import jumps
+from solver.reference.rules import rules_of
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.quantities.finished import BROKEN, REFUSED
-from solver.study.stability.residual import kkt_residual
+from solver.study.stability.case import PASSING, Case, Verdict
 
 AT_ROUNDING = 1e-8
 """Residual of a certified solution, at most, by the equations alone."""
-LARGEST = 2000
-"""Degrees of freedom up to which condition numbers are found."""
+ELASTIC = 1e-4
+"""Share of the forces inside elements that counts like a contact force: they leave so much more
+rounding. In slender bodies they are 1e5 times what acts on them."""
+MEANING: dict[str, str] = {
+    Verdict.RIGHT: "the errors are as small as they have to be; or certified, and the equations "
+    "hold up to rounding where there are several solutions",
+    Verdict.UNSOLVED: "not the right answer, and the run says so, and what to try",
+    Verdict.REFUSED: "a problem without a solution, or senseless, is refused in words",
+    Verdict.UNCLEAR: "called converged, not certified, and not judged, as the reference finds "
+    "several solutions or none",
+    Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
+    "not finite, or ended in a warning or an exception",
+}
 
 
 @dataclass(frozen=True)
@@ -56,10 +68,6 @@ class Outcome:
         Why the reference is not the one solution, or empty.
     finite
         Whether all fields are.
-    condition_structure, condition_substructure
-        Condition numbers of the stiffness with supports but without contact, infinite if that
-        alone holds a body, and largest of the substructures' operators K + B' k B; NaN where they
-        were not asked, or are too large to tell.
     """
 
     ending: str
@@ -76,43 +84,29 @@ class Outcome:
     floor: float = 0.0
     doubt: str = ""
     finite: bool = True
-    condition_structure: float = math.nan
-    condition_substructure: float = math.nan
 
 
-def run(scene: str, values: Mapping[str, object], *, conditions: bool = False) -> Outcome:
-    """Run a scene to its stop rule, and measure what comes out; a warning breaks it.
+def run(scene: str, values: Mapping[str, object]) -> Outcome:
+    """Run a scene of the catalogue to its stop rule, and measure what comes out.
 
-    Parameters
-    ----------
-    scene, values
-        A name of the catalogue, and what differs from its settings.
-    conditions
-        Whether condition numbers are wanted, which take their time.
+    Its settings differ by the values from the scene's own; a warning breaks it.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
             settings = CATALOGUE[scene].settings.checked(values)
-            problem, method = discretise(settings), method_of(settings)
-            solution = solve(problem, method, watch=False)
-            structure = substructures = math.nan
-            if conditions:
-                structure = condition_of_structure(problem)
-                substructures = condition_of_substructures(problem, method.direction.of(problem))
-            return _measured(problem, solution, structure, substructures)
+            problem = discretise(settings)
+            return _measured(problem, solve(problem, method_of(settings), watch=False))
         except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")
 
 
-def _measured(
-    problem: Problem, solution: Solution, structure: float, substructures: float
-) -> Outcome:
+def _measured(problem: Problem, solution: Solution) -> Outcome:
     """Compare a solution with the reference, and with the equations if it is certified."""
     iterate, status = solution.iterate, solution.status
-    if not all(np.isfinite(one).all() for one in (iterate.displacement, iterate.contact_force)):
+    if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
         return Outcome(status.ending, status.advice, iterations=iterate.number, finite=False)
     reference, doubt = _reference(problem)
     distance = None if reference is None else distance_to(reference, problem)
@@ -133,8 +127,6 @@ def _measured(
         residual=residual,
         floor=floor,
         doubt=doubt,
-        condition_structure=structure,
-        condition_substructure=substructures,
     )
 
 
@@ -153,35 +145,107 @@ def _reference(problem: Problem) -> tuple[Reference | None, str]:
     return reference, f"there are several solutions at {several} instants" if several else ""
 
 
-def condition_of_structure(problem: Problem) -> float:
-    """Condition number of the assembled stiffness without its held points."""
-    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
-    return _condition(assembled_stiffness(problem)[free][:, free])
+def kkt_residual(fields: Fields, problem: Problem) -> float:
+    """Largest violation of equilibrium and laws, as a share of the forces in play.
 
-
-def condition_of_substructures(problem: Problem, k: Array) -> float:
-    """Largest condition number of K + B' k B over the substructures.
+    By the equations alone, at every instant, however the fields were found.
 
     Parameters
     ----------
-    problem, k
-        The structure, and the search direction, shape (n_rows,).
+    fields
+        Displacement and contact force, SI.
+    problem
+        Whose equations they should obey.
+
+    Returns
+    -------
+    Relative to the largest contact force, or to a small share of what the displacement alone makes
+    of forces inside elements, which rounding is a share of; and to the load where all vanish.
     """
-    numbers = {}
-    for part in problem.substructures:
-        key = (id(part.elasticity), k[part.rows].tobytes())
-        if key not in numbers:
-            springs = np.zeros(len(part.dofs))
-            np.add.at(springs, part.elasticity.trace, k[part.rows])
-            stiffness = sparse.csr_array(part.elasticity.stiffness)
-            numbers[key] = _condition(sparse.csr_array(stiffness + sparse.diags_array(springs)))
-    return max(numbers.values())
+    displacement = fields.displacement / problem.scales.displacement
+    force = fields.contact_force / problem.scales.force
+    stiffness, all_jumps = assembled_stiffness(problem), jumps(problem)
+    outer = external_force(problem)
+    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
+    inner = stiffness @ displacement
+    unbalanced = (inner - outer - all_jumps.T @ force)[free]
+    elastic = abs(stiffness) @ np.abs(displacement)
+    size = max(
+        float(np.abs(part).max(initial=0.0)) for part in (ELASTIC * elastic, ELASTIC * outer, force)
+    )
+    jump = all_jumps @ displacement + rules_of(problem).compliance[:, None] * force
+    broken = _broken_laws(problem, stiffness, jump, force)
+    largest = max(float(np.abs(part).max(initial=0.0)) for part in (unbalanced, broken))
+    return largest / size if size > 0.0 else largest
 
 
-def _condition(matrix: sparse.csr_array) -> float:
-    """Largest over smallest eigenvalue of a symmetric matrix; infinite if that is zero."""
-    if matrix.shape[0] > LARGEST:
-        return math.nan
-    values = eigvalsh(matrix.toarray())
-    rounding = len(values) * np.finfo(float).eps * values[-1]
-    return float(values[-1] / values[0]) if values[0] > rounding else math.inf
+def _broken_laws(problem: Problem, stiffness: sparse.csr_array, jump: Array, force: Array) -> Array:
+    """How far contacts are from their laws, as forces, shape (n_forces, n_instants).
+
+    A pair of quantities of which one vanishes, such as pressing force and opening, is as wrong as
+    the smaller one; lengths become forces by the stiffness of the jump's own degrees of freedom.
+    """
+    rules = rules_of(problem)
+    unit = (abs(jumps(problem)) @ stiffness.diagonal())[:, None]
+    unit = unit / (1.0 + unit * rules.compliance[:, None])
+    opening = unit * (jump + rules.gap[:, None])
+    moved = np.diff(jump, axis=1, prepend=0.0)
+    slip, bound = unit * moved, rules.bounds(force, moved, opening)
+    overlap, tension = np.maximum(-opening, 0.0), np.maximum(-force, 0.0)
+    apart = np.minimum(np.maximum(opening, 0.0), np.maximum(force, 0.0))
+    of_normal = np.maximum(np.maximum(overlap, tension), apart)
+    beyond = np.maximum(np.abs(force) - bound, 0.0)
+    against = np.minimum(np.abs(slip), np.abs(force + bound * np.sign(slip)))
+    of_friction = np.maximum(beyond, against)
+    wrong = np.where(rules.normal[:, None], of_normal, of_friction)
+    return np.asarray(wrong * determinate_forces(problem))
+
+
+def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:
+    """Judge an outcome by its numbers and its status alone.
+
+    Parameters
+    ----------
+    outcome
+        Of a run.
+    force, displacement
+        Errors of contact force and displacement up to which the answer is right.
+    """
+    if outcome.ending == BROKEN or not outcome.finite or not outcome.advice:
+        return Verdict.WRONG
+    if outcome.ending == REFUSED:
+        return Verdict.REFUSED
+    if outcome.certified and not outcome.residual <= max(AT_ROUNDING, 2.0 * outcome.floor):
+        return Verdict.WRONG
+    if outcome.error_force <= force and outcome.error_displacement <= displacement:
+        return Verdict.RIGHT
+    if outcome.ending != Ending.CONVERGED:
+        return Verdict.UNSOLVED
+    if outcome.doubt:
+        # One solution of several is right.
+        return Verdict.RIGHT if outcome.certified else Verdict.UNCLEAR
+    return Verdict.WRONG
+
+
+@dataclass(frozen=True)
+class JudgedRun:
+    """A case, what it came to, and what that is worth."""
+
+    case: Case
+    outcome: Outcome
+
+    @property
+    def verdict(self) -> Verdict:
+        """What it is worth."""
+        return judge(self.outcome, self.case.error_force, self.case.error_displacement)
+
+    @property
+    def passed(self) -> bool:
+        """Whether it came to what it has to."""
+        return self.verdict in PASSING[self.case.expected]
+
+
+def judged_runs(cases: Iterable[Case]) -> Iterator[JudgedRun]:
+    """Run cases, and yield each as soon as it is done."""
+    for case in cases:
+        yield JudgedRun(case, run(case.scene, case.values))

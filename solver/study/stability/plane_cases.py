@@ -53,12 +53,8 @@ INCLINE = {
 }
 
 
-def plane_cases() -> tuple[Case, ...]:
-    """All cases of the fault, the block, the layers and the block on a slope."""
-    return (*_fault(), *_block(), *_layers(), *_incline())
-
-
-def _block() -> list[Case]:
+def block_cases() -> list[Case]:
+    """All cases of the scene `block`."""
     case = cases_with("block", BLOCK)
     jump = [[0.0, 0.0], [0.5, 0.0], [0.55, -4e-5], [1.0, -4e-5]]
     return [
@@ -104,7 +100,8 @@ def _block() -> list[Case]:
     ]
 
 
-def _layers() -> list[Case]:
+def layers_cases() -> list[Case]:
+    """All cases of the scene `layers`."""
     case = cases_with("layers", LAYERS)
     moment = {"bending": "moment", "moment": 1e3}
     return [
@@ -125,7 +122,8 @@ def _layers() -> list[Case]:
     ]
 
 
-def _incline() -> list[Case]:
+def incline_cases() -> list[Case]:
+    """All cases of the scene `incline`."""
     case = cases_with("incline", INCLINE)
     return [
         case("incline", "as it is", {}, quick=True),
@@ -143,7 +141,8 @@ def _incline() -> list[Case]:
     ]
 
 
-def _fault() -> list[Case]:
+def fault_cases() -> list[Case]:
+    """All cases of the scene `fault`."""
     case = cases_with("fault", FAULT)
     return [
         case("fault and fluid", "as it is", {}, quick=True),

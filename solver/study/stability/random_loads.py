@@ -18,13 +18,13 @@ Sizes = dict[str, float]
 
 
 def _share(generator: Generator) -> float:
-    """Draw a load over what friction carries, pushing as often as pulling."""
+    """A load over what friction carries, pushing as often as pulling."""
     size = float(np.exp(generator.uniform(np.log(SMALLEST), np.log(LARGEST))))
     return size if generator.random() < 0.7 else -size
 
 
 def bar_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw the loads of the bar; its end alone is loaded in two of three."""
+    """The loads of the bar; its end alone is loaded in two of three."""
     length = values["length"]
     carried = values["friction"] * values["pressure"] * length
     peak = carried * _share(generator)
@@ -38,14 +38,14 @@ def bar_loads(values: Values, generator: Generator) -> Sizes:
 
 
 def strand_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw the tension of the strand; wires are not pushed."""
+    """The tension of the strand; wires are not pushed."""
     carried = values["friction"] * values["pressure"] * values["length"]
     peak = carried * abs(_share(generator))
     return {"peak": peak, "load": peak}
 
 
 def block_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw what presses and drags the block, and the radius under it to match.
+    """What presses and drags the block, and the radius under it to match.
 
     What is pressed in is 1e-6 to 1e-3 of the height; other sides than the top are loaded alike.
     """
@@ -76,7 +76,7 @@ def block_loads(values: Values, generator: Generator) -> Sizes:
 
 
 def layers_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw what bends and pulls the stack: by the shear that friction carries between layers."""
+    """What bends and pulls the stack: by the shear that friction carries between layers."""
     length, thickness = values["length"], values["thickness"]
     height = thickness * values["layers"]
     pressure = values["young"] * 10.0 ** generator.uniform(-7.0, -4.0)
@@ -97,7 +97,7 @@ def layers_loads(values: Values, generator: Generator) -> Sizes:
 
 
 def rope_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw the tension of the rope, and how far it is bent: by where its outer wires slip first."""
+    """The tension of the rope, and how far it is bent: by where its outer wires slip first."""
     section = CONSTRUCTIONS[values["construction"]](values["layers"])
     tension = section.stiffness * 10.0 ** generator.uniform(-4.0, -2.0)
     helix = section.helix(len(section.layers) - 1)
@@ -108,12 +108,12 @@ def rope_loads(values: Values, generator: Generator) -> Sizes:
 
 
 def incline_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw the angle of a slope up to which a table goes."""
+    """The angle of a slope up to which a table goes."""
     return {"slope_load": float(values["slope"] * generator.uniform(0.0, 1.0))}
 
 
 def fault_loads(values: Values, generator: Generator) -> Sizes:
-    """Draw what presses, shears and loosens a fault: the fluid presses less than the rest does."""
+    """What presses, shears and loosens a fault: the fluid presses less than the rest does."""
     pressing = values["young"] * 10.0 ** generator.uniform(-6.0, -3.0)
     fluid = float(pressing * generator.uniform(0.0, 1.0))
     stress = values["friction"] * pressing * _share(generator)

@@ -2,149 +2,130 @@
 
 from __future__ import annotations
 
-from solver.study.stability.case import (
-    JUMP,
-    MUST_REFUSE,
-    PLATEAUS,
-    RIGHT,
-    UNSOLVED,
-    Case,
-    cases_with,
-    graded,
-    reversals,
-)
+import numpy as np
+
+from solver.definitions import Pairs
+from solver.study.stability.case import MUST_REFUSE, RIGHT, UNSOLVED, Case, cases_with, reversals
 
 SMALL_BAR = {"elements": 20, "substructures": 4, "instants": 41}
 """A quarter of the work of Table 1."""
-QUICK = {"k_scale": (1e-6, 1e6), "young": (1.0, 1e18), "length": (1e-6, 1e4)}
+STRAND = {"elements": 24, "substructures": 4, "instants": 31, "max_iterations": 1000}
+ROPE = {
+    **{"layers": 1, "length": 0.3, "tension": 5e4, "elements": 32, "substructures": 8},
+    **{"instants": 31, "max_iterations": 1000},
+}
+ALIKE = {"bending": "uniform"}
+RAMP = {"load": "ramp"}
+JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
+PLATEAUS: Pairs = (
+    *((0.0, 0.0), (0.2, 800.0), (0.4, 800.0)),
+    *((0.6, -400.0), (0.8, -400.0), (1.0, 700.0)),
+)
+JUMP_WIDTH = 1e-9
+"""Share of an element beside its ends, within which a section changes to that of the next."""
 
 
-def bar_cases() -> tuple[Case, ...]:
-    """All cases of the bar."""
-    return (
-        Case("Table 1", "as it is", quick=True),
-        *_ranges(),
-        *_contact(),
-        *_loads(),
-        *_sizes(),
+def graded(contrast: float, elements: int) -> Pairs:
+    """A section that grows by equal factors from element to element of a bar of 1 m.
+
+    The contrast is last over first section; their geometric mean stays what it was.
+    """
+    factors = contrast ** np.linspace(-0.5, 0.5, elements)
+    return tuple(
+        ((i + end) / elements, float(factor))
+        for i, factor in enumerate(factors)
+        for end in (JUMP_WIDTH, 1.0 - JUMP_WIDTH)
     )
 
 
-def _ranges() -> list[Case]:
-    steps = {
-        "k_scale": (1e-6, 1e-4, 1e-2, 1e-1, 10.0, 1e2, 1e4, 1e6),
-        "young": (1.0, 1e6, 1e14, 1e18),
-        "length": (1e-6, 1e-3, 10.0, 1e4),
-        "relaxation": (0.1, 0.3, 0.5, 1.0),
-    }
-    slow = {"k_scale": (0.0, 1e9), "relaxation": (0.0, 0.4)}
-    cases = [
-        Case(
-            name,
-            f"{value:g}",
-            {name: value, **({"max_iterations": 600} if name == "k_scale" else {})},
-            UNSOLVED
-            if slow.get(name, (0.0, 0.0))[0] < value < slow.get(name, (0.0, 0.0))[1]
-            else RIGHT,
-            quick=value in QUICK.get(name, ()),
-        )
-        for name, values in steps.items()
-        for value in values
-    ]
-    contrasts = (1e2, 1e4, 1e8, 1e-4, 1e-8)
-    cases += [
-        Case(
-            "stiffness contrast",
-            f"{value:g} towards the load",
-            {**SMALL_BAR, "section_profile": graded(value, SMALL_BAR["elements"])},
-            UNSOLVED if value in (1e4, 1e8, 1e-8) else RIGHT,
-            quick=value == 1e8,
-        )
-        for value in contrasts
-    ]
-    return cases
-
-
-def _contact() -> list[Case]:
+def bar_cases() -> list[Case]:
+    """All cases of the bar."""
+    case = cases_with("bar", {})
+    k_scales = (1e-6, 1e-4, 1e-2, 1e-1, 10.0, 1e2, 1e4, 1e6)
+    profiles = {"load": ((0.0, 1e-3), (1.0, 1e3)), "clamp": ((0.0, 1e3), (1.0, 1e-3))}
+    large = {"substructures": 50, "instants": 2, "max_iterations": 150}
+    many = {"elements": 4, "substructures": 2, "instants": 20_001, "max_iterations": 120}
     return [
-        Case("friction", "0", {"friction": 0.0}, quick=True),
-        Case("friction", "1e-12", {"friction": 1e-12}, UNSOLVED, quick=True),
-        Case("friction", "1e6", {"friction": 1e6}, quick=True),
-        Case("pressure", "0", {"pressure": 0.0}, quick=True),
-        Case("pressure", "1e15 N/m", {"pressure": 1e15}),
-        Case(
-            "pressure",
-            "1e6 times higher at the load",
-            {"pressure_profile": [[0.0, 1e-3], [1.0, 1e3]]},
+        case("Table 1", "as it is", {}, quick=True),
+        *(
+            case(
+                "k_scale",
+                f"{scale:g}",
+                {"k_scale": scale, "max_iterations": 600},
+                UNSOLVED,
+                quick=scale in (1e-6, 1e6),
+            )
+            for scale in k_scales
         ),
-        Case(
-            "pressure",
-            "1e6 times higher at the clamp",
-            {"pressure_profile": [[0.0, 1e3], [1.0, 1e-3]]},
-            quick=True,
+        *(
+            case("young", f"{young:g}", {"young": young}, quick=young in (1.0, 1e18))
+            for young in (1.0, 1e6, 1e14, 1e18)
         ),
-        Case("pressure", "gap in the middle", {"pressure_profile": "gap"}),
-    ]
-
-
-def _loads() -> list[Case]:
-    return [
-        Case("load", "zero", {"peak": 0.0}, quick=True),
-        Case("load", "1e-9 N, nothing slides", {"peak": 1e-9}),
-        Case("load", "4000 N, every point slides", {"peak": 4000.0}, quick=True),
-        Case("load", "1e15 N", {"peak": 1e15}, UNSOLVED),
-        Case("load", "turns at every instant", {"load": reversals(101, 900.0)}, quick=True),
-        Case("load", "one jump", {"load": JUMP}, quick=True),
-        Case("load", "plateaus", {"load": PLATEAUS}),
-        Case("load", "moved support", {"support_displacement": 1e-3}),
-        Case("load", "body force", {"body_force": 1000.0}),
-    ]
-
-
-def _sizes() -> list[Case]:
-    parts = (1, 2, 5, 25, 50)
-    cases = [
-        Case("substructures", f"{number} of 50 elements", {"substructures": number}, UNSOLVED)
-        for number in parts
-    ]
-    cases += [
-        Case(
-            "substructures", "as many as 20 elements", {**SMALL_BAR, "substructures": 20}, UNSOLVED
+        *(
+            case("length", f"{length:g}", {"length": length}, quick=length in (1e-6, 1e4))
+            for length in (1e-6, 1e-3, 10.0, 1e4)
         ),
-        Case("instants", "1", {"load": "ramp", "instants": 1}, quick=True),
-        Case("instants", "2", {"load": "ramp", "instants": 2}),
-        Case(
-            "instants",
-            "20 001, 4 elements",
-            {"elements": 4, "substructures": 2, "instants": 20_001, "max_iterations": 120},
+        *(
+            case("relaxation", f"{part:g}", {"relaxation": part}, UNSOLVED if part < 0.4 else RIGHT)
+            for part in (0.1, 0.3, 0.5, 1.0)
+        ),
+        *(
+            case(
+                "stiffness contrast",
+                f"{contrast:g} towards the load",
+                {**SMALL_BAR, "section_profile": graded(contrast, SMALL_BAR["elements"])},
+                UNSOLVED if contrast in (1e4, 1e8, 1e-8) else RIGHT,
+                quick=contrast == 1e8,
+            )
+            for contrast in (1e2, 1e4, 1e8, 1e-4, 1e-8)
+        ),
+        case("friction", "0", {"friction": 0.0}, quick=True),
+        case("friction", "1e-12", {"friction": 1e-12}, UNSOLVED, quick=True),
+        case("friction", "1e6", {"friction": 1e6}, quick=True),
+        case("pressure", "0", {"pressure": 0.0}, quick=True),
+        case("pressure", "1e15 N/m", {"pressure": 1e15}),
+        *(
+            case(
+                "pressure",
+                f"1e6 times higher at the {end}",
+                {"pressure_profile": profile},
+                quick=end == "clamp",
+            )
+            for end, profile in profiles.items()
+        ),
+        case("pressure", "gap in the middle", {"pressure_profile": "gap"}),
+        case("load", "zero", {"peak": 0.0}, quick=True),
+        case("load", "1e-9 N, nothing slides", {"peak": 1e-9}),
+        case("load", "4000 N, every point slides", {"peak": 4000.0}, quick=True),
+        case("load", "1e15 N", {"peak": 1e15}, UNSOLVED),
+        case("load", "turns at every instant", {"load": reversals(101, 900.0)}, quick=True),
+        case("load", "one jump", {"load": JUMP}, quick=True),
+        case("load", "plateaus", {"load": PLATEAUS}),
+        case("load", "moved support", {"support_displacement": 1e-3}),
+        case("load", "body force", {"body_force": 1000.0}),
+        *(
+            case("substructures", f"{parts} of 50 elements", {"substructures": parts}, UNSOLVED)
+            for parts in (1, 2, 5, 25, 50)
+        ),
+        case(
+            *("substructures", "as many as 20 elements"),
+            {**SMALL_BAR, "substructures": 20},
             UNSOLVED,
         ),
-        Case("nodes", "2", {"elements": 1, "substructures": 1}, quick=True),
-        Case("nodes", "3", {"elements": 2, "substructures": 2}),
-        Case("nodes", "801", {"elements": 800, "instants": 11, "max_iterations": 600}, UNSOLVED),
-        Case(
-            "nodes",
-            "20 001, 2 instants",
-            {
-                "elements": 20_000,
-                "substructures": 50,
-                "load": "ramp",
-                "instants": 2,
-                "max_iterations": 150,
-            },
-            UNSOLVED,
-        ),
+        case("instants", "1", {**RAMP, "instants": 1}, quick=True),
+        case("instants", "2", {**RAMP, "instants": 2}),
+        case("instants", "20 001, 4 elements", many, UNSOLVED),
+        case("nodes", "2", {"elements": 1, "substructures": 1}, quick=True),
+        case("nodes", "3", {"elements": 2, "substructures": 2}),
+        case("nodes", "801", {"elements": 800, "instants": 11, "max_iterations": 600}, UNSOLVED),
+        case("nodes", "20 001, 2 instants", {"elements": 20_000, **RAMP, **large}, UNSOLVED),
     ]
-    return cases
 
 
-STRAND = {"elements": 24, "substructures": 4, "instants": 31, "max_iterations": 1000}
-
-
-def strand_cases() -> tuple[Case, ...]:
+def strand_cases() -> list[Case]:
     """All cases of the strand."""
     case = cases_with("strand", STRAND)
-    return (
+    return [
         case("strand", "as it is", {}, quick=True),
         case("friction", "0, given displacement", {"friction": 0.0, "grip": "displacement"}),
         case("friction", "1e6", {"friction": 1e6}, UNSOLVED),
@@ -164,26 +145,14 @@ def strand_cases() -> tuple[Case, ...]:
         case("k_scale", "1000", {"k_scale": 1e3}, UNSOLVED),
         case("substructures", "1", {"substructures": 1}, UNSOLVED),
         case("substructures", "as many as elements", {"substructures": 24}, UNSOLVED),
-        case("instants", "1", {"instants": 1, "load": "ramp"}),
-    )
+        case("instants", "1", {"instants": 1, **RAMP}),
+    ]
 
 
-ROPE = {
-    "layers": 1,
-    "length": 0.3,
-    "tension": 5e4,
-    "elements": 32,
-    "substructures": 8,
-    "instants": 31,
-    "max_iterations": 1000,
-}
-ALIKE = {"bending": "uniform"}
-
-
-def rope_cases() -> tuple[Case, ...]:
+def rope_cases() -> list[Case]:
     """All cases of the strand of helical wires."""
     case = cases_with("rope", ROPE)
-    return (
+    return [
         case("strand of helical wires", "as it is", {}, quick=True),
         case("strand of helical wires", "bent alike all along", ALIKE, quick=True),
         case("friction", "0", {"friction": 0.0}),
@@ -203,5 +172,5 @@ def rope_cases() -> tuple[Case, ...]:
         case("construction", "91 wires", {"layers": 5, "instants": 11}),
         case("substructures", "1", {"substructures": 1}, UNSOLVED),
         case("substructures", "as many as elements", {"substructures": 32}),
-        case("instants", "1", {"instants": 1, "load": "ramp"}),
-    )
+        case("instants", "1", {"instants": 1, **RAMP}),
+    ]

@@ -1,0 +1,182 @@
+"""The commands that check runs, or give one to others: `mesh`, `compare`, `lesson`, `fclib`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from solver.definitions import SettingError
+from solver.disk import check_place, read_bytes, whole_file, why
+from solver.files import settings_from_command
+from solver.latin import Ending, solve
+from solver.latin.run_cost import run_cost
+from solver.lessons.lesson import check
+from solver.lessons.reading import lesson_from_file
+from solver.refusal import RefusedError
+from solver.remarks import prepared, print_tables
+from solver.scenes import discretise
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
+from solver.study.fclib import can_write, contacts_of, instant_at, local_problem, write_fclib
+from solver.study.mesh import (
+    TIME_STEP,
+    Refinement,
+    answer,
+    decides,
+    instants_around,
+    meshes_around,
+    size_of,
+    value_on,
+    which_to_refine,
+)
+from solver.study.quantities.quantities import Reading, reading
+
+
+def add_checks(commands: Any) -> None:
+    """Add the commands."""
+    mesh = _of_a_scene(
+        commands, "mesh", "whether elements and instants are enough for a quantity", _mesh
+    )
+    mesh.add_argument("--of", required=True, metavar="NAME", help="what is asked of a run")
+    compare = _of_a_scene(
+        commands, "compare", "how far a run is from another program's results", _compare
+    )
+    compare.add_argument(
+        "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their results"
+    )
+    compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
+    compare.add_argument("--json", action="store_true", help="print it as JSON")
+    lesson = commands.add_parser("lesson", help="test what lessons claim")
+    lesson.add_argument("files", nargs="+", type=Path, metavar="FILE", help="lessons (.toml)")
+    lesson.set_defaults(command=_lesson)
+    fclib = _of_a_scene(commands, "fclib", "one instant as a contact problem for others", _fclib)
+    fclib.add_argument("--out", type=Path, required=True, metavar="FILE.hdf5", help="write it here")
+    fclib.add_argument(
+        "--instant", type=float, metavar="SECONDS", help="the nearest one; the last without"
+    )
+
+
+def _of_a_scene(
+    commands: Any, name: str, purpose: str, command: Callable[[argparse.Namespace], int]
+) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(name, help=purpose)
+    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    parser.set_defaults(command=command)
+    return parser
+
+
+def _mesh(chosen: argparse.Namespace) -> int:
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    asked = reading(chosen.of)
+    if not decides(settings, asked):
+        can = "a quantity of what a run comes to, that this scene has"
+        raise SettingError("--of", chosen.of, can, "`python -m solver sweep` lists them")
+    print_tables(tables)
+    values: dict[str, float] = {}
+    refinements = []
+    for runs, own in (meshes_around(settings), instants_around(settings)):
+        for run in runs:
+            if size_of(run) not in values:
+                values[size_of(run)] = _value(run, asked)
+        coarse, middle, fine = (values[size_of(run)] for run in runs)
+        refinements.append(Refinement((coarse, middle, fine), own))
+    elements, instants = refinements
+    unit = asked.quantity.unit
+    print(f"Elements: {answer(elements, unit)}")
+    print(f"Instants: {answer(instants, unit, TIME_STEP)}")
+    if which := which_to_refine(elements, instants):
+        print(which)
+    return 0 if which else 1
+
+
+def _value(settings: Settings, asked: Reading) -> float:
+    """Quantity of a run, printed; before it what that will take, if it is much."""
+    most, size = settings.max_iterations, size_of(settings)
+    cost = run_cost(discretise(settings), method_of(settings), most, with_reference=False)
+    if cost.is_large:
+        print(f"slipfront: {size} will take about {cost}", file=sys.stderr, flush=True)
+    value = value_on(settings, asked)
+    print(f"{size:>32}  {value:.6g} {asked.quantity.unit}".rstrip(), flush=True)
+    return value
+
+
+def _compare(chosen: argparse.Namespace) -> int:
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    try:
+        data = read_bytes(chosen.file)
+    except (OSError, ValueError) as trouble:
+        raise SettingError("--with", str(chosen.file), CAN, why(trouble)) from None
+    results = read_results(data, chosen.file.name, settings)
+    tables = {**tables, results.source: results.message}
+    problem = prepared(settings, chosen.changes, tables)
+    if chosen.interface and chosen.interface not in problem.rubbing:
+        known = ", ".join(problem.rubbing)
+        raise SettingError("--interface", chosen.interface, known, "choose one of these")
+    comparison = Comparison(results, problem, chosen.interface)
+    if comparison.counted < FEWEST:
+        can = f"at least {FEWEST} rows that both cover"
+        raise SettingError("--with", str(chosen.file), can, "give points along this interface")
+    solution = solve(problem, method_of(settings))
+    distance, rows = comparison.of(solution.iterate), len(results.times)
+    if chosen.json:
+        figures = {
+            "quantity": results.quantity,
+            "interface": comparison.interface if results.quantity == FRICTION else None,
+            "distance": distance,
+            "rows": rows,
+            "rows_compared": comparison.counted,
+            "status": str(solution.status.ending),
+            "tables": tables,
+        }
+        print(json.dumps(figures))
+    else:
+        far = f"{results.quantity}: {100.0 * distance:.4g} % from {results.source}"
+        print(f"{far}, at {comparison.counted} of {rows} rows")
+    return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _lesson(chosen: argparse.Namespace) -> int:
+    lessons = [lesson_from_file(path) for path in chosen.files]
+    missed = 0
+    for lesson in lessons:
+        print(f"{lesson.name}: {lesson.title}")
+        for holds, line in check(lesson):
+            print(f"  {line}", flush=True)
+            missed += not holds
+    return int(missed > 0)
+
+
+def _fclib(chosen: argparse.Namespace) -> int:
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    if not can_write():
+        remedy = "install it: pip install 'slipfront[peers]'"
+        raise RefusedError("FCLIB", "a file in HDF5", "where h5py is installed", remedy)
+    try:
+        check_place(chosen.out)
+        problem = prepared(settings, chosen.changes, tables)
+        instants = problem.instants
+        time = float(instants[-1]) if chosen.instant is None else chosen.instant
+        contacts, instant = contacts_of(problem), instant_at(time, instants)
+        solution = solve(problem, method_of(settings))
+        is_sure = solution.is_certified
+        scene = settings.scene
+        local = local_problem(contacts, solution.iterate, instant, scene, certified=is_sure)
+        with whole_file(chosen.out, "wb") as file:
+            write_fclib(file, local)
+    except OSError as trouble:
+        can = "a file in an existing folder that can be written"
+        raise SettingError("--out", str(chosen.out), can, why(trouble)) from None
+    if not is_sure:
+        print(
+            "slipfront: the run is not certified: where contacts stood before is what it has "
+            "found, and no solution stands in the file",
+            file=sys.stderr,
+        )
+    print(f"t = {instants[instant]:.6g} s, {len(contacts.friction)} points: {chosen.out}")
+    return 0 if solution.status.ending is Ending.CONVERGED else 1

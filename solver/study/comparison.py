@@ -1,0 +1,261 @@
+"""Results of another program over x and t, and the distance of a run to them.
+
+Meshes differ, and with them nodal forces: so friction is brought as a force per length, N/m, of
+rods, and per area, Pa, of bodies in the plane: the traction along the interface, on the body above.
+
+Our field is linear between its points and between its instants; so it has a value w(x, t) at every
+row of the table, which has v. With d = w - v,
+
+    distance = |d| / |v|,    |d|^2 = sum over instants of their weight times the mean of d^2 there.
+
+The mean is over the points of that instant, each of which counts as half of the distance to its
+neighbours does; an instant has the trapezoidal weight of the table's own instants. So rows may lie
+anywhere, in any order, and a place that is sampled densely counts no more for that. What only one
+of both covers is left out: rows beside the body or the run, or where our force is an arbitrary
+share of what a support holds. Where v vanishes everywhere, |w| stands in its place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array, Indices
+from solver.columns import Refuse, TableColumn, size_in
+from solver.definitions import SettingError
+from solver.discrete.problem import Problem
+from solver.reference.distance import Fields, determinate_forces
+from solver.scenes import kind_of
+from solver.settings import Settings
+from solver.tables import Table, read_table
+
+FRICTION, DISPLACEMENT = "friction force", "displacement"
+FEWEST = 4
+"""Rows from which on a distance says anything."""
+MOST = 20_000
+"""Rows at most, which take a fifth of a second to read: a page's server does nothing else then."""
+EDGE = 1e-6
+"""Share of the body's length by which a point may lie beyond it: of rounded numbers."""
+CAN = "CSV whose head names x, t, and friction force or displacement"
+PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
+"""Unit of friction, by what there is to see of a scene."""
+
+
+@dataclass(frozen=True, eq=False)
+class OtherResults:
+    """Results of another program, in SI.
+
+    Attributes
+    ----------
+    quantity
+        `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane; or
+        `DISPLACEMENT`, m.
+    positions, times, values
+        Of every row, shape (n_rows,); m, s.
+    source, scene
+        Name of the file, and of the scene that it is brought to.
+    message
+        What was understood of the file.
+    """
+
+    quantity: str
+    positions: Array
+    times: Array
+    values: Array
+    source: str
+    scene: str
+    message: str
+
+
+def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
+    """Read results of another program for a scene.
+
+    Parameters
+    ----------
+    data
+        A table as `solver.tables` takes it, a file's bytes or its text. Its head names the columns
+        x (m), t (s), and friction force or displacement, in any order and with units if they are
+        others; further columns are passed over, and rows may have any order.
+    source
+        Name of the file.
+    settings
+        Those in force, which say how long the body and the run are.
+
+    Raises
+    ------
+    SettingError
+        For a table that is too large, or without these columns; for what is no finite number,
+        another unit, points outside of the body, or fewer than `FEWEST` rows during the run; for a
+        displacement of other scenes than a single rod.
+    """
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError("the results", source, CAN, remedy)
+
+    table = read_table(data, refuse)
+    kind = kind_of(settings)
+    quantity, columns = _columns(table)
+    if quantity == DISPLACEMENT and kind != "rod":
+        raise refuse("displacements are compared along a single rod: give the friction force here")
+    if len(table.rows) > MOST:
+        raise refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
+    units = "m", "s", PER[kind] if quantity == FRICTION else "m"
+
+    def refuse_unit(remedy: str) -> SettingError:
+        is_nodal = quantity == FRICTION and size_in(columns[2].unit, "N") is not None
+        return refuse(
+            f"{remedy}; divide nodal forces by what a node stands for" if is_nodal else remedy
+        )
+
+    sizes = [column.size(unit, refuse_unit) for column, unit in zip(columns, units, strict=True)]
+    numbers = table.numbers(columns)
+    message = table.message(columns, ("x", "t", quantity), units, numbers)
+    x, t, values = numbers * np.array(sizes)[:, None]
+    _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
+    x = np.clip(x, 0.0, settings.length)
+    return OtherResults(quantity, x, t, values, source, settings.scene, message)
+
+
+def _columns(table: Table) -> tuple[str, list[TableColumn]]:
+    """The quantity that is named, and the columns of x, t, and of it."""
+    if not any(column.quantities[0] for column in table.columns):
+        raise table.refuse("name its columns in the first line, as in x,t,friction force")
+    x, t = (table.find(table.columns, {kind}) for kind in ("position", "time"))
+    if x is None or t is None:
+        raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
+    fields = {kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)}
+    named = [(kind, column) for kind, column in fields.items() if column]
+    if len(named) != 1:
+        which = "both friction force and" if named else "neither friction force nor"
+        raise table.refuse(f"its head names {which} displacement: give one of them")
+    quantity, column = named[0]
+    return quantity, [x, t, column]
+
+
+def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refuse: Refuse) -> None:
+    length, duration = settings.length, settings.duration
+    beyond = np.flatnonzero((x < -EDGE * length) | (x > (1.0 + EDGE) * length))
+    if len(beyond):
+        raise refuse(
+            f"line {lines[beyond[0]]} has x = {x[beyond[0]]:g} m, outside of the body, which goes "
+            f"from 0 to {length:g} m: shift or scale x"
+        )
+    during = int(((t >= 0.0) & (t <= duration)).sum())
+    if during < FEWEST:
+        raise refuse(
+            f"{during or 'none'} of its {len(t)} rows lie in the run, which goes from 0 to "
+            f"{duration:g} s: give at least {FEWEST}"
+        )
+
+
+class Comparison:
+    """Results of another program beside the runs of one problem.
+
+    Parameters
+    ----------
+    results
+        The table.
+    problem
+        What is solved.
+    interface
+        The one whose friction is compared; the first one if there is none of this name.
+
+    Attributes
+    ----------
+    results
+        The table.
+    interface
+        Name of the interface.
+    counted
+        Number of rows that both cover.
+    """
+
+    def __init__(self, results: OtherResults, problem: Problem, interface: str = "") -> None:
+        names = list(problem.rubbing)
+        self.results = results
+        self.interface = interface if interface in names else names[0]
+        self._is_friction = results.quantity == FRICTION
+        x, t, positions = results.positions, results.times, problem.positions
+        if self._is_friction:
+            law = problem.rubbing[self.interface]
+            self._places = problem.contact_places[self.interface][-1]
+            self._sizes = law.by_point(law.weights)[:, None]
+            positions = law.positions
+        order = np.argsort(positions, kind="stable")
+        points, point_shares = _between(positions[order], x)
+        instants, instant_shares = _between(problem.instants, t)
+        # Of the four corners around a row: instants after points, shape (2, 2, n_rows).
+        corners = order[points] * problem.n_instants + instants[:, None]
+        shares = point_shares * instant_shares[:, None]
+        counts = _covers(positions, x) & _covers(problem.instants, t)
+        if self._is_friction:
+            known = determinate_forces(problem)[self._places].ravel()[corners]
+            counts &= (known | (shares == 0.0)).all(axis=(0, 1))
+        self.counted = int(counts.sum())
+        self._corners, self._shares = corners[..., counts], shares[..., counts]
+        self._values = results.values[counts]
+        self._weights = weights_of(x[counts], t[counts])
+
+    def of(self, fields: Fields) -> float:
+        """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
+        if self.counted < FEWEST:
+            return float("nan")
+        own = self.own(fields)
+        size = self._norm(self._values) or self._norm(own) or 1.0
+        return self._norm(own - self._values) / size
+
+    def own(self, fields: Fields) -> Array:
+        """Our field at the rows that both cover, shape (n_counted,)."""
+        field = fields.displacement
+        if self._is_friction:
+            field = fields.contact_force[self._places] / self._sizes
+        return np.asarray((self._shares * field.ravel()[self._corners]).sum(axis=(0, 1)))
+
+    def _norm(self, values: Array) -> float:
+        largest = float(np.abs(values).max(initial=0.0))
+        if largest == 0.0:
+            return 0.0
+        return largest * float(np.sqrt(self._weights @ (values / largest) ** 2))
+
+
+def weights_of(positions: Array, times: Array) -> Array:
+    """What every row counts, as above, shape (n_rows,)."""
+    order = np.lexsort((positions, times))
+    instants, number = np.unique(times[order], return_inverse=True)
+    own = _halves(positions[order], np.diff(number) == 0)
+    lengths = np.bincount(number, own, len(instants))
+    # All points of an instant may be one.
+    own[lengths[number] == 0.0] = 1.0
+    lengths = np.bincount(number, own, len(instants))
+    over_time = _halves(instants) if len(instants) > 1 else np.ones(len(instants))
+    weights = np.empty(len(times))
+    weights[order] = over_time[number] * own / lengths[number]
+    return weights
+
+
+def _covers(grid: Array, places: Array) -> NDArray[np.bool_]:
+    """Which places lie between the ends of a grid."""
+    low, high = float(grid.min()), float(grid.max())
+    edge = EDGE * (high - low)
+    return np.asarray((places >= low - edge) & (places <= high + edge))
+
+
+def _between(grid: Array, places: Array) -> tuple[Indices, Array]:
+    """Grid points below and above places, and the share of each, shape (2, n_places)."""
+    upper = np.clip(np.searchsorted(grid, places, side="right"), 1, len(grid) - 1)
+    lower = upper - 1
+    width = grid[upper] - grid[lower]
+    share = np.divide(places - grid[lower], width, out=np.zeros(len(places)), where=width > 0.0)
+    share = np.clip(share, 0.0, 1.0)
+    return np.stack([lower, upper]), np.stack([1.0 - share, share])
+
+
+def _halves(places: Array, joined: NDArray[np.bool_] | bool = True) -> Array:
+    """Half of the distances to the neighbours, of places that rise where they are joined."""
+    steps = np.diff(places) * joined
+    halves = np.zeros(len(places))
+    halves[:-1] += 0.5 * steps
+    halves[1:] += 0.5 * steps
+    return halves

@@ -1,1 +1,0 @@
-"""Results and problems that go to other programs, or come from them."""

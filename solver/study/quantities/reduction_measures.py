@@ -1,0 +1,115 @@
+"""Quantities of how compactly a field is kept: separated bases, singular vectors, clips."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solver.latin import Iterate
+from solver.reduction.clips import Clips, clips_of
+from solver.reduction.sizes import Sizes, of_clips, of_products
+from solver.reduction.svd import InterfaceField, decompose, decompositions
+from solver.scenes import kind_of, structure_of
+from solver.settings import Settings
+from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.quantity import WITHIN, quantity
+
+LOADED = "right x"
+"""The side at which rods are pulled."""
+
+
+def on_rods(settings: Settings) -> bool:
+    """Whether points rub on rods; in the plane most substructures do not rub."""
+    return kind_of(settings) != "plane"
+
+
+def can_be_clipped(settings: Settings) -> bool:
+    """Whether friction bounds are known, and what is pulled drives all slip: on rods.
+
+    Wires of a strand that is bent slip as its curvature has them, which is no force at an end.
+    """
+    return kind_of(settings) in ("rod", "wires")
+
+
+def clips_in(settings: Settings, iterate: Iterate) -> Clips:
+    """Clips with memory fitted to the friction of an iterate of rods, at all points that rub.
+
+    What drives it is the load, or without any all friction together, which a support that moves
+    has to overcome.
+    """
+    problem = iterate.problem
+    laws = problem.rubbing.values()
+    lengths = np.concatenate([law.by_point(law.weights) for law in laws])
+    bounds = [law.by_point(law.tangential.highest) * problem.scales.force for law in laws]
+    widest = max(bound.shape[1] for bound in bounds)
+    bound = np.concatenate([np.broadcast_to(own, (len(own), widest)) for own in bounds])
+    acts = structure_of(settings).described().acts
+    pulls = (act.values for act in acts if act.where == LOADED)
+    load = next(pulls, iterate.friction_force.sum(axis=0))
+    return clips_of(
+        iterate.friction_force / lengths[:, None],
+        bound / lengths[:, None],
+        load,
+        lengths,
+        problem.time_weights * problem.scales.time,
+    )
+
+
+def products_in(clips: Clips) -> Sizes:
+    """Sizes of the field that clips were fitted to, as singular vectors."""
+    places = np.arange(len(clips.given), dtype=float)
+    return of_products(decompose(clips.given, clips.space_weights, clips.time_weights, places))
+
+
+@quantity(
+    "Modes of the largest separated basis",
+    is_of_course=True,
+    applies=lambda settings: settings.applies("pgd_modes"),
+)
+def modes(run: FinishedRun) -> float:
+    """Modes of the largest separated basis of a substructure at the end; NaN without bases."""
+    reduction = run.iterate.reduction
+    return math.nan if reduction is None else max(basis.modes for basis in reduction.records)
+
+
+@quantity("Singular vectors of the displacement for an error of", parameter=WITHIN, applies=on_rods)
+def svd_modes_displacement(run: FinishedRun, at: float) -> float:
+    """Singular vectors that leave an error, in the substructure that needs most."""
+    field = InterfaceField.DISPLACEMENT
+    return max(part.modes_for(at) for part in decompositions(run.iterate, field))
+
+
+@quantity(
+    "Singular vectors of the friction force for an error of", parameter=WITHIN, applies=on_rods
+)
+def svd_modes_force(run: FinishedRun, at: float) -> float:
+    """Singular vectors that leave an error, in the substructure that needs most."""
+    field = InterfaceField.FRICTION_FORCE
+    return max(part.modes_for(at) for part in decompositions(run.iterate, field))
+
+
+@quantity(
+    "Numbers of the friction force, as singular vectors, for an error of",
+    parameter=WITHIN,
+    applies=can_be_clipped,
+)
+def svd_numbers(run: FinishedRun, at: float) -> float:
+    """How many numbers singular vectors within an error are."""
+    return products_in(clips_in(run.settings, run.iterate)).within(at)
+
+
+@quantity(
+    "Numbers of the friction force, as clips, for an error of",
+    parameter=WITHIN,
+    applies=can_be_clipped,
+)
+def clip_numbers(run: FinishedRun, at: float) -> float:
+    """How many numbers clips and singular vectors of what they leave are, within an error."""
+    return of_clips(clips_in(run.settings, run.iterate)).within(at)
+
+
+@quantity("Error of the friction force as clips", is_share=True, applies=can_be_clipped)
+def clip_error(run: FinishedRun) -> float:
+    """Error of clips alone."""
+    return float(clips_in(run.settings, run.iterate).errors[0])
