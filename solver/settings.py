@@ -252,28 +252,3 @@ class Settings(Checked):
     def k_factors(self) -> tuple[float, float]:
         """Further factors on k of contacts, along and across them."""
         return self.k_friction_scale, 1.0
-
-    @property
-    def n_jumps(self) -> int:
-        """Components of all contacts, none on a rigid support of known bound."""
-        return 0
-
-    @property
-    def loop_is_over_displacement(self) -> bool:
-        """Whether the force of the scene's loop stands over a displacement, m."""
-        return True
-
-    @property
-    def opens(self) -> bool:
-        """Whether contact may open, so that what presses is an unknown."""
-        return False
-
-    @property
-    def has_spring(self) -> bool:
-        """Whether a spring holds a body."""
-        return False
-
-    @property
-    def has_break(self) -> bool:
-        """Whether a body is broken."""
-        return False

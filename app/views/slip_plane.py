@@ -7,6 +7,7 @@ import numpy as np
 from app.frame import Floats, Frame, Selection
 from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
 from app.views.view import View, extent
+from solver.scenes import features_of
 
 FAR = 10.0
 """Times the plot by which a line goes beyond it."""
@@ -21,8 +22,8 @@ class SlipPlane(View):
     # Two points rub, whose friction follows from what presses them.
     applies = staticmethod(
         lambda settings: (
-            settings.opens
-            and settings.n_jumps == 4
+            features_of(settings).opens
+            and features_of(settings).jumps == 4
             and settings.values().get("friction_law") == "coulomb"
         )
     )

@@ -12,6 +12,7 @@ from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.fingerprint import fingerprint
 from solver.reference.solution import Reference
+from solver.scenes import features_of
 from solver.settings import Settings
 
 MOST_JUMPS = 1000
@@ -22,7 +23,7 @@ ENTRIES = 8
 
 def has_reference(settings: Settings) -> bool:
     """Whether a run is compared with an incremental solver."""
-    return settings.n_jumps <= MOST_JUMPS
+    return features_of(settings).jumps <= MOST_JUMPS
 
 
 class ReferenceCache:

@@ -11,7 +11,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK
-from solver.scenes.entry import Entry, Kind
+from solver.scenes.entry import Entry, Features, Kind
 from solver.scenes.fault import FAULT
 from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
@@ -40,6 +40,11 @@ def _of_scene(settings: Settings) -> SceneSettings:
     """Settings as those of a scene, which all of them are."""
     assert isinstance(settings, SceneSettings)
     return settings
+
+
+def features_of(settings: Settings) -> Features:
+    """What a scene has under its present settings."""
+    return _of_scene(settings).features
 
 
 def structure_of(settings: Settings) -> Structure:

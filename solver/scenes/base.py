@@ -30,6 +30,7 @@ from solver.loads import (
     turning_knots,
 )
 from solver.reference.closed_forms import ExactCurve
+from solver.scenes.entry import Features
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -160,6 +161,11 @@ class SceneSettings(Settings):
             What an incremental solver found, if it did: closed forms of contact are for its forces.
         """
         return ()
+
+    @property
+    def features(self) -> Features:
+        """What the scene has under its present settings."""
+        return Features()
 
     @property
     def n_nodes(self) -> int:

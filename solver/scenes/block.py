@@ -20,7 +20,7 @@ from solver.profiles import gap_at, unseen
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import POINTS, as_points
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_on_spring, exact_parabola
 from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
@@ -115,9 +115,10 @@ class BlockSettings(SideSettings):
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
 
     @property
-    def has_spring(self) -> bool:
-        """Whether a spring holds the block."""
-        return bool(self.spring) and self.applies("spring")
+    def features(self) -> Features:
+        """What the scene has under its present settings."""
+        has_spring = bool(self.spring) and self.applies("spring")
+        return super().features._replace(has_spring=has_spring)
 
     def _behind(self) -> Mapping[str, str]:
         # Where both forces act, the larger stands for their sum.
@@ -167,7 +168,7 @@ class BlockSettings(SideSettings):
             support=Support(gap, self.friction),
             sides=sides,
             body_force=self._body_force(),
-            spring=Spring(0.0, self.spring) if self.has_spring else None,
+            spring=Spring(0.0, self.spring) if self.features.has_spring else None,
         )
 
     def sentence(self) -> str:
@@ -185,7 +186,7 @@ class BlockSettings(SideSettings):
             acts += [f"{listed(own)} at its {side}"] if own else []
         if self._body_force() is not None:
             acts.append("loaded all through")
-        if self.has_spring:
+        if self.features.has_spring:
             acts.append("pulled back by a spring")
         held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
         acts += [f"held at its {side}" for side in held]

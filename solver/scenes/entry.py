@@ -1,12 +1,13 @@
-"""What the catalogue knows of a scene beside its settings."""
+"""What the catalogue knows of a scene, and what a scene has under its present settings."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from solver.scenes.base import SceneSettings
+if TYPE_CHECKING:
+    from solver.scenes.base import SceneSettings
 
 Kind = Literal["rod", "wires", "helices", "plane"]
 
@@ -53,3 +54,28 @@ class Entry:
     kind: Kind
     sizes: Mapping[str, tuple[int, ...]]
     grows: tuple[str, ...]
+
+
+class Features(NamedTuple):
+    """What a scene has under its present settings, for whoever shows or measures it.
+
+    Attributes
+    ----------
+    opens
+        Whether contact may open, so that what presses is an unknown.
+    has_spring
+        Whether a spring holds a body.
+    has_break
+        Whether a body is broken.
+    jumps
+        Components of all contacts, which a reference condenses; none on a rigid support of known
+        bound.
+    loop_is_over_displacement
+        Whether the force of its loop stands over a displacement, m.
+    """
+
+    opens: bool = False
+    has_spring: bool = False
+    has_break: bool = False
+    jumps: int = 0
+    loop_is_over_displacement: bool = True

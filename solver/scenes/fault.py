@@ -24,7 +24,7 @@ from solver.profiles import means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
 
@@ -138,19 +138,9 @@ class FaultSettings(PlaneSettings):
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
     @property
-    def opens(self) -> bool:
-        """Whether contact may open: a fault stays closed."""
-        return False
-
-    @property
-    def n_jumps(self) -> int:
-        """Components of all contacts: those along the fault."""
-        return self.nodes[0]
-
-    @property
-    def loop_is_over_displacement(self) -> bool:
-        """Whether the loop is that of what drives: the fluid does."""
-        return False
+    def features(self) -> Features:
+        """A fault stays closed; its loop is over the fluid, which drives it."""
+        return Features(jumps=self.nodes[0], loop_is_over_displacement=False)
 
     def pressing(self, place: Array) -> Array:
         """Normal stress before any fluid is let in, shape (n_places,), Pa."""

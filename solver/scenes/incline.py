@@ -21,7 +21,7 @@ from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_slope
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
@@ -94,14 +94,9 @@ class InclineSettings(PlaneSettings):
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
 
     @property
-    def has_spring(self) -> bool:
-        """It does."""
-        return True
-
-    @property
-    def loop_is_over_displacement(self) -> bool:
-        """Whether the loop is over a displacement: it is over the angle of the slope."""
-        return False
+    def features(self) -> Features:
+        """The loop is over the angle of the slope."""
+        return super().features._replace(has_spring=True, loop_is_over_displacement=False)
 
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""

@@ -15,7 +15,7 @@ from solver.discrete.stack import Given, Side, Stack
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.reference.closed_forms import ExactCurve
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted, is_steel
@@ -139,9 +139,10 @@ class LayersSettings(PlaneSettings):
         return self.layers
 
     @property
-    def loop_is_over_displacement(self) -> bool:
-        """Whether the loop is over a displacement; that of a moment is over a rotation."""
-        return bool(self.bending != "moment")
+    def features(self) -> Features:
+        """The loop of a moment is over a rotation."""
+        is_over_displacement = self.bending != "moment"
+        return super().features._replace(loop_is_over_displacement=is_over_displacement)
 
     def bends_by(self, kind: str) -> bool:
         """Whether the end is bent so, as far as a preset and not a table says."""

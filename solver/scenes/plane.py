@@ -12,6 +12,7 @@ from solver.definitions import SettingError, choice, count, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
+from solver.scenes.entry import Features
 from solver.settings import Settings
 
 LARGEST_MATRIX = 30_000_000
@@ -126,11 +127,6 @@ class PlaneSettings(SceneSettings):
         return 1
 
     @property
-    def opens(self) -> bool:
-        """Whether contact may open: it may, and its pressing force is an unknown."""
-        return True
-
-    @property
     def order(self) -> int:
         """Order of the elements: 1 bilinear, 2 biquadratic."""
         return 2 if self.interpolation == "biquadratic" else 1
@@ -146,9 +142,10 @@ class PlaneSettings(SceneSettings):
         return self.n_bodies * math.prod(self.nodes)
 
     @property
-    def n_jumps(self) -> int:
-        """Components of all contacts, which a reference condenses."""
-        return 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
+    def features(self) -> Features:
+        """What the scene has under its present settings."""
+        jumps = 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
+        return Features(opens=True, jumps=jumps)
 
     @property
     def n_substructures(self) -> int:

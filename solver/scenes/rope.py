@@ -21,7 +21,7 @@ from solver.loads import PRESETS, PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.words import acting, counted
 
 
@@ -183,9 +183,9 @@ class RopeSettings(SceneSettings):
         return self.n_wires * int(self.elements + 1)
 
     @property
-    def loop_is_over_displacement(self) -> bool:
-        """Whether the loop is over a displacement: it is over the curvature."""
-        return False
+    def features(self) -> Features:
+        """The loop is over the curvature."""
+        return Features(loop_is_over_displacement=False)
 
     def check_together(self) -> None:
         """Refuse a tension that pushes, and a curvature that no fall-off is known of."""

@@ -18,7 +18,7 @@ from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_strand
 from solver.scenes.words import acting, counted, is_steel
 
@@ -122,14 +122,10 @@ class StrandSettings(SceneSettings):
         return self.wires * max(self.substructures, 2 if self.broken else 1)
 
     @property
-    def has_break(self) -> bool:
-        """Whether a wire is broken."""
-        return bool(self.broken)
-
-    @property
-    def n_jumps(self) -> int:
-        """Points of all contacts, which a reference condenses."""
-        return int((self.wires - 1) * (self.elements + 1))
+    def features(self) -> Features:
+        """What the scene has under its present settings."""
+        jumps = (self.wires - 1) * (self.elements + 1)
+        return Features(has_break=bool(self.broken), jumps=jumps)
 
     @property
     def n_nodes(self) -> int:

@@ -11,7 +11,7 @@ import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity, redefined
 from solver.discrete.wall import Wall, bonded
 from solver.loads import PRESETS, load_path
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted
 
@@ -164,11 +164,11 @@ class WallSettings(PlaneSettings):
         return self.n_substructures
 
     @property
-    def n_jumps(self) -> int:
-        """Components of all contacts, which a reference condenses: two bed nodes a joint more."""
+    def features(self) -> Features:
+        """A joint more has two bed nodes more."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
-        return int(2 * self.courses * (beds + heads))
+        return super().features._replace(jumps=2 * self.courses * (beds + heads))
 
     def _behind(self) -> Mapping[str, str]:
         driven = "displacement" if self.top == "moved" else "traction"

@@ -11,7 +11,7 @@ from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
-from solver.scenes import kind_of
+from solver.scenes import features_of, kind_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of
 from solver.study.quantities.finished import FinishedRun
@@ -25,15 +25,19 @@ UNLOADED = 1e-3
 
 
 def _opens(settings: Settings) -> bool:
-    return settings.opens
+    return features_of(settings).opens
 
 
 def _in_the_plane(settings: Settings) -> bool:
     return kind_of(settings) == "plane"
 
 
+def _with_a_spring(settings: Settings) -> bool:
+    return features_of(settings).has_spring
+
+
 def _over_a_displacement(settings: Settings) -> bool:
-    return settings.loop_is_over_displacement
+    return features_of(settings).loop_is_over_displacement
 
 
 @quantity("Largest displacement", "m")
@@ -141,7 +145,9 @@ def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
     return largest, place
 
 
-@quantity("Largest force in the spring", "N", applies=lambda settings: settings.has_spring)
+@quantity(
+    "Largest force in the spring", "N", applies=lambda settings: features_of(settings).has_spring
+)
 def spring_force(run: FinishedRun) -> float:
     """Largest force in the spring, N."""
     return float(run.force.max())
@@ -184,7 +190,7 @@ def largest_load(run: FinishedRun) -> int:
 
 def displacement_at(run: FinishedRun, instant: int) -> float:
     """Displacement of the loop at an instant, m; NaN for an angle."""
-    is_length = run.settings.loop_is_over_displacement
+    is_length = features_of(run.settings).loop_is_over_displacement
     return float(run.displacement[instant]) if is_length else math.nan
 
 

@@ -13,7 +13,7 @@ from solver.discrete.wire_forces import stress_ranges
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
-from solver.scenes import kind_of, structure_of
+from solver.scenes import features_of, kind_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, slips_of
 from solver.study.quantities.finished import FinishedRun
@@ -40,7 +40,8 @@ def has_a_limit(settings: Settings) -> bool:
         return False
     if kind_of(settings) != "plane":
         return True
-    if not settings.opens or settings.has_spring or settings.applies("contact_stiffness"):
+    features = features_of(settings)
+    if not features.opens or features.has_spring or settings.applies("contact_stiffness"):
         return False
     gaps = [hold.gap for hold in structure_of(settings).described().holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
@@ -222,7 +223,7 @@ def recovery_length_at(run: FinishedRun, instant: int) -> float:
 @quantity(
     "Length over which a broken wire regains its force",
     "m",
-    applies=lambda settings: settings.has_break,
+    applies=lambda settings: features_of(settings).has_break,
     at_instant=recovery_length_at,
 )
 def recovery_length(run: FinishedRun) -> float:
