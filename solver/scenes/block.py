@@ -165,7 +165,7 @@ class BlockSettings(SideSettings):
         gap = self._gap(nodes) if isinstance(table, str) else gap_at(table, nodes)
         return replace(
             self.stack(),
-            support=Support(gap, self.friction),
+            support=Support(gap, self.friction_at_nodes()),
             sides=sides,
             body_force=self._body_force(),
             spring=Spring(0.0, self.spring) if self.features.has_spring else None,

@@ -120,7 +120,7 @@ class InclineSettings(PlaneSettings):
         density = self.weight / (self.length * self.height)
         return replace(
             self.stack(),
-            support=Support(np.zeros(self.nodes[0]), self.friction),
+            support=Support(np.zeros(self.nodes[0]), self.friction_at_nodes()),
             body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
             spring=Spring(self.slack, self.spring),
             tilt=angle,
