@@ -436,7 +436,7 @@ class SceneSettings(Settings):
                     name,
                     value,
                     f"0, or from {plain(low)} to {plain(high)} {unit} with such bodies",
-                    "write 0 where nothing gives way; take less friction where nothing holds",
+                    "write 0 where nothing gives way, or take away friction where nothing holds",
                 )
 
 
