@@ -14,7 +14,7 @@ from solver.latin import solve
 from solver.laws import FrictionLaw
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE, discretise, features_of, law_of
+from solver.scenes import CATALOGUE, discretise, exact_of, features_of, law_of
 from solver.scenes.method import method_of
 from solver.study.fclib import contacts_of
 from solver.study.quantities.cycle_measures import has_a_limit
@@ -91,6 +91,21 @@ def test_a_broken_wire_is_held_by_cohesion_too():
     assert run("strand", **pulled, cohesion=3000.0).is_certified
     text = refusal(lambda: chosen("strand", **pulled, cohesion=3000.0, friction_cap=1000.0))
     assert "tensions below 1000 N" in text
+
+
+@pytest.mark.parametrize("law", [{}, {"tangential_stiffness": 1e7}])
+def test_cohesion_and_cap_of_a_bar_are_a_bound_as_known_as_that_of_its_pressure(law):
+    given = {**GENERAL, **law, "peak": 600.0}
+    laws = {"friction": 0.2}, {"friction": 0.12, "cohesion": 500.0, "friction_cap": 1e3}
+    one, other = (run("bar", **given, **values) for values in laws)
+    forces = [result.iterate.friction_force for result in (one, other)]
+    np.testing.assert_allclose(*forces, atol=1e-9 * np.abs(forces[0]).max())
+    settings = chosen("bar", **given, friction=0.0, cohesion=1000.0)
+    assert settings.sentence().startswith("A steel bar lies on a rough table")
+    problem = discretise(settings)
+    loop = next(curve for curve in exact_of(settings, problem) if curve.of == "loop")
+    moved = one.iterate.displacement[-1]
+    np.testing.assert_allclose(loop.across, moved, atol=0.05 * np.abs(moved).max())
 
 
 def test_no_point_of_a_bar_carries_more_than_the_cap():
@@ -175,7 +190,7 @@ def test_a_strength_that_does_not_begin_at_one_is_refused_in_words(table, why):
 
 def test_stiffnesses_without_digits_are_refused_with_what_is_possible():
     text = refusal(lambda: chosen("block", **GENERAL, tangential_stiffness=1e-12))
-    assert_names(text, "tangential_stiffness", "1e-12", "0, or from 2100 to 2.1e21 N/m^3")
+    assert_names(text, "tangential_stiffness", "1e-12", "0, or from 2100 N/m^3 to 2.1e21 N/m^3")
 
 
 @pytest.mark.parametrize("scene", list(SMALL))

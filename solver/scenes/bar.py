@@ -214,7 +214,7 @@ class BarSettings(SceneSettings):
 
     def sentence(self) -> str:
         """The bar in a sentence."""
-        bound = self.structure().bound
+        bound = self.law.without_slip(self.structure().bound)
         table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
         ends = f"its right end is {acting(self.path('load'), 'pulled', 'pushed')}"
         if self.support_displacement:

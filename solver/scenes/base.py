@@ -435,7 +435,7 @@ class SceneSettings(Settings):
                 raise SettingError(
                     name,
                     value,
-                    f"0, or from {plain(low)} to {plain(high)} {unit} with such bodies",
+                    f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
                     "write 0 where nothing gives way, or take away friction where nothing holds",
                 )
 

@@ -174,7 +174,7 @@ class BlockSettings(SideSettings):
     def sentence(self) -> str:
         """The block in a sentence."""
         support = {"flat": "flat", "parabola": "round"}.get(str(self.gap), "uneven")
-        rough = "rough" if self.friction else "smooth"
+        rough = "rough" if self.is_rough else "smooth"
         acts: list[str] = []
         for side in LOADED_SIDES:
             if getattr(self, side) in AT_REST:

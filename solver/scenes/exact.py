@@ -37,7 +37,10 @@ STEADY = 0.01
 
 def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     """Friction along the bar, and the loop of its end."""
-    closed, law = closed_form(bar), bar.friction_law
+    # What a known pressure makes and what needs none are one bound.
+    law = replace(bar.friction_law, cohesion=0.0, cap=np.inf)
+    bar = replace(bar, bound=bar.friction_law.without_slip(bar.bound), friction_law=law)
+    closed = closed_form(bar)
     if closed is not None:
         friction = problem.friction
         density = closed.friction_force / friction.by_point(friction.weights)[:, None]

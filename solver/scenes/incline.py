@@ -134,7 +134,7 @@ class InclineSettings(PlaneSettings):
         """The block on its slope in a sentence."""
         path = self.path("slope_load")
         moves = acting(path, "rises", "falls", "rises and falls", "rises and falls")
-        slope = f"{'rough' if self.friction else 'smooth'} slope that {moves}"
+        slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
         return f"A block lies on a {slope}; a spring catches it when it slides down."
 
 

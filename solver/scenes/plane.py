@@ -171,6 +171,11 @@ class PlaneSettings(SceneSettings):
         across = self.normal_stiffness if self.applies("normal_stiffness") else 0.0
         return replace(super().law, normal_stiffness=across or np.inf)
 
+    @property
+    def is_rough(self) -> bool:
+        """Whether anything rubs."""
+        return bool(self.friction or self.law.cohesion)
+
     def friction_at(self, places: Array) -> Array:
         """The coefficient mu at places along a body, shape (n_places,)."""
         return np.asarray(self.friction * interpolate(self.points("friction_profile"), places))
