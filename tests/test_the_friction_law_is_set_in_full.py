@@ -196,7 +196,7 @@ def test_stiffnesses_without_digits_are_refused_with_what_is_possible():
 @pytest.mark.parametrize("scene", list(SMALL))
 def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_show(scene):
     definitions = CATALOGUE[scene].settings.definitions()
-    is_plane = scene in PLANE
+    is_plane = CATALOGUE[scene].kind == "plane"
     stiffness, pressure = ("N/m^3", "Pa") if is_plane else ("N/m^2", "N/m")
     assert about(definitions["tangential_stiffness"]).unit == stiffness
     assert {about(definitions[name]).unit for name in ("cohesion", "friction_cap")} == {pressure}

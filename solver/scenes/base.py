@@ -415,7 +415,9 @@ class SceneSettings(Settings):
     def _check_law(self) -> None:
         """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
         table = self.strength
-        if self.is_general and not isinstance(table, str):
+        if not self.is_general:
+            return
+        if not isinstance(table, str):
             slips, factors = np.array(table).T
             begins = len(table) > 1 and table[0] == (0.0, 1.0)
             grows = begins and np.all(np.diff(slips) >= SHORTEST_SLIP)
