@@ -233,6 +233,16 @@ def test_what_is_known_of_coulombs_friction_alone_is_not_said_of_others():
         contacts_of(flat)
 
 
+def test_layers_on_soft_joints_are_not_called_as_stiff_as_one_beam():
+    stuck = {"plane": "stress", "deflection": 1e-7, "pressure_load": [[0.0, 1e7]]}
+    for law, known in (({}, True), ({"tangential_stiffness": 1e10}, False)):
+        settings = chosen("layers", **GENERAL, **law, **stuck)
+        problem = discretise(settings)
+        reference = reference_of(problem)
+        assert not reference.contact("contact 1-2").status.any()
+        assert bool(exact_of(settings, problem, reference)) is known
+
+
 @pytest.mark.parametrize("scene", PLANE)
 @pytest.mark.parametrize("profile", ["rising", ((0.0, 1.0), (1e4, 1.0))])
 def test_mu_by_place_is_certified_and_one_of_factors_1_changes_nothing(scene, profile):

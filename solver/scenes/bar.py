@@ -22,9 +22,8 @@ from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact import exact_bar
 from solver.scenes.words import acting, is_steel
 
-PROFILES = shared.PROFILES
 SECTIONS = ("uniform", "rising", "falling")
-"""Of `PROFILES`, those that leave no element without a section."""
+"""Of `shared.PROFILES`, those that leave no element without a section."""
 FACTORS = 1e-8, 1e8
 LARGEST_CONTRAST = 1e8
 SLACK = 1e-9
@@ -48,7 +47,7 @@ class BarSettings(SceneSettings):
         "left x": "support_displacement",
         "body": "body_force",
     }
-    PROFILES: ClassVar = PROFILES
+    PROFILES: ClassVar = shared.PROFILES
 
     load = curve(
         "sine",
@@ -113,7 +112,7 @@ class BarSettings(SceneSettings):
     friction_profile = shared.friction_profile("the bar")
     pressure_profile = curve(
         "uniform",
-        PROFILES,
+        shared.PROFILES,
         "position",
         "factor",
         ("m", ""),
@@ -244,7 +243,7 @@ class BarSettings(SceneSettings):
         ends = np.linspace(0.0, self.length, self.elements + 1)
         table = self.section_profile
         if isinstance(table, str):
-            factors = interpolate(PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
+            factors = interpolate(self.PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
         else:
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))

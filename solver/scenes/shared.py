@@ -89,7 +89,7 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
     )
 
 
-def friction_profile(body: str, presets: Iterable[str] = PROFILES, **record: Any) -> CurveParameter:
+def friction_profile(body: str, presets: Iterable[str] = PROFILES) -> CurveParameter:
     """Define how mu varies along a body."""
     return curve(
         "uniform",
@@ -100,7 +100,6 @@ def friction_profile(body: str, presets: Iterable[str] = PROFILES, **record: Any
         f"Factor on mu along {body}: a preset, or points (m, factor).",
         group="Contact",
         title=f"μ along {body}",
-        **record,
     )
 
 
