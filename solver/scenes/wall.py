@@ -139,6 +139,9 @@ class WallSettings(PlaneSettings):
     substructures_up = redefined(
         PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
     )
+    friction_profile = redefined(
+        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+    )
     interpolation = redefined(
         PlaneSettings.param["interpolation"], "bilinear", applies=lambda _: False
     )
@@ -222,7 +225,7 @@ class WallSettings(PlaneSettings):
             poisson=self.poisson,
             state=self.plane,
             friction=self.friction,
-            friction_law=self.law(self.young / self.length),
+            friction_law=self.law,
             weight=-weight * np.stack([np.sin(angle), np.cos(angle)]),
             pressure=self.path("pressure_load"),
             moved=driven if self.top == "moved" else None,
