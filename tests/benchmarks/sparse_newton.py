@@ -1,10 +1,9 @@
 """A rival: incremental frictional contact on the sparse matrix of the whole structure.
 
 Displacements of all bodies and forces of all contacts that touch are unknown, the forces as
-Lagrange multipliers. Every Newton step factors that matrix anew with SuperLU, and the states (stick,
-slip, open) follow from what it shows, as in `solver.reference.newton` (Alart and Curnier 1991).
-Nothing is condensed, so that time grows with the contacts about as a sparse factor does. The
-friction is Coulomb's, without compliance, bound or strength.
+Lagrange multipliers. Every Newton step factors that matrix anew with SuperLU, and the states
+(stick, slip, open) follow from what it shows, as in `solver.reference.newton` (Alart and Curnier
+1991). Nothing is condensed. The friction is Coulomb's, without compliance, bound or strength.
 """
 
 from __future__ import annotations
@@ -91,9 +90,7 @@ class SparseNewton:
             displacement[self._free, instant] = moved
             jump = self._jumps @ moved + given
         scales = problem.scales
-        return Found(
-            displacement * scales.displacement, force * scales.force, solved, self.factors
-        )
+        return Found(displacement * scales.displacement, force * scales.force, solved, self.factors)
 
     def _instant(
         self, instant: int, states: States, before: Array
@@ -116,9 +113,7 @@ class SparseNewton:
                 break
         return None
 
-    def _solve(
-        self, states: States, load: Array, held: Array, instant: int
-    ) -> tuple[Array, Array]:
+    def _solve(self, states: States, load: Array, held: Array, instant: int) -> tuple[Array, Array]:
         """Solve the linear system of some states: it is factored anew where they have changed."""
         rules, touching = self._rules, np.flatnonzero(states == HELD)
         slips = np.abs(states) == 1
