@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from benchmarks import ahead, by_getfem, cycles
-from benchmarks.sparse_newton import SparseNewton
 from benchmarks.public_solvers import PUBLIC, Public, solve_by
+from benchmarks.sparse_newton import SparseNewton
 
 from solver.discrete.problem import Problem
 from solver.latin import iterations, solve

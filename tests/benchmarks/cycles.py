@@ -40,8 +40,8 @@ MOST, LONGEST = 300, 60.0
 REPEATS, SHORT = 3, 2.0
 """Times that each is measured, and seconds of all from which on once is enough."""
 MODES = 40, 10
-"""Of LATIN-PGD: with 20 the block of 192 x 96 elements stalls at 4 to 6 %; a brick of a wall needs
-fewer than ten (measured)."""
+"""Of LATIN-PGD, and a brick of a wall: with 20 the block of 192 x 96 elements stalls at 4 to 6 %, with
+5 the wall at more than 1 % (measured)."""
 INSTANTS = 40
 """Of a cycle."""
 FEW, MANY = (1, 2, 5, 10), (1, 2, 5, 10, 20, 50, 100)
@@ -59,8 +59,7 @@ PROBLEMS: dict[str, tuple[str, dict[str, Any], int]] = {
     "block": ("block", BLOCK, MANY[-1]),
     "finer": ("block", {**BLOCK, "elements": 192, "elements_up": 96}, 20),
     "strand": ("strand", {"wires": 20, "elements": 100}, MANY[-1]),
-    "wall": ("wall", WALL, 20),
-    "wall, 5 modes": ("wall", {**WALL, "pgd_modes": 5}, 20),
+    "wall": ("wall", WALL, 50),
 }
 """Scene, settings but for the load, and most cycles that the limits on settings allow."""
 NOTES = (
