@@ -89,6 +89,7 @@ SOFT = {
     "fault": {"young": 6e7},
     "incline": {"young": 1e5, "weight": 1e4},
     "layers": {"deflection": 0.2},
+    "wall": {"young": 1e7},
     "rope": {"curvature": 30.0},
 }
 
