@@ -28,8 +28,8 @@ class WallSettings(PlaneSettings):
     PARTS: ClassVar = {}
     PEAKS: ClassVar = {"pressure_load": "pressure", "slope_load": "slope"}
 
-    bricks = count(8, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
-    courses = count(8, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
+    bricks = count(12, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
+    courses = count(6, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
     bond = choice(
         "running",
         ["running", "stack"],
@@ -69,7 +69,7 @@ class WallSettings(PlaneSettings):
         title="Top",
     )
     displacement = quantity(
-        5e-5,
+        1e-4,
         (-1e6, 1e6),
         (-2e-4, 2e-4),
         "Largest displacement of the top along the wall.",
@@ -139,6 +139,9 @@ class WallSettings(PlaneSettings):
     substructures_up = redefined(
         PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
     )
+    friction_profile = redefined(
+        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+    )
     interpolation = redefined(
         PlaneSettings.param["interpolation"], "bilinear", applies=lambda _: False
     )
@@ -168,7 +171,8 @@ class WallSettings(PlaneSettings):
         """A joint more has two bed nodes more."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
-        return super().features._replace(jumps=2 * self.courses * (beds + heads))
+        jumps = 2 * self.courses * (beds + heads)
+        return super().features._replace(jumps=jumps, bricks=self.n_substructures)
 
     def _behind(self) -> Mapping[str, str]:
         driven = "displacement" if self.top == "moved" else "traction"
@@ -222,7 +226,7 @@ class WallSettings(PlaneSettings):
             poisson=self.poisson,
             state=self.plane,
             friction=self.friction,
-            friction_law=self.law(self.young / self.length),
+            friction_law=self.law,
             weight=-weight * np.stack([np.sin(angle), np.cos(angle)]),
             pressure=self.path("pressure_load"),
             moved=driven if self.top == "moved" else None,
