@@ -40,8 +40,8 @@ MOST, LONGEST = 300, 60.0
 REPEATS, SHORT = 3, 2.0
 """Times that each is measured, and seconds of all from which on once is enough."""
 MODES = 40, 10
-"""Of LATIN-PGD, and a brick of a wall: with 20 the block of 192 x 96 elements stalls at 4 to 6 %, with
-5 the wall at more than 1 % (measured)."""
+"""Of LATIN-PGD, and a brick of a wall: with 20 the block of 192 x 96 elements stalls at 4 to 6 %;
+with 6 a wall under ten cycles at 1.2 % (measured)."""
 INSTANTS = 40
 """Of a cycle."""
 FEW, MANY = (1, 2, 5, 10), (1, 2, 5, 10, 20, 50, 100)
