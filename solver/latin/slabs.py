@@ -23,7 +23,6 @@ from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.method import Latin
 from solver.latin.response import Responses
-from solver.latin.sliding_body import slide_of
 from solver.latin.solve import Record, Solution, solve
 from solver.latin.start import Nested
 from solver.latin.status import Ending
@@ -86,7 +85,12 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     RefusedError
         If the problem or the method goes by more than fields and where sliders stand.
     """
-    _check(problem, latin, length)
+    if length < 1:
+        raise RefusedError("slab", length, "instants, from 1 on", "give those of a cycle")
+    if isinstance(latin.direction, FromStatus):
+        raise RefusedError(
+            "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
+        )
     some = slice(0, min(1 + length, problem.n_instants))
     direction = _OfWhole(k=latin.direction.of(problem))
     linear = replace(latin.linear, responses=Responses())
@@ -217,19 +221,3 @@ def _records(
         error_force=distance.of_friction_force(whole) if distance else math.nan,
     )
     return records
-
-
-def _check(problem: Problem, latin: Latin, length: int) -> None:
-    if length < 1:
-        raise RefusedError("slab", length, "instants, from 1 on", "give those of a cycle")
-    if isinstance(latin.direction, FromStatus):
-        raise RefusedError(
-            "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
-        )
-    if slide_of(problem) is not None:
-        raise RefusedError(
-            "slab",
-            length,
-            "only where no body slides as a whole",
-            "solve the whole interval at once",
-        )

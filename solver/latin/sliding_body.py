@@ -87,7 +87,7 @@ class Slide:
         parts = problem.substructures
         loads = [way[one.dofs] @ one.body_force for one in parts if one.body_force is not None]
         load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
-        self._balance = Balance(1.0 / soft, stop, load)
+        self._balance = Balance(1.0 / soft, stop, load, along.start)
 
     def balanced(self, incoming: Array) -> Array:
         """Shift z = W - F/k of all rows, shape (n_rows, n_instants), instant by instant."""
@@ -120,10 +120,15 @@ class Balance:
         Stiffness of the spring.
     load
         Shape (n_instants,).
+    start
+        Where the points stand before the first instant, shape (n_points,); None is zero.
     """
 
-    def __init__(self, stiffness: Array, spring: float, load: Array) -> None:
+    def __init__(
+        self, stiffness: Array, spring: float, load: Array, start: Array | None = None
+    ) -> None:
         self._stiffness, self._spring, self._load = stiffness, spring, load
+        self._start = np.zeros(len(stiffness)) if start is None else start
 
     def __call__(self, targets: Array, reach: Array, ends: Array) -> Array:
         """The shift of every instant, shape (n_instants,).
@@ -141,7 +146,7 @@ class Balance:
         # Points are seen from the body, where the digits of how far they are behind stay.
         back = -np.diff(targets, axis=0, prepend=0.0)
         numbers = (one.tolist() for one in (ends, self._load, enough))
-        held, shift = np.zeros(targets.shape[1]), 0.0
+        held, shift = self._start, 0.0
         steps = []
         for came, least, most, end, load, left in zip(back, -reach, reach, *numbers, strict=True):
             given = held + came, least, most, end - shift, load

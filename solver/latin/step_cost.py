@@ -13,7 +13,6 @@ import numpy as np
 
 from solver.discrete.problem import Problem
 from solver.latin.directions import sliding_share
-from solver.latin.sliding_body import slide_of
 from solver.reference.contact import jumps_in
 from solver.reference.states import HELD, States
 from solver.reference.supports import rubs_on_supports
@@ -63,8 +62,6 @@ PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
 CALLS, OF_ITERATION = 2e-4, 5e-4
 """Seconds of a dense system, and of an iteration, that no size makes less (measured)."""
-SHIFT = 8e-6
-"""Seconds that an iteration takes an instant to shift a body that slides as a whole (measured)."""
 BAND, BAND_CALLS = 6e-8, 3e-5
 """Seconds a number of a system with a band matrix, and those that no size makes less (measured)."""
 
@@ -149,8 +146,7 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     products = sum(2.0 * len(part.rows) ** 2 for part in problem.substructures)
     products = min(products, 200.0 * problem.n_rows)
     passes = products / DENSE + PASSES * PASS * problem.n_rows
-    shift = 0.0 if slide_of(problem) is None else SHIFT
-    iteration = OF_ITERATION + problem.n_instants * (passes + shift)
+    iteration = OF_ITERATION + problem.n_instants * passes
     softens = any(law.tangential.softens for law in problem.rubbing.values())
     room = FOLLOWING if softens else SYSTEMS
     if rubs_on_supports(problem):
