@@ -14,7 +14,7 @@ from solver.latin.estimate import WAIT
 from solver.latin.method import Latin
 from solver.latin.step_cost import SYSTEMS, costs_of
 from solver.reference.contact import MOST_JUMPS, jumps_in
-from solver.reference.supports import rubs_on_supports
+from solver.reference.incremental import rubs_on_supports
 
 ITERATIONS, MORE = 30, 2.5
 """That a run takes, and how many more with every contact between bodies but the first: the scenes'

@@ -17,10 +17,10 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
+from solver.reference.assembly import points_dofs
 from solver.reference.band import Band
 from solver.reference.rules import Rules, rules_of
 from solver.reference.search import Minimum, Search
-from solver.reference.supports import points_dofs
 
 TRIALS = 50
 """Sets of points of the strength that are passed, at most."""

@@ -10,9 +10,8 @@ from typing import Protocol
 from solver.discrete.problem import Problem
 from solver.reference.condensation import NoReferenceError
 from solver.reference.contact import IncrementalContact
-from solver.reference.incremental import IncrementalRod
+from solver.reference.incremental import IncrementalRod, rubs_on_supports
 from solver.reference.solution import Reference, States
-from solver.reference.supports import rubs_on_supports
 
 
 class Incremental(Protocol):

@@ -34,10 +34,9 @@ from scipy.sparse.linalg import SuperLU, splu
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.blocks import blocks, symmetrise
-from solver.reference.glued import from_jumps, jumps
+from solver.reference.dense import blocks, symmetrise
+from solver.reference.glued import base_of, from_jumps, jumps, self_stresses
 from solver.reference.rules import rules_of
-from solver.reference.self_stress import base_of, self_stresses
 
 LOOSE = 1e-14
 """Pivot, as a share of its diagonal entry, below which a structure counts as not held."""

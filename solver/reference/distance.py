@@ -12,9 +12,8 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.glued import jumps
+from solver.reference.glued import jumps, self_stresses
 from solver.reference.rules import rules_of
-from solver.reference.self_stress import self_stresses
 
 VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
@@ -187,7 +186,7 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
 
     Where prescribed displacements alone make a jump, a normal force is not, nor is the friction
     that it carries; friction of a known bound is while it slips. Forces that can balance each other
-    (`solver.reference.self_stress`) are not.
+    (`solver.reference.glued`) are not.
     """
     dofs, displacement = problem.prescribed
     free = np.ones(problem.n_dofs)

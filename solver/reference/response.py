@@ -11,7 +11,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.reference.condensation import Condensation
-from solver.reference.factors import Factors
+from solver.reference.dense import Factors
 from solver.reference.rules import Rules
 from solver.reference.states import HELD, Increment, Sides, States
 
