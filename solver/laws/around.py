@@ -6,12 +6,14 @@ Small k converges fast globally and slowly locally, large k the reverse (solver/
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.interface import Component
+
+if TYPE_CHECKING:
+    from solver.laws.contact import Contact
 
 FRICTION_FACTOR = 2.0
 """k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h.
@@ -48,57 +50,6 @@ iterations. At most 54 with half of it, 46 with twice, 82 with four times; layer
 as thick take more than 150 with no such limit."""
 
 
-class Surface(Protocol):
-    """What k depends on of an interface; attributes as of `Friction`."""
-
-    @property
-    def components(self) -> tuple[Component, ...]:
-        """All components, the tangential one last."""
-
-    @property
-    def positions(self) -> Array:
-        """Of the points, shape (n_points,), m."""
-
-    @property
-    def weights(self) -> Array:
-        """Of the pairs, shape (n_pairs,), m or m^2."""
-
-    @property
-    def is_on_support(self) -> bool:
-        """Whether what lies below is rigid."""
-
-
-class Around(Protocol):
-    """What is around an interface with friction.
-
-    Attributes
-    ----------
-    elsewhere
-        Factor on the paper's k of all rows that do not rub.
-    on_cuts
-        The same of those on cuts, beside it.
-    """
-
-    elsewhere: ClassVar[float]
-    on_cuts: ClassVar[float]
-
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface into that of all rows, shape (n_rows,).
-
-        Parameters
-        ----------
-        law
-            The interface.
-        k
-            Scaled, shape (n_rows,).
-        parts
-            Over the share of one interface that slides, the number of interfaces.
-        """
-
-    def stick(self, law: Surface, k: Array) -> None:
-        """Write the k of an interface that nowhere slips, where that is another; as `choose`."""
-
-
 @dataclass(frozen=True, eq=False)
 class Rod:
     """A rod along the interface.
@@ -118,6 +69,10 @@ class Rod:
     ----------
     modulus
         Stiffness of what rubs around each pair, shape (n_pairs,), scaled; None where it is 1.
+    elsewhere
+        Factor on the paper's k of all rows that do not rub.
+    on_cuts
+        The same of those on cuts, beside it.
     """
 
     modulus: Array | None = None
@@ -127,8 +82,18 @@ class Rod:
     """Measured with 1 to 50 substructures: 1 % of friction force takes 16 to 17 iterations with 10,
     16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
 
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Around` says."""
+    def choose(self, law: Contact, k: Array, parts: float) -> None:
+        """Write the k of an interface.
+
+        Parameters
+        ----------
+        law
+            The interface.
+        k
+            Of all rows, scaled, shape (n_rows,), in which that of the interface is written.
+        parts
+            Over the share of one interface that slides, the number of interfaces.
+        """
         length = law.weights.sum()
         spacing = length / max(len(law.positions) - 1, 1)
         stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
@@ -137,8 +102,8 @@ class Rod:
             if self.modulus is not None:
                 k[rows] *= self.modulus
 
-    def stick(self, law: Surface, k: Array) -> None:
-        """Leave k as it is."""
+    def stick(self, law: Contact, k: Array) -> None:
+        """Where it nowhere slips k stays as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,8 +127,8 @@ class Bodies:
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
 
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Around` says.
+    def choose(self, law: Contact, k: Array, parts: float) -> None:
+        """Write the k of an interface, as `Rod.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d: 1 % of
         the contact force takes 9 and 14 iterations where it is 100 and 1000 times as long as high,
@@ -177,13 +142,13 @@ class Bodies:
             pressing = CONTACT_STIFFNESS * self._slender(law)
             sliding = SLIDING_BETWEEN_BODIES * pressing
         share = law.weights / length
-        *normal, tangent = law.components
-        for component, stiffness in ((tangent, sliding), *((one, pressing) for one in normal)):
+        for component in law.components:
+            stiffness = sliding if component is law.tangent else pressing
             for rows, modulus in zip(component.sides, self.moduli, strict=False):
                 k[rows] = modulus * stiffness * share
 
-    def stick(self, law: Surface, k: Array) -> None:
-        """Write the k of two bodies that nowhere slip on each other, as `Around` says.
+    def stick(self, law: Contact, k: Array) -> None:
+        """Write the k of two bodies that nowhere slip on each other.
 
         They bend and stretch as one, but for what is as short as they are deep: which resists with
         E / d per area of the softer, across and along. Layers 200, 500 and 1000 times as long as
@@ -197,8 +162,8 @@ class Bodies:
         for rows in (rows for component in law.components for rows in component.sides):
             k[rows] = np.maximum(k[rows], squeezed)
 
-    def _slender(self, law: Surface) -> float:
-        """Give the factor on k between two bodies that are thin beside their length.
+    def _slender(self, law: Contact) -> float:
+        """Factor on k between two bodies that are thin beside their length.
 
         Layers slide like rods: what is global is the stiffness E d / l^2 per area of a rod of depth
         d along the contact's length l, what is local E d / (l h) with the distance h of its points,
@@ -226,11 +191,15 @@ class PointOfBody:
     elsewhere: ClassVar[float] = Bodies.elsewhere
     on_cuts: ClassVar[float] = Bodies.on_cuts
 
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Around` says."""
+    def choose(self, law: Contact, k: Array, parts: float) -> None:
+        """Write the k of an interface, as `Rod.choose`."""
         for component in law.components:
             for rows in component.sides:
                 k[rows] = AT_A_POINT * self.modulus
 
-    def stick(self, law: Surface, k: Array) -> None:
-        """Leave k as it is."""
+    def stick(self, law: Contact, k: Array) -> None:
+        """Where it nowhere slips k stays as it is."""
+
+
+Around = Rod | Bodies | PointOfBody
+"""What k depends on beside the interface itself."""

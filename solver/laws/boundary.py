@@ -36,7 +36,7 @@ class Dirichlet(Interface):
     displacement: Array
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Take the displacement as it is."""
+        """W^ is the displacement that is prescribed."""
         rows, given = as_slice(self.rows), self.displacement
 
         def prescribe(_incoming: Array, displacement: Array, some: slice) -> None:
@@ -50,7 +50,7 @@ class Dirichlet(Interface):
         return Gaps(displacement=squared(missed))
 
     def during(self, some: slice) -> Self:
-        """Give what is prescribed at some instants."""
+        """Law of some instants alone."""
         return replace(self, displacement=self.displacement[:, some])
 
     @property
@@ -97,11 +97,11 @@ class Neumann(Interface):
         return Gaps(force=squared(beyond(force[self.rows] - self.force, noise)))
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Give the macro forces, which the load balances."""
+        """Macro forces, which the load balances."""
         yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
 
     def during(self, some: slice) -> Self:
-        """Give what is prescribed at some instants."""
+        """Law of some instants alone."""
         return replace(self, force=self.force[:, some])
 
     @property

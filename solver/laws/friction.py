@@ -22,9 +22,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array, Indices, in_rows
-from solver.laws.interface import Component
+from solver.laws.interface import Component, Springs
 from solver.laws.play import Play
-from solver.laws.springs import Springs
 from solver.refusal import RefusedError, check_range
 
 OPENED = 1e-9

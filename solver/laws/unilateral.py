@@ -13,8 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction import FrictionRule
-from solver.laws.interface import Component
-from solver.laws.springs import Springs
+from solver.laws.interface import Component, Springs
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -70,7 +70,7 @@ class Factors:
         return self._is_singular
 
     def solve(self, right: Array) -> Array:
-        """Solve A x = b, b of shape (n, k); where A is singular by the smallest x that fits best."""
+        """Solve A x = b, b of shape (n, k); where A is singular, by the least x that fits best."""
         if not len(right):
             return right
         if not self.scaled:
