@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from solver.study.stability.residual import kkt_residual
+from solver.study.stability.outcome import kkt_residual
 
 from solver.discrete.wall import Wall, bonded
 from solver.latin import Ending, Latin, iterations, solve
