@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from solver.study.stability.outcome import kkt_residual
 
 from solver.discrete.wall import Wall, bonded
 from solver.latin import Ending, Latin, iterations, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.study.stability.outcome import kkt_residual
 
 TIMES = np.linspace(0.0, 1.0, 21)
 PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))

@@ -15,6 +15,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, one_blas_thread
 from solver.latin.iterate import Checkpoint, Iterate, read_only
+from solver.latin.linear_stage import LinearStage
 from solver.latin.local_stage import LocalStage
 from solver.latin.method import Latin
 from solver.refusal import RefusedError
@@ -105,7 +106,9 @@ class Iteration:
         problem, latin, self.k = self._problem, self._latin, self._course.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         try:
-            self.linear = latin.linear.stage(problem, self.k, blocks, multiscale=latin.multiscale)
+            self.linear = LinearStage(
+                problem, self.k, latin.linear, blocks, multiscale=latin.multiscale
+            )
         except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
             raise RefusedError(
                 "k_scale",

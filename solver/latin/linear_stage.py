@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -17,6 +16,9 @@ from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
 from solver.latin.response import Responses
 from solver.reduction.basis import Modes, Reduction, ReductionRecord
+
+if TYPE_CHECKING:
+    from solver.latin.pgd import PGD
 
 State = TypeVar("State")
 Bases = dict[int, tuple[Modes, ReductionRecord]]
@@ -37,12 +39,10 @@ class LinearStage:
         What to solve; k has shape (n_rows,).
     multiscale
         Whether the coarse problem is part of it.
-    make_group
-        Makes a group of identical substructures with the same k; that with full fields if None.
+    form
+        How fields are held.
     blocks
         Of instants, in which it works; None for all at once.
-    responses
-        Of stages before it that may serve again.
 
     Attributes
     ----------
@@ -54,17 +54,19 @@ class LinearStage:
         self,
         problem: Problem,
         k: Array,
+        form: Full | PGD | None = None,
+        blocks: Blocks | None = None,
         *,
         multiscale: bool,
-        make_group: Callable[[Problem, list[Substructure], Array, Responses], Group[Any]]
-        | None = None,
-        blocks: Blocks | None = None,
-        responses: Responses | None = None,
     ) -> None:
-        responses = Responses() if responses is None else responses
-        make = make_group or FullGroup
-        self.groups = [make(problem, alike, k, responses) for alike in _alike(problem, k)]
-        self._blocks = blocks or at_once(problem.n_instants)
+        form = form or Full()
+        responses = form.responses or Responses()
+        self.groups: list[Group[Any]] = [
+            form.group(problem, alike, k, responses) for alike in _alike(problem, k)
+        ]
+        if blocks is None or not form.is_local_in_time:
+            blocks = at_once(problem.n_instants)
+        self._blocks = blocks
         self._coarse = (
             CoarseProblem(problem, self.groups, self._blocks)
             if multiscale and problem.has_cuts
@@ -94,7 +96,7 @@ class LinearStage:
         return boundary
 
     def read(self, target: Array) -> None:
-        """Take W^ + F^/k of the local stage, shape (n_rows, n_instants), as all groups' target."""
+        """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
 
         def work(some: slice) -> None:
             for group in self.groups:
@@ -142,32 +144,23 @@ class Full:
         What helps a run that does not converge, to begin a sentence with; nothing here.
     has_to_prove
         Whether a run ends by proof alone, whatever that costs.
+    is_local_in_time
+        Whether it may work on a few instants at a time.
     responses
         Factors of substructures that runs with one k share; None: each run has its own.
     """
 
     remedy: ClassVar[str] = ""
     has_to_prove: ClassVar[bool] = False
+    is_local_in_time: ClassVar[bool] = True
 
     responses: Responses | None = field(default=None, repr=False)
 
-    def stage(
-        self, problem: Problem, k: Array, blocks: Blocks | None = None, *, multiscale: bool
-    ) -> LinearStage:
-        """Factor the linear stage.
-
-        Parameters
-        ----------
-        problem, k
-            What to solve, and the search direction of the rows, shape (n_rows,), scaled.
-        blocks
-            Of instants, in which it works; None for all at once.
-        multiscale
-            Whether the coarse problem is part of it.
-        """
-        return LinearStage(
-            problem, k, multiscale=multiscale, blocks=blocks, responses=self.responses
-        )
+    def group(
+        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
+    ) -> FullGroup:
+        """Group of identical substructures with the same k, shape (n_rows,)."""
+        return FullGroup(problem, parts, k, responses)
 
 
 class Group(ABC, Generic[State]):
@@ -213,7 +206,7 @@ class Group(ABC, Generic[State]):
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
     def gather(self, field: Array, some: slice = ALL) -> None:
-        """Take the group's rows of a boundary field as its target, at some instants."""
+        """Make the group's rows of a boundary field its target, at some instants."""
         flat = self.target.T.reshape(self._n_instants, -1)[some]
         np.take(field.T[some], self._order, axis=1, out=flat, mode="clip")
 

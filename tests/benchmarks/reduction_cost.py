@@ -141,7 +141,7 @@ def reduction_cost(
     stages: list[LinearStage] = [LinearStage(problem, k, multiscale=True)]
     for tolerance in (1.0, TIGHT):
         forms = [PGD(size, tolerance, pairs=1, sharing=0.0) for size in sizes]
-        stages += [form.stage(problem, k, multiscale=True) for form in forms]
+        stages += [LinearStage(problem, k, form, multiscale=True) for form in forms]
     # All begin from bases that are full, also where no residual is enough for another mode.
     states = [stage.start(start) for stage in (stages[0], *2 * stages[1 + len(sizes) :])]
     steps = [_step(*each, target) for each in zip(stages, states, strict=True)]
