@@ -65,8 +65,8 @@ class Strength:
 
     def __call__(self, slip: Array) -> Array:
         """Factor after accumulated slip, of any shape."""
-        found: Array = np.interp(slip, self.slips, self.factors)
-        return found
+        factor: Array = np.interp(slip, self.slips, self.factors)
+        return factor
 
     @property
     def slopes(self) -> Array:
@@ -81,8 +81,8 @@ class Strength:
         """Smallest growth per slip on the way from one slip to a larger one, shape (n,)."""
         passed = np.arange(len(self.slips))[:, None]
         on_way = (self.segment(first) <= passed) & (passed <= self.segment(last))
-        found: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
-        return found
+        lowest: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
+        return lowest
 
 
 @dataclass(frozen=True)
@@ -381,16 +381,16 @@ def follow(target: Array, reach: Array, strength: Strength) -> Array:
     strength
         Factor on that over accumulated slip.
     """
-    found = np.empty_like(target)
+    positions = np.empty_like(target)
     position, gone = np.zeros((2, len(target)))
     reaches = np.broadcast_to(reach, target.shape).T
-    for after, wanted, most in zip(found.T, target.T, reaches, strict=True):
+    for after, wanted, most in zip(positions.T, target.T, reaches, strict=True):
         away = wanted - position
         slip = _slip(np.abs(away), most, gone, strength)
         position = position + np.sign(away) * slip
         gone = gone + slip
         after[:] = position
-    return found
+    return positions
 
 
 def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:

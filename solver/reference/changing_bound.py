@@ -51,17 +51,17 @@ class Bounds:
 
     def at(self, gone: Array) -> Array:
         """Bounds after accumulated slip, shape (n_dofs,) both."""
-        found = self.first.copy()
+        bounds = self.first.copy()
         if self.rules.ages:
-            found[self.dofs] *= self.rules.factor(gone[self.dofs])
-        return found
+            bounds[self.dofs] *= self.rules.factor(gone[self.dofs])
+        return bounds
 
     def growth(self, first: Array, last: Array) -> Array:
         """Least growth of the bound per slip on the way from one slip to another, (n_dofs,)."""
-        found = np.zeros_like(self.first)
-        own = self.dofs
-        found[own] = self.first[own] * self.rules.lowest_growth(first[own], last[own])
-        return found
+        growths = np.zeros_like(self.first)
+        dofs = self.dofs
+        growths[dofs] = self.first[dofs] * self.rules.lowest_growth(first[dofs], last[dofs])
+        return growths
 
 
 def bounds_of(problem: Problem) -> list[Bounds]:
@@ -69,7 +69,7 @@ def bounds_of(problem: Problem) -> list[Bounds]:
     dofs, rules = points_dofs(problem), rules_of(problem)
     first = np.zeros((problem.n_dofs, rules.bound.shape[1]))
     first[dofs] = rules.bound
-    return [Bounds(own, dofs, rules) for own in np.ascontiguousarray(first.T)]
+    return [Bounds(bound, dofs, rules) for bound in np.ascontiguousarray(first.T)]
 
 
 def least_with_changing_bound(

@@ -34,11 +34,11 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
     problem
         A structure with at least one interface with friction.
     stop
-        Called once per instant; `Interrupted` is raised as soon as it gives True.
+        Called once per instant; `Interrupted` is raised as soon as it returns True.
     """
     start = time.perf_counter()
-    found = incremental_solver(problem).march(stop=stop)
-    return replace(found, seconds=time.perf_counter() - start)
+    solution = incremental_solver(problem).march(stop=stop)
+    return replace(solution, seconds=time.perf_counter() - start)
 
 
 def incremental_solver(problem: Problem) -> Incremental:

@@ -149,25 +149,25 @@ class Condensation:
             self._set_motions_apart()
 
     def _solved(self, sides: Array) -> Array:
-        """Give how the glued structure moves under forces on it, shape (n_glued, ...)."""
+        """Displacement of the glued structure under forces on it, shape (n_glued, ...)."""
         return np.asarray(self._factor.solve(sides)) if len(sides) else sides
 
     def _balanced(self, forces: Array) -> Array:
-        """Take from forces, or from jumps, of the base what moves nothing."""
-        rings, own = self._rings, self.stresses[self._rings]
-        found = forces.copy()
-        found[rings] -= own @ (own.T @ forces[rings])
-        return found
+        """Forces, or jumps, of the base without what moves nothing."""
+        rings, stresses = self._rings, self.stresses[self._rings]
+        balanced = forces.copy()
+        balanced[rings] -= stresses @ (stresses.T @ forces[rings])
+        return balanced
 
     def _tie(self, stiffness: Array) -> None:
         """Tie jumps of the base that depend on others to them, in S."""
-        rings, own = self._rings, self.stresses[self._rings]
-        stiffness[rings] -= own @ (own.T @ stiffness[rings])
-        stiffness[:, rings] -= (stiffness[:, rings] @ own) @ own.T
-        stiffness[np.ix_(rings, rings)] += self.tie * own @ own.T
+        rings, stresses = self._rings, self.stresses[self._rings]
+        stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
+        stiffness[:, rings] -= (stiffness[:, rings] @ stresses) @ stresses.T
+        stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
 
     def _set_motions_apart(self) -> None:
-        """Take from S what rounding makes rigid motions cost, and from q what it adds to loads."""
+        """Remove from S what rounding makes rigid motions cost, from q what it adds to loads."""
         gauge, stiffness = self.gauge, self.stiffness
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
@@ -187,26 +187,26 @@ class Condensation:
         return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
 
     def deformation(self, strained: Array) -> Array:
-        """Give all displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
+        """All displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
 
         Parameters
         ----------
         strained
             Jumps y of the base, shape (n_base, n_instants), scaled.
         """
-        found = np.empty_like(self._force)
-        found[self._fixed] = self._prescribed
+        displacement = np.empty_like(self._force)
+        displacement[self._fixed] = self._prescribed
         jumped = self._balanced(strained - self._given_of_base)
         glued = self._alone - self._solved(self._pulled @ jumped)
-        found[self._free] = self._jumped @ jumped + self._glued @ glued
-        return found
+        displacement[self._free] = self._jumped @ jumped + self._glued @ glued
+        return displacement
 
     def jump(self, displacement: Array) -> Array:
-        """Give the jumps of a displacement, shape (n_forces, n_instants)."""
+        """Jumps of a displacement, shape (n_forces, n_instants)."""
         return np.asarray(self._jumps @ displacement)
 
     def unbalanced(self, deformation: Array, force: Array) -> Array:
-        """Give the forces out of balance where nothing is prescribed, (n_free, n_instants).
+        """Forces out of balance where nothing is prescribed, (n_free, n_instants).
 
         Parameters
         ----------
@@ -242,10 +242,10 @@ class Condensation:
     @cached_property
     def unit(self) -> Array:
         """A stiffness of every jump and what is in series with it, shape (n_forces,), scaled."""
-        found = np.ones(len(self.compliance))
+        unit = np.ones(len(self.compliance))
         springs = abs(self.ties) @ self.springs
-        found[self.moving] = springs / (1.0 + springs * self.compliance[self.moving])
-        return found
+        unit[self.moving] = springs / (1.0 + springs * self.compliance[self.moving])
+        return unit
 
     @cached_property
     def largest_force(self) -> float:
@@ -259,7 +259,7 @@ class Condensation:
 
 
 def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
-    """Give rigid motions, and the jumps Q of the base that they make, orthonormal."""
+    """Rigid motions, and the jumps Q of the base that they make, orthonormal."""
     if problem.motions is None:
         return np.zeros((problem.n_dofs, 0)), np.zeros((base.shape[0], 0))
     _, size = np.linalg.qr(base @ problem.motions)

@@ -109,11 +109,11 @@ def _along_branches(
     held = parents < ground
     ones = np.ones(np.count_nonzero(held))
     beyond = sparse.csr_array((ones, (points[held], parents[held])), shape=(ground, ground))
-    found = step
+    moved = step
     while step.nnz:
         step = sparse.csr_array(beyond @ step)
-        found = found + step
-    return sparse.csr_array(found)
+        moved = moved + step
+    return sparse.csr_array(moved)
 
 
 def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
@@ -126,14 +126,14 @@ def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
     rigid
         Jumps with nothing in series, shape (n_jumps,): what has tells its own force.
     """
-    found = _of_rigid(jumps[np.flatnonzero(rigid)])
-    whole = np.zeros((len(rigid), found.shape[1]))
-    whole[rigid] = found
+    stresses = _of_rigid(jumps[np.flatnonzero(rigid)])
+    whole = np.zeros((len(rigid), stresses.shape[1]))
+    whole[rigid] = stresses
     return whole
 
 
 def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_array]:
-    """Find jumps from which those with something in series follow, where they depend on others.
+    """Jumps from which those with something in series follow, where they depend on others.
 
     Parameters
     ----------
@@ -183,15 +183,15 @@ def _of_rigid(jumps: sparse.csr_array) -> Array:
         return np.zeros((size, 0))
     products = sparse.csr_array(jumps @ jumps.T)
     _, group = connected_components(products, directed=False)
-    found = []
+    stresses = []
     for number in np.flatnonzero(_rings(jumps, group)):
         members = np.flatnonzero(group == number)
         values, vectors = np.linalg.eigh(products[members][:, members].toarray())
         own = vectors[:, values < NONE]
         whole = np.zeros((size, own.shape[1]))
         whole[members] = np.where(np.abs(own) > NONE, own, 0.0)
-        found.append(whole)
-    return np.concatenate(found, axis=1)
+        stresses.append(whole)
+    return np.concatenate(stresses, axis=1)
 
 
 def _rings(jumps: sparse.csr_array, group: Indices) -> Indices:

@@ -170,7 +170,7 @@ class IncrementalRod:
         return 1 + len(self._dofs) // DEARER
 
     def _gathered(self, minima: list[Minimum], steps: int, seconds: float) -> Reference:
-        """Put together the minima of the first instants, from which on nothing moves."""
+        """Solution of the first instants' minima, after which nothing moves."""
         problem, dofs = self._problem, self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
         for instant, least in enumerate(minima):

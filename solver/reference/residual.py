@@ -30,7 +30,7 @@ class Shown(NamedTuple):
 
 
 def unbalanced_of(condensed: Condensation, rules: Rules, shown: Shown) -> NDArray[np.float64]:
-    """Give the KKT residual of every instant, a force, scaled.
+    """KKT residual of every instant, a force, scaled.
 
     The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
     opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness

@@ -61,7 +61,7 @@ class Response:
         self.unbalanced, self.turned, self.singular = 0.0, False, False
 
     def _forces_of_unknowns(self) -> Array:
-        """Give what forces of all jumps are of y and of forces of jumps that follow from others.
+        """Forces of all jumps as a matrix on y and on forces of jumps that follow from others.
 
         Shape (n, n).
         """
@@ -75,7 +75,7 @@ class Response:
         return found
 
     def set_friction(self, friction: Array, growth: Array) -> None:
-        """Take other coefficients of friction, and bounds that grow by so much per slip, (n,)."""
+        """Change coefficients of friction, and growths of their bounds per slip, shape (n,)."""
         self.friction, self._growth, self._states = friction, growth, None
 
     def __call__(self, states: States, sides: Sides) -> Increment:
@@ -100,9 +100,9 @@ class Response:
                 own = rows[sprung]
                 come = self._come @ unknown[:n_base] + self._soft[own] * force[own]
                 right[sprung] = self._share * (sides.held[own] - come)
-        found = self._factors.solve(right)
-        motion = found[n_rows:]
-        unknown[self._free], unknown[n_base:] = found[:n_free], found[n_free:n_rows]
+        solution = self._factors.solve(right)
+        motion = solution[n_rows:]
+        unknown[self._free], unknown[n_base:] = solution[:n_free], solution[n_free:n_rows]
         if len(motion):
             unknown[kept] -= self._gauge_kept @ motion
             stays = self._forces(unknown, kept)
@@ -119,7 +119,7 @@ class Response:
         return Increment(self._ends(strained, motion, force, sides.held), force, strained, motion)
 
     def _forces(self, unknown: Array, places: Indices, rows: Array | None = None) -> Array:
-        """Give the forces of all jumps that the unknowns at some places make.
+        """Forces of all jumps that the unknowns at some places make.
 
         Most of what is held comes to nothing, and few jumps slip at a time: so S, which is
         symmetric, is read at the rows of what does.
@@ -146,23 +146,23 @@ class Response:
         return strained if self._ties is None else np.asarray(self._ties @ strained)
 
     def _ends(self, strained: Array, motion: Array, force: Array, held: Array) -> Array:
-        """Give what all jumps come to, the held ones to the last bit."""
+        """What all jumps come to, the held ones to the last bit."""
         if self._is_plain:
             return strained.copy()
-        found = self._jump(strained, motion) + self._soft * force
-        found[self._held] = held[self._held]
-        return found
+        ends = self._jump(strained, motion) + self._soft * force
+        ends[self._held] = held[self._held]
+        return ends
 
     def on_base(self, force: Array) -> Array:
-        """Give what forces of all jumps are to the base."""
+        """Forces on the base that forces of all jumps are."""
         return force if self._ties is None else np.asarray(self._ties.T @ force)
 
     def inside(self, strained: Array) -> float:
-        """Give the largest force that y of a single jump of the base takes."""
+        """Largest force that y of a single jump of the base takes."""
         return float((self._alone * np.abs(strained)).max())
 
     def blur(self, motion: Array) -> Array:
-        """Give the force that rounding of a rigid motion may make at every jump, shape (n,)."""
+        """Force that rounding of a rigid motion may make at every jump, shape (n,)."""
         if self._is_plain:
             return np.zeros(1)
         moved = self._jump(np.zeros((len(self._base), 1)), motion)
@@ -206,7 +206,7 @@ class Response:
         self.singular = self._factors.make_sure(least)
 
     def _with_motions(self, forces: Array) -> Array:
-        """Let what is in series come to its end, and choose y: all equations.
+        """All equations: what is in series comes to its end, and y is chosen.
 
         Parameters
         ----------
@@ -242,10 +242,10 @@ class Response:
         moved = self._of_unknowns[np.ix_(rows, free)] @ self._gauge[free]
         return np.asarray(moved - self._pulls_of_gauge[rows])
 
-    def _jumps_of(self, own: Indices) -> Array:
-        """Give what some jumps are of those of the base, shape (n_own, n_base)."""
+    def _jumps_of(self, numbers: Indices) -> Array:
+        """Jumps at some places as a matrix on those of the base, shape (n, n_base)."""
         if self._ties is not None:
-            return np.asarray(self._ties[own])
-        found = np.zeros((len(own), len(self._base)))
-        found[np.arange(len(own)), own] = 1.0
+            return np.asarray(self._ties[numbers])
+        found = np.zeros((len(numbers), len(self._base)))
+        found[np.arange(len(numbers)), numbers] = 1.0
         return found

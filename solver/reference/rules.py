@@ -109,11 +109,11 @@ class Rules:
 
     def lowest_growth(self, first: Array, last: Array) -> Array:
         """Smallest growth of the factor on the way from one slip to a larger one, shape (n,)."""
-        found = np.zeros_like(first)
-        for number, one in enumerate(self.strengths):
-            own = self.strength == number
-            found[own] = one.lowest_slope(first[own], last[own])
-        return found
+        lowest = np.zeros_like(first)
+        for number, strength in enumerate(self.strengths):
+            points = self.strength == number
+            lowest[points] = strength.lowest_slope(first[points], last[points])
+        return lowest
 
     def segment(self, gone: Array) -> Indices:
         """Numbers of the points of the strengths behind accumulated slips, shape (n,)."""
@@ -122,11 +122,11 @@ class Rules:
         )
 
     def _of_strengths(self, gone: Array, value: Callable[[Strength, Array], Array]) -> Array:
-        found = np.ones_like(gone)
-        for number, one in enumerate(self.strengths):
-            own = self.strength == number
-            found[own] = value(one, gone[own])
-        return found
+        values = np.ones_like(gone)
+        for number, strength in enumerate(self.strengths):
+            points = self.strength == number
+            values[points] = value(strength, gone[points])
+        return values
 
     def before_slip(self, bound: Array, force: Array) -> Array:
         """Friction force r + mu f_n up to its cap, before slip changes it, shape (n, n_instants).

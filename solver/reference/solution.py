@@ -83,7 +83,7 @@ class Reference:
         return self.contact_force
 
     def contact(self, name: str) -> ContactFields:
-        """Show one interface with friction."""
+        """Forces, status and motion of an interface with friction."""
         problem = self.problem
         sizes = [len(law.positions) for law in problem.rubbing.values()]
         first = sum(sizes[: list(problem.rubbing).index(name)])
