@@ -87,7 +87,7 @@ class Iteration:
         self._course = latin.direction.begin(problem, start)
         self._assemble()
         if start is None:
-            start = _own_start(problem, latin, self.k)
+            start = _first_state(problem, latin, self.k)
         self._go_to(start)
         if start is not None:
             self._recall(start)
@@ -96,7 +96,7 @@ class Iteration:
         self._read = self.incoming
 
     def _assemble(self) -> None:
-        """Put the parts together for one search direction; the linear stage is factored.
+        """Assemble the parts for one search direction; the linear stage is factored.
 
         Raises
         ------
@@ -131,7 +131,7 @@ class Iteration:
         self.outgoing = read_only(self.linear.to_boundary(self.state))
 
     def _recall(self, start: Checkpoint) -> None:
-        """Bring back what an acceleration remembers, from a checkpoint of the same run."""
+        """Restore what an acceleration remembers, from a checkpoint of the same run."""
         mix = self._mixture
         if start.memory is None or mix is None:
             return
@@ -202,7 +202,7 @@ class Iteration:
         )
 
 
-def _own_start(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
+def _first_state(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
     """The start of the method's own choice; None is zero fields."""
     if problem.rest is not None:
         return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])

@@ -81,8 +81,8 @@ class LinearStage:
     def reduction(self, state: list[Any]) -> Reduction | None:
         """The separated bases of a state, if it has any."""
         bases: Bases = {}
-        for group, own in zip(self.groups, state, strict=True):
-            bases |= group.bases(own)
+        for group, part in zip(self.groups, state, strict=True):
+            bases |= group.bases(part)
         if not bases:
             return None
         modes, records = zip(*(bases[number] for number in sorted(bases)), strict=True)
@@ -91,16 +91,16 @@ class LinearStage:
     def to_boundary(self, state: list[Any]) -> Array:
         """W + F/k of a state, shape (n_rows, n_instants)."""
         boundary = space_time(*self._shape)
-        for group, own in zip(self.groups, state, strict=True):
-            group.scatter(group.outgoing(own), boundary)
+        for group, part in zip(self.groups, state, strict=True):
+            group.scatter(group.outgoing(part), boundary)
         return boundary
 
     def read(self, target: Array) -> None:
         """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
 
-        def work(some: slice) -> None:
+        def work(instants: slice) -> None:
             for group in self.groups:
-                group.gather(target, some)
+                group.gather(target, instants)
 
         self._blocks.each(work)
 
@@ -117,18 +117,18 @@ class LinearStage:
         if self._coarse is not None:
             self._coarse.add_multiplier()
 
-        def work(some: slice) -> None:
-            for group, own in zip(self.groups, state, strict=True):
-                group.relax(own, relaxation, some)
+        def work(instants: slice) -> None:
+            for group, part in zip(self.groups, state, strict=True):
+                group.relax(part, relaxation, instants)
 
         self._blocks.each(work)
 
     def incoming(self, state: list[Any], boundary: Array) -> Array:
         """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
 
-        def work(some: slice) -> None:
-            for group, own in zip(self.groups, state, strict=True):
-                group.scatter(group.reflect(own, some), boundary, some)
+        def work(instants: slice) -> None:
+            for group, part in zip(self.groups, state, strict=True):
+                group.scatter(group.reflect(part, instants), boundary, instants)
 
         self._blocks.each(work)
         return boundary
@@ -205,18 +205,18 @@ class Group(ABC, Generic[State]):
         """Allocate a zero field of the group."""
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
-    def gather(self, field: Array, some: slice = ALL) -> None:
+    def gather(self, field: Array, instants: slice = ALL) -> None:
         """Make the group's rows of a boundary field its target, at some instants."""
-        flat = self.target.T.reshape(self._n_instants, -1)[some]
-        np.take(field.T[some], self._order, axis=1, out=flat, mode="clip")
+        flat = self.target.T.reshape(self._n_instants, -1)[instants]
+        np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
 
-    def scatter(self, own: Array, field: Array, some: slice = ALL) -> None:
+    def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
         """Write a field of the group into the rows of a boundary field, at some instants."""
-        flat = own.T.reshape(self._n_instants, -1)[some]
+        flat = values.T.reshape(self._n_instants, -1)[instants]
         if self._back is None:
-            field.T[some, self._order] = flat
+            field.T[instants, self._order] = flat
         else:
-            np.take(flat, self._back, axis=1, out=field.T[some], mode="clip")
+            np.take(flat, self._back, axis=1, out=field.T[instants], mode="clip")
 
     @abstractmethod
     def start(self, checkpoint: Checkpoint | None) -> State:
@@ -227,11 +227,11 @@ class Group(ABC, Generic[State]):
         """W + F/k of a state, a field of the group."""
 
     @abstractmethod
-    def relax(self, state: State, relaxation: float, some: slice = ALL) -> None:
+    def relax(self, state: State, relaxation: float, instants: slice = ALL) -> None:
         """Mix the target into a state, at some instants."""
 
     @abstractmethod
-    def reflect(self, state: State, some: slice = ALL) -> Array:
+    def reflect(self, state: State, instants: slice = ALL) -> Array:
         """W - F/k = 2 W - (W + F/k) of a state, at some instants; the next call overwrites it."""
 
     def weights(self, time_weights: Array) -> Array | None:
@@ -256,9 +256,9 @@ class FullGroup(Group[Array]):
         """W + F/k of a state, which is the state itself."""
         return state
 
-    def relax(self, state: Array, relaxation: float, some: slice = ALL) -> None:
+    def relax(self, state: Array, relaxation: float, instants: slice = ALL) -> None:
         """Mix the target into a state, at some instants."""
-        old, target = state[:, :, some], self.target[:, :, some]
+        old, target = state[:, :, instants], self.target[:, :, instants]
         if relaxation == 1.0:
             np.copyto(old, target)
             return
@@ -266,15 +266,15 @@ class FullGroup(Group[Array]):
         np.multiply(target, relaxation, out=target)
         np.add(old, target, out=old)
 
-    def reflect(self, state: Array, some: slice = ALL) -> Array:
+    def reflect(self, state: Array, instants: slice = ALL) -> Array:
         """W - F/k = 2 W - (W + F/k) of a state, up to date at some instants."""
         flat = (len(self.k), -1)
-        reflected = self._reflected[:, :, some]
+        reflected = self._reflected[:, :, instants]
         self.response.reflect(
-            state[:, :, some].reshape(flat, order="F"), reflected.reshape(flat, order="F")
+            state[:, :, instants].reshape(flat, order="F"), reflected.reshape(flat, order="F")
         )
         if self.body is not None:
-            reflected += 2.0 * self.body[:, :, some]
+            reflected += 2.0 * self.body[:, :, instants]
         return self._reflected
 
     def weights(self, time_weights: Array) -> Array:

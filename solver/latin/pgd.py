@@ -152,8 +152,8 @@ class PGDGroup(Group[list[Family]]):
             nearest = (self._basis_of(self.target[:, place], 1) for place in places)
             return [self._family([place], basis) for place, basis in enumerate(nearest)]
         modes, records = checkpoint.reduction.modes, checkpoint.reduction.records
-        own = self._numbers
-        return self._shared([modes[n] for n in own], [records[n] for n in own])
+        numbers = self._numbers
+        return self._shared([modes[n] for n in numbers], [records[n] for n in numbers])
 
     def outgoing(self, state: list[Family]) -> Array:
         """W + F/k of a state, rebuilt."""
@@ -162,7 +162,7 @@ class PGDGroup(Group[list[Family]]):
             self._put(rebuilt, family.members, family.basis.field())
         return rebuilt
 
-    def relax(self, state: list[Family], relaxation: float, some: slice = ALL) -> None:
+    def relax(self, state: list[Family], relaxation: float, instants: slice = ALL) -> None:
         """Bring a state towards the target: update time functions, enrich, downsize."""
         for family in state:
             self._advance(family, relaxation)
@@ -170,7 +170,7 @@ class PGDGroup(Group[list[Family]]):
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share(state)
 
-    def reflect(self, state: list[Family], some: slice = ALL) -> Array:
+    def reflect(self, state: list[Family], instants: slice = ALL) -> Array:
         """W - F/k of a state; the next call overwrites it."""
         for family in state:
             columns = family.columns(self._reflected)

@@ -42,9 +42,9 @@ def slide_of(problem: Problem) -> Array | None:
         return None
     slides, across = law.tangent.above, law.normal.component.above
     wanted = np.concatenate([np.ones(len(slides)), np.zeros(len(across))])
-    own = problem.motions[problem.row_dofs[np.concatenate([slides, across])]]
-    shares = np.linalg.lstsq(own, wanted, rcond=None)[0]
-    is_held = np.abs(own @ shares - wanted).max() > SAME
+    moved = problem.motions[problem.row_dofs[np.concatenate([slides, across])]]
+    shares = np.linalg.lstsq(moved, wanted, rcond=None)[0]
+    is_held = np.abs(moved @ shares - wanted).max() > SAME
     return None if is_held else np.asarray(problem.motions @ shares)
 
 
@@ -62,7 +62,7 @@ class Slide:
     Parameters
     ----------
     problem, way
-        What is solved, and the motion, as `slide_of` gives it.
+        What is solved, and the motion, as of `slide_of`.
     k
         Search direction of the rows, shape (n_rows,), scaled.
     """
@@ -85,7 +85,7 @@ class Slide:
         self._slack = float(spring.gap[0])
         self._way = way[problem.row_dofs, None]
         parts = problem.substructures
-        loads = [way[one.dofs] @ one.body_force for one in parts if one.body_force is not None]
+        loads = [way[part.dofs] @ part.body_force for part in parts if part.body_force is not None]
         load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
         self._balance = Balance(1.0 / soft, stop, load, along.start)
 
@@ -145,7 +145,7 @@ class Balance:
         enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
         # Points are seen from the body, where the digits of how far they are behind stay.
         back = -np.diff(targets, axis=0, prepend=0.0)
-        numbers = (one.tolist() for one in (ends, self._load, enough))
+        numbers = (values.tolist() for values in (ends, self._load, enough))
         held, shift = self._start, 0.0
         steps = []
         for came, least, most, end, load, left in zip(back, -reach, reach, *numbers, strict=True):
@@ -190,7 +190,7 @@ class Balance:
     def _between(
         self, behind: Array, least: Array, most: Array, end: float, load: float
     ) -> tuple[float, Array]:
-        """Look for the same between the shifts at which anything begins to slip or pull."""
+        """The same, sought between the shifts at which anything begins to slip or pull."""
 
         def held(step: float) -> Array:
             return np.minimum(np.maximum(behind - step, least), most)

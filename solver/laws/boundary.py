@@ -39,8 +39,8 @@ class Dirichlet(Interface):
         """W^ is the displacement that is prescribed."""
         rows, given = as_slice(self.rows), self.displacement
 
-        def prescribe(_incoming: Array, displacement: Array, some: slice) -> None:
-            displacement[rows] = given[:, some]
+        def prescribe(_incoming: Array, displacement: Array, instants: slice) -> None:
+            displacement[rows] = given[:, instants]
 
         return prescribe
 
@@ -49,9 +49,9 @@ class Dirichlet(Interface):
         missed = beyond(displacement[self.rows] - self.displacement, noise)
         return Gaps(displacement=squared(missed))
 
-    def during(self, some: slice) -> Self:
+    def during(self, instants: slice) -> Self:
         """Law of some instants alone."""
-        return replace(self, displacement=self.displacement[:, some])
+        return replace(self, displacement=self.displacement[:, instants])
 
     @property
     def given_displacement(self) -> RowValues:
@@ -87,8 +87,8 @@ class Neumann(Interface):
         rows = as_slice(self.rows)
         moved = self.force / k[self.rows, None]
 
-        def push(incoming: Array, displacement: Array, some: slice) -> None:
-            displacement[rows] = incoming[rows] + moved[:, some]
+        def push(incoming: Array, displacement: Array, instants: slice) -> None:
+            displacement[rows] = incoming[rows] + moved[:, instants]
 
         return push
 
@@ -100,9 +100,9 @@ class Neumann(Interface):
         """Macro forces, which the load balances."""
         yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
 
-    def during(self, some: slice) -> Self:
+    def during(self, instants: slice) -> Self:
         """Law of some instants alone."""
-        return replace(self, force=self.force[:, some])
+        return replace(self, force=self.force[:, instants])
 
     @property
     def given_force(self) -> RowValues:

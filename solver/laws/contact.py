@@ -150,9 +150,9 @@ class Contact(Interface):
         """Law whose sliders begin elsewhere, as `Friction.begun`."""
         return replace(self, tangential=self.tangential.begun(start))
 
-    def during(self, some: slice) -> Self:
+    def during(self, instants: slice) -> Self:
         """Law of some instants alone."""
-        return replace(self, tangential=self.tangential.during(some))
+        return replace(self, tangential=self.tangential.during(instants))
 
     @property
     def kind(self) -> Hashable:

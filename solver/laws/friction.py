@@ -284,9 +284,9 @@ class Friction:
         """Whether the bound falls with slip anywhere."""
         return self.strength is not None and bool(self.strength.slopes.min() < 0.0)
 
-    def during(self, some: slice) -> Friction:
+    def during(self, instants: slice) -> Friction:
         """Law of some instants alone."""
-        return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, some])
+        return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, instants])
 
     @classmethod
     def concatenated(cls, laws: Sequence[Friction]) -> Friction:
@@ -348,7 +348,7 @@ class FrictionRule:
         self,
         incoming: Array,
         displacement: Array,
-        _some: slice,
+        _instants: slice,
         pressing: Array | None = None,
         opening: Array | None = None,
     ) -> None:

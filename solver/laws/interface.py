@@ -109,7 +109,7 @@ class MacroPart(NamedTuple):
 class Rule(Protocol):
     """A law that is ready for one k: it obeys in the local stage (paper, problem 2.1)."""
 
-    def __call__(self, incoming: Array, displacement: Array, some: slice, /) -> None:
+    def __call__(self, incoming: Array, displacement: Array, instants: slice, /) -> None:
         """Write W^ of the interface's rows.
 
         Parameters
@@ -118,8 +118,8 @@ class Rule(Protocol):
             z = W - F/k of all rows, shape (n_rows, n) of n instants.
         displacement
             W^, same shape; what is not of the interface stays.
-        some
-            Which instants these are; all of them where the rule remembers.
+        instants
+            Which these are; all of them where the rule remembers.
         """
 
 
@@ -165,7 +165,7 @@ class Interface(ABC):
             What rounding makes of either; less is nothing.
         """
 
-    def during(self, some: slice) -> Self:
+    def during(self, instants: slice) -> Self:
         """Law of some instants alone; where bodies stand before them is another matter."""
         return self
 

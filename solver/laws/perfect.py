@@ -53,7 +53,7 @@ class Perfect(Interface):
         k, other = k[self.first], k[self.second]
         share = (k / (k + other))[:, None]
 
-        def glue(incoming: Array, displacement: Array, _some: slice) -> None:
+        def glue(incoming: Array, displacement: Array, _instants: slice) -> None:
             below = incoming[second]
             common = below + share * (incoming[first] - below)
             displacement[first] = common
