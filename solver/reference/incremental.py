@@ -27,7 +27,7 @@ from solver.reference.condensation import LEFT_INSIDE
 from solver.reference.contact import IncrementalContact
 from solver.reference.search import Minimum, Search
 from solver.reference.solution import Interrupted, Reference, States
-from solver.reference.starts import Starts
+from solver.reference.states import Starts
 
 DEARER = 30
 """Points that make a system of the general solver cost one more of the band's (measured)."""
