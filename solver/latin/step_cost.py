@@ -19,21 +19,14 @@ from solver.reference.states import HELD, States
 
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""
-APART = 40
-"""The same of rods on supports of their own, so many that LATIN needs its 20 to 30 iterations for
-the last of them: from any statuses a step takes 5 to 30 systems an instant, each rod on its own
-way, and so ends for sure (measured on 37 and 91 wires near a clamp, 60 and 200 elements)."""
-FOLLOWING = 40
-"""The same where friction softens, and a solution is followed in parts of an instant: blocks and
-faults take 2 to 35 systems an instant, whatever k is (measured)."""
+ENDS_FOR_SURE = 40
+"""The same where a step ends for sure, from any statuses: of rods on supports of their own it takes
+5 to 30 (37 and 91 wires near a clamp); where friction softens, and a solution is followed in parts
+of an instant, 2 to 35 (blocks and faults, whatever k is; measured)."""
 AT_REST, SAVED = 0.02, 10
 """Share of the jumps that move up to which statuses are right at once, as nothing slips and nothing
 is open but while nothing presses; and the iterations that a step then saves, at least. Layers 200
 to 1000 times as long as thick: solved after 2 iterations instead of 10 (measured)."""
-SHARE = 1.0
-"""Share of the time of all iterations that a step may take: it is tried again at twice as many
-iterations, so that all trials together take twice as long as the iterations. Under loads far beyond
-friction an instant takes ten systems from any statuses, and from the exact force (measured)."""
 TRIED = 2.0
 """Times the iterations so far that a step may cost, three systems an instant included, whatever the
 force does: on 70 random runs 0.84 to 0.96 of the time with once, by scene, and no more than 1.35;
@@ -114,9 +107,13 @@ class Costs:
         return step <= TRIED * iterations * self.iteration
 
     def systems(self, iterations: float) -> int:
-        """The number of linear systems that a step may solve after so many iterations."""
-        worth = SHARE * iterations * self.iteration
-        return max(self.in_any_case * self.n_instants, int(worth / self.system))
+        """The number of linear systems that a step may solve after so many iterations.
+
+        As many as take the time of these. It is tried again at twice as many iterations, so that
+        all trials together take twice as long as the iterations.
+        """
+        affordable = int(iterations * self.iteration / self.system)
+        return max(self.in_any_case * self.n_instants, affordable)
 
 
 def moving_share(states: States) -> float:
@@ -148,10 +145,10 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     passes = products / DENSE + PASSES * PASS * problem.n_rows
     iteration = OF_ITERATION + problem.n_instants * passes
     softens = any(law.tangential.softens for law in problem.rubbing.values())
-    room = FOLLOWING if softens else SYSTEMS
+    room = ENDS_FOR_SURE if softens else SYSTEMS
     if rubs_on_supports(problem):
         system = BAND_CALLS + BAND * n_jumps
-        room = APART if len(problem.rubbing) > 1 else room
+        room = ENDS_FOR_SURE if len(problem.rubbing) > 1 else room
         return Costs(0.0, system, iteration, problem.n_instants, in_any_case=room)
     for part in problem.substructures:
         stiffness = part.elasticity.stiffness

@@ -27,27 +27,21 @@ force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs 
 elements along (measured). Twice as much takes up to 20."""
 AT_A_POINT = 0.1
 """k of a point where a spring pulls, over E, for a metre of thickness. With that of a whole contact
-on this one point, where mostly no force acts, it is what keeps a body from sliding. Blocks on
-slopes, 14 of any load, mesh, shape, spring, slack and friction: 1 % of the contact force takes 8 to
-18 iterations, one as high as long 42; as many with 0.03, two more with 0.3, some 26 with 1, and 29
-to more than 120 with that of a contact (measured)."""
+on this one point, where mostly no force acts, it is what keeps a body from sliding. On 14
+blocks on slopes 1 % of the contact force takes 8 to 18 iterations, as many with 0.03, some 26 with
+1, and 29 to more than 120 with that of a contact (measured)."""
 RESOLVED, FINER = 96.0, 1.0 / 3.0
 """Elements along a support from which its k grows with their number, and to which power. What is
 local then is stiffer than the body as a whole, so a constant k finds it ever later. Block of
-768 x 384 elements on a parabola: 1 % of the contact force takes 14 iterations, 1e-4 takes 52; 13
-and 104 with a constant k, 18 and 47 with three times as much; flat, 17 and 53, instead of 29 and
-62. With the power 1/2, of the geometric mean of global and local stiffness, 1 % takes 21 if k grows
-from 48 elements on; and 96 x 96 need more than 15 without acceleration (measured). Layers, where k
-is of their sliding, gain nothing."""
+768 x 384 elements on a parabola: 1e-4 of the contact force takes 52 iterations, 104 with a constant
+k; flat, 53 instead of 62 (measured). Layers, where k is of their sliding, gain nothing."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
 """The tangential k between two bodies over the normal one: layers slide on each other along their
 length. Measured as `SLENDER` is: at most 45 iterations; 76 with half as much, 67 with twice."""
 SLENDER = 40.0
-"""How many times as long as thick two bodies in contact may be before k must be smaller. Measured
-on 2 to 10 layers, 10 to 1000 times as long as thick, friction 0.3 and 1, one to four substructures
-along and one or two up, pressures that let them slide: 1 % of the contact force takes 10 to 45
-iterations. At most 54 with half of it, 46 with twice, 82 with four times; layers 1000 times as long
-as thick take more than 150 with no such limit."""
+"""How many times as long as thick two bodies in contact may be before k must be smaller. Two to ten
+layers, 10 to 1000 times as long as thick: 1 % of the contact force takes 10 to 45 iterations, at
+most 54 with half of it, 46 with twice, 82 with four times, more than 150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
