@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.laws import OPEN
-from solver.laws.friction import follow
-from solver.laws.play import play
+from solver.laws.play import follow, play
 from solver.reference.condensation import Condensation
 from solver.reference.rules import Rules
 
