@@ -17,9 +17,9 @@ def assembled_stiffness(problem: Problem) -> sparse.csr_array:
             entries[id(part.elasticity)] = sparse.coo_array(part.elasticity.stiffness)
     parts = [(part.dofs, entries[id(part.elasticity)]) for part in problem.substructures]
     rows, columns = (
-        np.concatenate([dofs[own.coords[axis]] for dofs, own in parts]) for axis in (0, 1)
+        np.concatenate([dofs[matrix.coords[axis]] for dofs, matrix in parts]) for axis in (0, 1)
     )
-    values = np.concatenate([own.data for _, own in parts])
+    values = np.concatenate([matrix.data for _, matrix in parts])
     return sparse.csr_array((values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs))
 
 

@@ -95,9 +95,9 @@ class Band:
         band._added, band.solutions = diagonal, 0
         return band
 
-    def only(self, some: Flags) -> Self:
+    def only(self, kept: Flags) -> Self:
         """The matrix of some degrees of freedom that nothing movable ties to the others."""
-        places = np.flatnonzero(some)
+        places = np.flatnonzero(kept)
         upper = np.asfortranarray(self._upper[:, places])
         upper[:-1, 1:][:, np.diff(places) > 1] = 0.0
         band = self._of(upper)

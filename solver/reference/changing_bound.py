@@ -103,7 +103,7 @@ def least_with_changing_bound(
     return None
 
 
-def _same(bounds: Bounds, one: Array, other: Array) -> bool:
+def _same(bounds: Bounds, first: Array, second: Array) -> bool:
     """Whether all slips are between the same points of the strength."""
     dofs, segment = bounds.dofs, bounds.rules.segment
-    return np.array_equal(segment(one[dofs]), segment(other[dofs]))
+    return np.array_equal(segment(first[dofs]), segment(second[dofs]))

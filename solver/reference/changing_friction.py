@@ -48,7 +48,7 @@ class NewtonWithChangingFriction(Newton):
     ) -> None:
         super().__init__(condensed, rules, rest, guesses)
         self._gone = np.zeros_like(rules.gap)
-        self._softens = any(one.slopes.min() < 0.0 for one in rules.strengths)
+        self._softens = any(strength.slopes.min() < 0.0 for strength in rules.strengths)
         self._of_motions = condensed.gauge.T @ condensed.stiffness @ condensed.gauge
         self._ties = None if len(condensed.base) == len(rules.gap) else condensed.ties.toarray()
 
@@ -67,7 +67,8 @@ class NewtonWithChangingFriction(Newton):
             Increment(still, self._force[:, None], still[: len(sides.load)], still[:0]),
             np.zeros(len(still)),
         )
-        guesses = [one[:, instant] for one in (self._guesses, self._at_rest) if one is not None]
+        known = [states for states in (self._guesses, self._at_rest) if states is not None]
+        guesses = [states[:, instant] for states in known]
         share, length = 0.0, 1.0
         while share < 1.0:
             target = min(share + length, 1.0)
@@ -198,7 +199,7 @@ class NewtonWithChangingFriction(Newton):
         """
         begin, end = np.abs(at.slip), np.abs(reached.slip)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        most = np.maximum(*(self._most(one.step.force[:, 0], sides) for one in (at, reached)))
+        most = np.maximum(*(self._most(end.step.force[:, 0], sides) for end in (at, reached)))
         on_way = self._gone + np.minimum(begin, end), self._gone + np.maximum(begin, end)
         growth = np.where(slips, self._rules.lowest_growth(*on_way) * most, 0.0)
         if not np.any(growth < 0.0):

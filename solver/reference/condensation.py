@@ -111,17 +111,17 @@ class Condensation:
         self._overlap = np.maximum(-rules.gap, 0.0)
         self._fixed, self._prescribed, self._free = fixed, prescribed, free
         self.given: Array = self._jumps[:, fixed] @ prescribed
-        own = self._jumps[:, free]
-        self.moving: Indices = np.flatnonzero(np.diff(own.indptr))
-        own, rigid = own[self.moving], self.compliance[self.moving] == 0.0
-        self.base, self.ties = base_of(own, rigid)
-        own, rigid = own[self.base], rigid[self.base]
+        free_jumps = self._jumps[:, free]
+        self.moving: Indices = np.flatnonzero(np.diff(free_jumps.indptr))
+        free_jumps, rigid = free_jumps[self.moving], self.compliance[self.moving] == 0.0
+        self.base, self.ties = base_of(free_jumps, rigid)
+        free_jumps, rigid = free_jumps[self.base], rigid[self.base]
         self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
-        self.stresses: Array = self_stresses(own, rigid)
+        self.stresses: Array = self_stresses(free_jumps, rigid)
         self._rings = np.flatnonzero(self.stresses.any(axis=1))
-        self._condense(own)
+        self._condense(free_jumps)
 
-    def _condense(self, own: sparse.csr_array) -> None:
+    def _condense(self, free_jumps: sparse.csr_array) -> None:
         """Factor the glued structure once, and take it out for all jumps and instants together."""
         free = self._free
         stiffness = self._whole[free]
@@ -129,9 +129,9 @@ class Condensation:
         stiffness = stiffness[:, free]
         diagonal = stiffness.diagonal()
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
-        self.springs: Array = 1.0 / (abs(own) @ (1.0 / diagonal))
+        self.springs: Array = 1.0 / (abs(free_jumps) @ (1.0 / diagonal))
         self.tie = TIE * float(self.springs.max(initial=0.0))
-        self._jumped, self._glued = from_jumps(own)
+        self._jumped, self._glued = from_jumps(free_jumps)
         strained = sparse.csr_array(stiffness @ self._jumped)
         self._pulled = sparse.csr_array(self._glued.T @ strained)
         self._factor = factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
@@ -139,8 +139,8 @@ class Condensation:
         self._alone = self._solved(self._glued.T @ patterns) @ course
         load = self._jumped.T @ load - self._pulled.T @ self._alone
         whole = (self._jumped.T @ strained).toarray(order="C")
-        for some in blocks(len(whole)):
-            whole[:, some] -= self._pulled.T @ self._solved(self._pulled[:, some].toarray())
+        for columns in blocks(len(whole)):
+            whole[:, columns] -= self._pulled.T @ self._solved(self._pulled[:, columns].toarray())
         symmetrise(whole)
         self._tie(whole)
         self.stiffness: Array = whole
@@ -172,9 +172,9 @@ class Condensation:
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
         size = float(np.diagonal(stiffness).mean())
-        for some in blocks(len(stiffness)):
-            more = costs[some] @ gauge.T + gauge[some] @ (costs - size * gauge).T
-            stiffness[some] -= more
+        for rows in blocks(len(stiffness)):
+            more = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
+            stiffness[rows] -= more
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
     @property

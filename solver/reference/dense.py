@@ -20,11 +20,11 @@ def blocks(size: int) -> list[slice]:
 
 def symmetrise(matrix: Array) -> None:
     """Replace a square matrix by the mean of it and its transpose."""
-    for some in blocks(len(matrix)):
-        others = slice(some.start, None)
-        mean = matrix[some, others] + matrix[others, some].T
+    for rows in blocks(len(matrix)):
+        others = slice(rows.start, None)
+        mean = matrix[rows, others] + matrix[others, rows].T
         mean *= 0.5
-        matrix[some, others], matrix[others, some] = mean, mean.T
+        matrix[rows, others], matrix[others, rows] = mean, mean.T
 
 
 class Factors:

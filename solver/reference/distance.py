@@ -197,8 +197,8 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
     slips[rules.normal] = False
     slips &= (moves | ~rules.normal)[rules.partner][:, None]
     moves &= (moves | ~rules.normal)[rules.partner]
-    own = np.flatnonzero(moves)
-    free_jumps = (all_jumps @ sparse.diags_array(free))[own]
-    ring = np.any(self_stresses(free_jumps, rules.compliance[own] == 0.0) != 0.0, axis=1)
-    moves[own[ring]] = False
+    moving = np.flatnonzero(moves)
+    free_jumps = (all_jumps @ sparse.diags_array(free))[moving]
+    ring = np.any(self_stresses(free_jumps, rules.compliance[moving] == 0.0) != 0.0, axis=1)
+    moves[moving[ring]] = False
     return np.asarray(moves[:, None] | slips)

@@ -161,14 +161,14 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     weights = sparse.csr_array((dear[single], (first[single], last[single])), shape=(nodes, nodes))
     tree = minimum_spanning_tree(weights).tocoo()
     number = sparse.csr_array((single + 1, (first[single], last[single])), shape=(nodes, nodes))
-    own = np.asarray(number[tree.coords[0], tree.coords[1]]).ravel() - 1
-    base = np.union1d(np.flatnonzero(rigid), own)
+    tree_jumps = np.asarray(number[tree.coords[0], tree.coords[1]]).ravel() - 1
+    base = np.union1d(np.flatnonzero(rigid), tree_jumps)
     others = np.setdiff1d(np.arange(size), base)
-    branches = jumps[own]
+    branches = jumps[tree_jumps]
     squares = splu(sparse.csc_array(branches @ branches.T))
     paths = squares.solve((branches @ jumps[others].T).toarray())
-    rows = np.concatenate([base, np.repeat(others, len(own))])
-    places = np.searchsorted(base, own)
+    rows = np.concatenate([base, np.repeat(others, len(tree_jumps))])
+    places = np.searchsorted(base, tree_jumps)
     columns = np.concatenate([np.arange(len(base)), np.tile(places, len(others))])
     values = np.concatenate([np.ones(len(base)), np.round(paths).T.ravel()])
     ties = sparse.csr_array((values, (rows, columns)), shape=(size, len(base)))
@@ -187,9 +187,9 @@ def _of_rigid(jumps: sparse.csr_array) -> Array:
     for number in np.flatnonzero(_rings(jumps, group)):
         members = np.flatnonzero(group == number)
         values, vectors = np.linalg.eigh(products[members][:, members].toarray())
-        own = vectors[:, values < NONE]
-        whole = np.zeros((size, own.shape[1]))
-        whole[members] = np.where(np.abs(own) > NONE, own, 0.0)
+        null = vectors[:, values < NONE]
+        whole = np.zeros((size, null.shape[1]))
+        whole[members] = np.where(np.abs(null) > NONE, null, 0.0)
         stresses.append(whole)
     return np.concatenate(stresses, axis=1)
 

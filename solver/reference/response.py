@@ -97,9 +97,9 @@ class Response:
         if not self._is_plain:
             right = np.concatenate([right, self._gauge_kept.T @ unknown[kept]])
             if len(sprung):
-                own = rows[sprung]
-                come = self._come @ unknown[:n_base] + self._soft[own] * force[own]
-                right[sprung] = self._share * (sides.held[own] - come)
+                springs = rows[sprung]
+                come = self._come @ unknown[:n_base] + self._soft[springs] * force[springs]
+                right[sprung] = self._share * (sides.held[springs] - come)
         solution = self._factors.solve(right)
         motion = solution[n_rows:]
         unknown[self._free], unknown[n_base:] = solution[:n_free], solution[n_free:n_rows]
@@ -134,9 +134,9 @@ class Response:
         if rows is None:
             places = places[unknown[places].any(axis=1)]
             if self._ties is not None or len(places) * FEW > len(unknown):
-                some = np.zeros_like(unknown)
-                some[places] = unknown[places]
-                return np.asarray(self._of_unknowns @ some)
+                alone = np.zeros_like(unknown)
+                alone[places] = unknown[places]
+                return np.asarray(self._of_unknowns @ alone)
             rows = self._stiffness[places]
         return np.asarray(rows.T @ unknown[places])
 
@@ -174,9 +174,9 @@ class Response:
         self._free: Indices = np.flatnonzero(is_free[self._base])
         self._kept: Indices = np.flatnonzero(~is_free[self._base])
         rows = np.concatenate([self._base[self._free], self._others])
-        self._rows, own = rows, states[rows]
-        self._sprung: Indices = np.flatnonzero(own == HELD)
-        way = np.where(np.abs(own) == 1, own, 0).astype(float)
+        self._rows, of_rows = rows, states[rows]
+        self._sprung: Indices = np.flatnonzero(of_rows == HELD)
+        way = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
         slope = way * self.friction[rows]
         self._stiffer = (np.abs(way) * self._growth[rows])[:, None]
         self._grows = bool(self._stiffer.any())
@@ -220,10 +220,10 @@ class Response:
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
         if gauge.size:
-            own = self._share_of_own * self._pulls_of_motions(self._rows)
+            pulls = self._share_of_own * self._pulls_of_motions(self._rows)
             tied = np.flatnonzero(self._slope)
-            own[tied] += self._slope[tied] * self._pulls_of_motions(self._under[tied])
-            matrix[:n_rows, n_rows:] = own
+            pulls[tied] += self._slope[tied] * self._pulls_of_motions(self._under[tied])
+            matrix[:n_rows, n_rows:] = pulls
             if self._grows:
                 matrix[:n_rows, n_rows:] += self._stiffer * (self._slips[:, free] @ gauge[free])
         if len(sprung):

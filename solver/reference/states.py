@@ -107,13 +107,13 @@ def all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array
     bound = rules.bounds(forces, slip)
     forces[given] = (-bound * np.sign(slip))[given]
     for number, strength in enumerate(rules.strengths):
-        own = given & (rules.compliance > 0.0) & (rules.strength == number)
-        if not own.any():
+        springy = given & (rules.compliance > 0.0) & (rules.strength == number)
+        if not springy.any():
             continue
-        soft, jump = rules.compliance[own, None], jumps[own]
-        reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[own]
+        soft, jump = rules.compliance[springy, None], jumps[springy]
+        reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[springy]
         slider = play(jump, reach) if number == 0 else follow(jump, reach, strength)
-        forces[own] = (slider - jump) / soft
+        forces[springy] = (slider - jump) / soft
     return forces
 
 
