@@ -159,6 +159,10 @@ class Strength:
         """Number of the point behind each slip, of any shape."""
         return np.asarray(np.searchsorted(self.slips, slip, side="right") - 1)
 
+    def slope(self, slip: Array) -> Array:
+        """Growth per further slip, of any shape."""
+        return np.asarray(self.slopes[self.segment(slip)])
+
     def lowest_slope(self, first: Array, last: Array) -> Array:
         """Smallest growth per slip on the way from one slip to a larger one, shape (n,)."""
         passed = np.arange(len(self.slips))[:, None]

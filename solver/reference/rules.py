@@ -101,35 +101,25 @@ class Rules:
 
     def factor(self, gone: Array) -> Array:
         """Factor on the friction bound after accumulated slip, shape (n, ...) both."""
-        return self._of_strengths(gone, Strength.__call__)
+        return self._of_strengths(Strength.__call__, gone)
 
     def growth(self, gone: Array) -> Array:
         """Growth of the factor per further slip, shape (n,) both."""
-        return self._of_strengths(
-            gone, lambda strength, slip: strength.slopes[strength.segment(slip)]
-        )
+        return self._of_strengths(Strength.slope, gone)
 
     def lowest_growth(self, first: Array, last: Array) -> Array:
         """Smallest growth of the factor on the way from one slip to a larger one, shape (n,)."""
-        lowest = np.zeros_like(first)
-        for number, strength in enumerate(self.strengths):
-            points = self.strength == number
-            lowest[points] = strength.lowest_slope(first[points], last[points])
-        return lowest
+        return self._of_strengths(Strength.lowest_slope, first, last)
 
     def segment(self, gone: Array) -> Indices:
         """Numbers of the points of the strengths behind accumulated slips, shape (n,)."""
-        numbers = np.zeros(len(gone), dtype=np.intp)
-        for number, strength in enumerate(self.strengths):
-            points = self.strength == number
-            numbers[points] = strength.segment(gone[points])
-        return numbers
+        return self._of_strengths(Strength.segment, gone).astype(np.intp)
 
-    def _of_strengths(self, gone: Array, value: Callable[[Strength, Array], Array]) -> Array:
-        values = np.ones_like(gone)
+    def _of_strengths(self, value: Callable[..., Array | Indices], *slips: Array) -> Array:
+        values = np.ones_like(slips[0])
         for number, strength in enumerate(self.strengths):
             points = self.strength == number
-            values[points] = value(strength, gone[points])
+            values[points] = value(strength, *(slip[points] for slip in slips))
         return values
 
     def before_slip(self, bound: Array, force: Array) -> Array:
