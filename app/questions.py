@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 import param
@@ -17,7 +18,7 @@ from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError, about
-from solver.scenes import behind, kind_of, loads_of
+from solver.scenes import behind, kind_of, law_of, loads_of
 from solver.settings import Settings
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantities import QUANTITIES, reading
@@ -160,7 +161,7 @@ def _fretting(settings: Settings) -> Question | None:
 
 def _shakedown(settings: Settings) -> Question | None:
     """Not of rods that stick rigidly: a load at their end has no limit, as the mesh is refined."""
-    is_rigid_rod = kind_of(settings) != "plane" and not settings.applies("contact_stiffness")
+    is_rigid_rod = kind_of(settings) != "plane" and np.isinf(law_of(settings).stiffness)
     if not has_a_limit(settings) or is_rigid_rod:
         return None
     end = settings.definitions()["friction"].softbounds[1]

@@ -14,10 +14,10 @@ from solver.definitions import Parameter, about
 from solver.scenes import CATALOGUE, points_of
 
 PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
-PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^3", "N·m", "N·m/m", "rad")
+PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad")
 """Units that take a prefix."""
 TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
-LATER = {"GPa": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
+LATER = {"GPa": 10.0, "GN/m²": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
 """Where a unit begins that is not taken from 1 on: a stress of 3000 MPa is read as that."""
 TYPED = re.compile(r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE)
 """A number as one types it, and what stands behind it."""

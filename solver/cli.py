@@ -231,7 +231,9 @@ def _distance(problem: Problem, limit: float) -> Distance | None:
     lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
     if lost:
         message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-        if reference.jumps_at is not None:
+        if reference.collapse is not None:
+            message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
+        elif reference.jumps_at is not None:
             message += ": friction softens until the structure jumps"
         warn(f"no errors are known: {message}")
         return None

@@ -24,6 +24,7 @@ WORDS = {
     "friction force": "friction reibung reibkraft reibungskraft",
     "moment": "moment load last biegemoment",
     "gap": "gap spalt",
+    "slip": "slip gleitweg",
     "angle": "angle winkel",
     "curvature": "curvature krümmung",
     "factor": "factor faktor",

@@ -132,10 +132,19 @@ def curve(
     return CurveParameter(default, presets, abscissa, ordinate, units, **_common(doc, record))
 
 
-def redefined(definition: Any, default: object, **record: Any) -> Any:
-    """Setting for some scenes, with another default and other entries of `About`."""
+def redefined(
+    definition: Any,
+    default: object,
+    slider: tuple[float, float] | None = None,
+    doc: str = "",
+    **record: Any,
+) -> Any:
+    """Setting for some scenes, with another default, slider, help and entries of `About`."""
     again = copy.copy(definition)
     again.default = default
+    if slider is not None:
+        again.softbounds = slider
+    again.doc = doc or again.doc
     again.metadata = {"about": replace(about(definition), **record)}
     return again
 

@@ -87,9 +87,23 @@ def paired(values, extent):
     )
 
 
+def strengths(extent):
+    """Points of any factors over slip, the first (0, 1)."""
+    slips = st.lists(st.floats(1e-6, 1.0), min_size=1, max_size=5, unique=True).map(sorted)
+    factors = st.lists(sizes(1e-3, 1e3) | st.just(0.0), min_size=5, max_size=5)
+    return st.tuples(slips, factors).map(
+        lambda pair: [
+            [0.0, 1.0],
+            *([slip * extent, factor] for slip, factor in zip(*pair, strict=False)),
+        ]
+    )
+
+
 def values_of(name, definition, extents):
     if isinstance(definition, CurveParameter):
         extent = extents[definition.abscissa]
+        if name == "strength":
+            return st.sampled_from(definition.presets) | strengths(extent)
         is_section = name == "section_profile"
         points = paired(sizes(*SECTION), extent) if is_section else tables(definition, extent)
         return st.sampled_from(definition.presets) | points
@@ -113,6 +127,7 @@ def with_others(draw, definitions, chosen):
     extents = {
         "position": chosen.get("length", definitions["length"].default),
         "time": chosen.get("duration", definitions["duration"].default),
+        "slip": 1e-3,
     }
     for name in sorted(some - chosen.keys()):
         chosen[name] = draw(values_of(name, definitions[name], extents))

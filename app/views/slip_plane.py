@@ -7,7 +7,8 @@ import numpy as np
 from app.frame import Floats, Frame, Selection
 from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
 from app.views.view import View, extent
-from solver.scenes import features_of
+from solver.laws import FrictionLaw
+from solver.scenes import features_of, law_of
 
 FAR = 10.0
 """Times the plot by which a line goes beyond it."""
@@ -24,7 +25,7 @@ class SlipPlane(View):
         lambda settings: (
             features_of(settings).opens
             and features_of(settings).jumps == 4
-            and settings.values().get("friction_law") == "coulomb"
+            and law_of(settings) == FrictionLaw()
         )
     )
 

@@ -90,9 +90,9 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
     """Find why a body on a support cannot rest under its loads, or None if nothing forbids it.
 
     Nothing but the support can hold what no side holds: it presses and does not pull, friction
-    carries at most mu times the pressing force, and the pressure's resultant acts on the base. A
-    spring holds against all that pushes to the left; at the foot, it does not keep from tipping.
-    What is lost first counts; of two at once, what friction does not mend.
+    carries no more than its law allows, and the pressure's resultant acts on the base. A spring
+    holds against all that pushes to the left; at the foot, it does not keep from tipping. What is
+    lost first counts; of two at once, what friction does not mend.
     """
     assert stack.support is not None
     x, y, moment = wrench(stack)
@@ -100,8 +100,11 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
     held_x = any(side.x.prescribed for side in sides.values())
     held_y, upright = is_held_up(stack), is_upright(stack)
     pushed = np.abs(x) if stack.spring is None else x
-    mu, size = stack.support.friction, np.abs([x, y]).max() + np.abs(moment).max() / stack.length
+    size = np.abs([x, y]).max() + np.abs(moment).max() / stack.length
     slack = SLACK * size
+    # Whoever holds the body up may press it as hard as it takes.
+    pressing = np.where(held_y, np.inf, np.maximum(-y, 0.0))
+    most = _without_slip(stack, pressing) * stack.friction_law.strongest
     checks = []
     if not held_y:
         checks.append((y > slack, "the loads lift it off its support"))
@@ -109,12 +112,12 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
         beyond = np.maximum(moment, stack.length * y - moment)
         if sides["top"].x.prescribed:
             # The top is dragged with any force that friction can answer, which may hold it upright.
-            middle, reach = moment + stack.height * x, mu * stack.height * np.maximum(-y, 0.0)
+            middle, reach = moment + stack.height * x, stack.height * most
             beyond = np.maximum(middle - reach, stack.length * y - middle - reach)
         checks.append((beyond > slack * stack.length, TIPS))
-    if not held_x and not held_y:
-        checks.append((pushed > mu * np.maximum(-y, 0.0) + slack, "friction cannot hold it"))
-    if not held_x and held_y and mu == 0.0:
+    if not held_x and (most.any() or not held_y):
+        checks.append((pushed > most + slack, "friction cannot hold it"))
+    elif not held_x:
         checks.append((np.abs(x) > slack, "there is no friction, and no side holds it"))
     losses = [
         Loss(reason, float(stack.instants[np.argmax(lost)]))
@@ -122,6 +125,17 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
         if lost.any()
     ]
     return min(losses, key=lambda loss: loss.instant, default=None)
+
+
+def _without_slip(stack: Stack, pressing: Array) -> Array:
+    """Friction that may hold the body under a pressing force, before slip, N; of its shape.
+
+    Where mu varies the whole force may press where it is largest.
+    """
+    assert stack.support is not None
+    mu = float(np.max(stack.support.friction))
+    rubbed = mu * pressing if mu else np.zeros_like(pressing)
+    return stack.friction_law.without_slip(rubbed, stack.length)
 
 
 def rigid_rest(stack: Stack) -> Array | None:
@@ -165,7 +179,7 @@ def rigid_slide(stack: Stack, spring: Spring) -> Array:
     """
     assert stack.support is not None
     pushed, pressed, _ = wrench(stack)
-    bound = stack.support.friction * np.maximum(-pressed, 0.0)
+    bound = _without_slip(stack, np.maximum(-pressed, 0.0))
     slid, place = np.zeros_like(pushed), 0.0
     for instant, (load, most) in enumerate(zip(pushed, bound, strict=True)):
         pull = spring.stiffness * max(-place - spring.slack, 0.0)

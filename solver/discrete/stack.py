@@ -61,7 +61,7 @@ class Support:
     gap
         Opening at the nodes of the lowest side, shape (nodes along,), m.
     friction
-        Coefficient mu.
+        Coefficient mu, or that of the nodes, shape (nodes along,).
     bound
         Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
         support then presses as much as that takes, and adds no pressure of its own. None where
@@ -69,7 +69,7 @@ class Support:
     """
 
     gap: Array
-    friction: float
+    friction: float | Array
     bound: Array | None = None
 
 
@@ -110,7 +110,7 @@ class Stack:
     stiffness
         Young's modulus of every body over `young`, shape (bodies,), where they differ.
     friction
-        Coefficient mu between the bodies.
+        Coefficient mu between the bodies, or that of the nodes along them, shape (nodes along,).
     support
         Below the lowest body, or None.
     sides
@@ -142,7 +142,7 @@ class Stack:
     macro_degree: int = 1
     state: str = "strain"
     stiffness: Array | None = None
-    friction: float = 0.0
+    friction: float | Array = 0.0
     support: Support | None = None
     sides: Mapping[str, Side] = field(default_factory=dict)
     body_force: Array | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -117,8 +118,11 @@ def _contact(cut: CutStack, body: int) -> Contact:
         known = support.bound[node] / (stack.young * stack.length) * areas[:, None]
         friction = law.at(along, areas, scales, known=known)
     else:
-        mu = np.full(len(node), stack.friction if support is None else support.friction)
+        mu = stack.friction if support is None else support.friction
+        mu = np.broadcast_to(mu, cut.nodes.shape[2])[node]
         friction = law.at(along, areas, scales, friction=mu)
+        # Nothing is bonded across a gap.
+        friction = replace(friction, bound=friction.bound * (gap <= 0.0)[:, None])
     normal = None
     if across:
         softness = law.softness_across(areas, scales)

@@ -11,6 +11,7 @@ from solver.latin.status_step import Certificate, states_of, status_step
 from solver.latin.step_cost import Costs, costs_of, moving_share
 from solver.reference.choice import Incremental, incremental_solver
 from solver.reference.condensation import NoReferenceError
+from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Interrupted
 
 SETTLED = 0.04
@@ -57,6 +58,8 @@ class ErrorEstimate:
         `time.perf_counter`.
     jumps
         Whether the last status step found nothing any more after the structure had jumped.
+    collapse
+        From when on no contact forces balance the loads, if the last status step ended there.
     """
 
     def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
@@ -70,6 +73,7 @@ class ErrorEstimate:
         self.certificate: Certificate | None = None
         self.deadline = math.inf
         self.jumps = False
+        self.collapse: Collapse | None = None
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
         """The estimate; NaN while there is none.
@@ -153,7 +157,7 @@ class ErrorEstimate:
         systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
             self._solver = self._solver or incremental_solver(problem)
-            certificate, self.jumps = status_step(
+            certificate, self.jumps, self.collapse = status_step(
                 self._solver, problem, states, systems, lambda: time.perf_counter() > self.deadline
             )
         except NoReferenceError:

@@ -72,6 +72,16 @@ _ON_BASES = " The modes are those of that iterate."
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
 
+def collapses(time: float) -> Status:
+    """Status of a run whose loads no contact forces can balance from a time on, s."""
+    return Status(
+        Ending.STALLED,
+        f"There is no equilibrium from {time:.4g} s on: whatever the contacts carry within their "
+        "friction, it does not balance the loads, and the structure collapses. Lower the load, or "
+        "raise the friction or the pressure.",
+    )
+
+
 def diverged(iteration: int) -> Status:
     """Status of a run whose numbers stopped being finite."""
     return Status(

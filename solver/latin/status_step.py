@@ -22,6 +22,7 @@ from solver.laws import OPEN
 from solver.reference.choice import Incremental
 from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
+from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import States
 
 STILL = 1e-3
@@ -89,10 +90,13 @@ class StepResult(NamedTuple):
         The solution, or None where the statuses were too far from right.
     jumps
         Whether it found nothing any more after friction had made the structure jump.
+    collapse
+        From when on there is no equilibrium, if that is why it found nothing.
     """
 
     certificate: Certificate | None
     jumps: bool
+    collapse: Collapse | None = None
 
 
 def status_step(
@@ -123,7 +127,8 @@ def status_step(
         If the solver is not worth the size of the problem.
     """
     solution = solver.march(guess=states, most=most, stop=stop)
-    nothing = StepResult(None, solution.jumps_at is not None and solution.is_lost)
+    jumps = solution.jumps_at is not None and solution.is_lost
+    nothing = StepResult(None, jumps, solution.collapse)
     if not solution.converged.all():
         return nothing
     distance = distance_to(solution, problem)
@@ -139,7 +144,7 @@ def status_step(
         float(residual),
         solution.jumps_at,
     )
-    return StepResult(certificate, nothing.jumps)
+    return StepResult(certificate, jumps)
 
 
 def states_of(iterate: Iterate) -> States:

@@ -24,6 +24,7 @@ from solver.latin.status import (
     Ending,
     Status,
     certified,
+    collapses,
     diverged,
     with_jump,
 )
@@ -237,6 +238,8 @@ class StopState:
             if self._may_finish and self.estimate.certificate is None:
                 # Whatever it costs, where a run that may end with it would give up.
                 self.estimate.try_step(iterate, LAST)
+        if self.estimate.collapse is not None:
+            return collapses(self.estimate.collapse.time)
         if self.estimate.jumps:
             return JUMPS
         if is_exhausted:

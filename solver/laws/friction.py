@@ -111,6 +111,23 @@ class FrictionLaw:
             strength=strength,
         )
 
+    def without_slip(self, rubbed: Array, size: float = 1.0) -> Array:
+        """Largest friction force before slip, of the shape of what mu N alone makes.
+
+        Parameters
+        ----------
+        rubbed
+            mu N, per area or of all of it.
+        size
+            The area, m or m^2; 1 where `rubbed` is per area.
+        """
+        return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))
+
+    @property
+    def strongest(self) -> float:
+        """Largest factor that slip may make of that."""
+        return 1.0 if self.strength is None else max(self.strength.factors)
+
     def softness_across(self, weights: Array, scales: tuple[float, float]) -> Array | None:
         """Compression of each pair per pressing force, (n_pairs,), scaled; None without one."""
         return _softness(self.normal_stiffness, weights, scales)

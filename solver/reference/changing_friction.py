@@ -9,6 +9,7 @@ grows, in steps so small that between their ends no other branches off.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -44,9 +45,14 @@ class NewtonWithChangingFriction(Newton):
     """Finds jumps and forces of one instant after the other."""
 
     def __init__(
-        self, condensed: Condensation, rules: Rules, rest: Array | None, guesses: States | None
+        self,
+        condensed: Condensation,
+        rules: Rules,
+        rest: Array | None,
+        guesses: States | None,
+        may_hold: Callable[[int], bool] = lambda _: True,
     ) -> None:
-        super().__init__(condensed, rules, rest, guesses)
+        super().__init__(condensed, rules, rest, guesses, may_hold)
         self._gone = np.zeros_like(rules.gap)
         self._softens = any(strength.slopes.min() < 0.0 for strength in rules.strengths)
         self._of_motions = condensed.gauge.T @ condensed.stiffness @ condensed.gauge
@@ -60,6 +66,8 @@ class NewtonWithChangingFriction(Newton):
 
     def _solved(self, sides: Sides, instant: int) -> tuple[States, Increment] | None:
         """Follow the solution from the instant before; where it is lost, look for any."""
+        if self._is_lost and not self._may_hold(instant):
+            return None
         begin = self._before(instant)
         still = np.zeros_like(sides.held)
         at = Reached(
@@ -80,7 +88,9 @@ class NewtonWithChangingFriction(Newton):
             else:
                 if self.jumps_at is None and self._softens:
                     self.jumps_at = instant
-                beyond = self._elsewhere(at, sides, guesses)
+                may_hold = self._may_hold(instant)
+                beyond = self._elsewhere(at, sides, guesses) if may_hold else None
+                self._is_lost = self._is_lost or beyond is None
                 return None if beyond is None else (beyond.states, beyond.step)
         return at.states, at.step
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from solver.discrete.problem import Problem
 from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, TooLargeError
+from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
 from solver.reference.residual import Shown, unbalanced_of
 from solver.reference.rules import rules_of
@@ -65,6 +66,8 @@ class IncrementalContact:
             )
         self._problem = problem
         self._condensed, self._rules = Condensation(problem), rules_of(problem)
+        self._is_analysed = False
+        self._collapse: Collapse | None = None
 
     def march(
         self,
@@ -95,7 +98,7 @@ class IncrementalContact:
         own = rules.kept(condensed.moving)
         guesses = None if guess is None else guess[condensed.moving]
         kind = NewtonWithChangingFriction if own.ages or np.isfinite(own.cap).any() else Newton
-        newton = kind(condensed, own, problem.rest, guesses)
+        newton = kind(condensed, own, problem.rest, guesses, self._may_hold)
         done = self._nothing_done()
         ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
         for instant in range(problem.n_instants):
@@ -107,15 +110,24 @@ class IncrementalContact:
                 field[:, instant] = values
             ambiguous[instant] = newton.response.turned
             reached[instant] = True
+            if self._collapse is not None and instant >= self._collapse.instant:
+                break
         found = self._judged(done, reached)
         return replace(
             found,
             ambiguous=ambiguous & found.converged,
             steps=newton.response.solutions,
             jumps_at=newton.jumps_at,
+            collapse=self._collapse,
             is_lost=bool(np.any(reached & ~found.converged)),
             seconds=time.perf_counter() - start,
         )
+
+    def _may_hold(self, instant: int) -> bool:
+        """Whether any contact forces balance the loads of an instant."""
+        if not self._is_analysed:
+            self._is_analysed, self._collapse = True, collapse_of(self._problem)
+        return self._collapse is None or instant < self._collapse.instant
 
     def _nothing_done(self) -> Marched:
         """Allocate what instants are written into."""

@@ -10,7 +10,6 @@ dual is the mechanism, by which it collapses.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +22,6 @@ from solver.reference.assembly import external_force
 from solver.reference.condensation import NoReferenceError
 from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
-from solver.reference.solution import Interrupted
 
 WHOLE = 1.0 - 1e-9
 """Share of a step of the loads from which on it is all of it."""
@@ -48,22 +46,18 @@ class Collapse:
     mechanism: Array
 
 
-def collapse_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Collapse | None:
+def collapse_of(problem: Problem) -> Collapse | None:
     """Where a structure collapses on the path of its loads; None if it never does.
 
     Parameters
     ----------
     problem
         What is loaded.
-    stop
-        Called once per instant.
 
     Raises
     ------
     NoReferenceError
         If HiGHS finds no answer.
-    Interrupted
-        As soon as `stop` gives True.
     """
     if problem.motions is None:
         return None
@@ -85,8 +79,6 @@ def collapse_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Col
     bounds = np.stack([np.append(lows, 0.0), np.append(np.full(size, np.inf), 1.0)], axis=1)
     before, times = np.zeros(len(loads)), problem.instants
     for instant, now in enumerate(loads.T / unit):
-        if stop is not None and stop():
-            raise Interrupted
         known = at_instant(rules.bound, instant)[rubs, 0] / unit
         step = sparse.csr_array((now - before)[:, None])
         if not step.nnz and instant:

@@ -9,6 +9,7 @@ they repeat. Where they cycle, following the solution down from large pressure f
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -45,6 +46,17 @@ class Marched(NamedTuple):
 class Newton:
     """Finds jumps and forces of one instant after the other.
 
+    Parameters
+    ----------
+    condensed, rules
+        The structure between its contacts, and what these obey.
+    rest
+        Displacement from which contacts may be guessed, (n_dofs, n_instants), scaled, or None.
+    guesses
+        States to try, (n, n_instants), or None.
+    may_hold
+        Whether there may be an equilibrium at an instant, asked where none is found at once.
+
     Attributes
     ----------
     jumps_at
@@ -54,9 +66,15 @@ class Newton:
     jumps_at: int | None = None
 
     def __init__(
-        self, condensed: Condensation, rules: Rules, rest: Array | None, guesses: States | None
+        self,
+        condensed: Condensation,
+        rules: Rules,
+        rest: Array | None,
+        guesses: States | None,
+        may_hold: Callable[[int], bool] = lambda _: True,
     ) -> None:
         self.response = Response(condensed, rules)
+        self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules
         self._opening, self._force = rules.gap.copy(), np.zeros_like(rules.gap)
         self._strained, self._motion = (
@@ -146,8 +164,12 @@ class Newton:
             found = self._iterate(guess, sides)
             if found is not None:
                 return found
-        states = unload(self.response, self._rules, sides)
-        return None if states is None else self._iterate(states, sides)
+        found = None
+        if not self._is_lost and self._may_hold(instant):
+            states = unload(self.response, self._rules, sides)
+            found = None if states is None else self._iterate(states, sides)
+        self._is_lost = self._is_lost or found is None
+        return found
 
     def _iterate(self, states: States, sides: Sides) -> tuple[States, Increment] | None:
         """Seek the states from a guess, or give None where they cycle."""

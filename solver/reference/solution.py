@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
+from solver.reference.limit_analysis import Collapse
 
 States = NDArray[np.int8]
 
@@ -60,6 +61,8 @@ class Reference:
         equilibrium. None where there is no such instant.
     is_lost
         Whether an instant that was tried is not solved.
+    collapse
+        From when on no contact forces balance the loads, where it is known that they do not.
     """
 
     problem: Problem
@@ -76,6 +79,7 @@ class Reference:
     deformation: Array | None = None
     jumps_at: int | None = None
     is_lost: bool = False
+    collapse: Collapse | None = None
 
     @property
     def friction_force(self) -> Array:

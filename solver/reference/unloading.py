@@ -23,6 +23,9 @@ from solver.reference.states import HELD, Sides, States
 
 CHANGES = 30
 """Changes of state for each jump, at most; 11 are the most seen, with mu = 10."""
+FEW = 200
+"""Jumps up to which a walk may be so long; of more it does the same work at most, as a change costs
+with the square of their number: walls of 2000 jumps take 100 s otherwise, in vain (measured)."""
 FLAT = 1e-12
 """Slope, as a share of the largest, that is none."""
 
@@ -36,7 +39,8 @@ def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
         The instant, one column.
     """
     walk = _PathFollower(response, rules, sides)
-    for _ in range(CHANGES * len(rules.gap)):
+    size = len(rules.gap)
+    for _ in range(int(CHANGES * size * min(1.0, (FEW / size) ** 2))):
         if walk.step():
             return walk.states
         if walk.lost:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from solver.definitions import Pairs
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop, LoopFields, Structure
+from solver.laws import FrictionLaw
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
@@ -50,6 +51,11 @@ def features_of(settings: Settings) -> Features:
 def structure_of(settings: Settings) -> Structure:
     """Make what checked settings describe: bodies, with all that acts on them."""
     return _of_scene(settings).structure()
+
+
+def law_of(settings: Settings) -> FrictionLaw:
+    """Law of friction, beside mu."""
+    return _of_scene(settings).law
 
 
 def words_of(settings: Settings) -> str:

@@ -22,14 +22,8 @@ from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact import exact_bar
 from solver.scenes.words import acting, is_steel
 
-PROFILES = {
-    "uniform": ((0.0, 1.0), (1.0, 1.0)),
-    "rising": ((0.0, 0.2), (1.0, 1.8)),
-    "falling": ((0.0, 1.8), (1.0, 0.2)),
-    "gap": ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
-}
 SECTIONS = ("uniform", "rising", "falling")
-"""Of `PROFILES`, those that leave no element without a section."""
+"""Of `shared.PROFILES`, those that leave no element without a section."""
 FACTORS = 1e-8, 1e8
 LARGEST_CONTRAST = 1e8
 SLACK = 1e-9
@@ -53,7 +47,7 @@ class BarSettings(SceneSettings):
         "left x": "support_displacement",
         "body": "body_force",
     }
-    PROFILES: ClassVar = PROFILES
+    PROFILES: ClassVar = shared.PROFILES
 
     load = curve(
         "sine",
@@ -115,19 +109,10 @@ class BarSettings(SceneSettings):
     friction = shared.friction("mu between bar and support")
     pressure = shared.pressure("the bar on its support", 10_000.0)
     pressure_load = shared.pressure_load()
-    friction_profile = curve(
-        "uniform",
-        PROFILES,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on mu along the bar: a preset, or points (m, factor).",
-        group="Contact",
-        title="μ along the bar",
-    )
+    friction_profile = shared.friction_profile("the bar")
     pressure_profile = curve(
         "uniform",
-        PROFILES,
+        shared.PROFILES,
         "position",
         "factor",
         ("m", ""),
@@ -163,13 +148,19 @@ class BarSettings(SceneSettings):
         """Number of nodes."""
         return self.elements + 1
 
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^2."""
+        mean, _ = self._uneven_section()
+        return float(self.young * self.section * mean / self.length**2)
+
     def check_together(self) -> None:
         """Refuse negative factors too."""
+        self._check_section()
         super().check_together()
         shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
         for name in ("friction_profile", "pressure_profile"):
             shared.refuse_negative(self, name, "factor")
-        self._check_section()
 
     def _check_section(self) -> None:
         """Refuse a section that vanishes, or is too uneven for the digits of a number."""
@@ -204,10 +195,9 @@ class BarSettings(SceneSettings):
         if self.pressure_load != "steady":
             bound = np.outer(density, self.path("pressure_load"))
         mean, section = self._uneven_section()
-        stiffness = self.young * self.section * mean
         return Rods(
             length=self.length,
-            stiffness=stiffness,
+            stiffness=self.young * self.section * mean,
             elements=self.elements,
             substructures=self.substructures,
             bound=bound,
@@ -218,12 +208,12 @@ class BarSettings(SceneSettings):
             support=self.path("support_load") if self.support_displacement else None,
             body_force=self.path("body_load") if self.body_force else None,
             section=section,
-            friction_law=self.law(stiffness / self.length**2),
+            friction_law=self.law,
         )
 
     def sentence(self) -> str:
         """The bar in a sentence."""
-        bound = self.structure().bound
+        bound = self.law.without_slip(self.structure().bound)
         table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
         ends = f"its right end is {acting(self.path('load'), 'pulled', 'pushed')}"
         if self.support_displacement:
@@ -253,7 +243,7 @@ class BarSettings(SceneSettings):
         ends = np.linspace(0.0, self.length, self.elements + 1)
         table = self.section_profile
         if isinstance(table, str):
-            factors = interpolate(PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
+            factors = interpolate(self.PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
         else:
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))

@@ -10,7 +10,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, count, quantity
+from solver.definitions import Pairs, SettingError, about, choice, count, curve, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
 from solver.laws import FrictionLaw, Strength
@@ -30,6 +30,7 @@ from solver.loads import (
     turning_knots,
 )
 from solver.reference.closed_forms import ExactCurve
+from solver.refusal import plain
 from solver.scenes.entry import Features
 from solver.settings import Settings
 
@@ -42,6 +43,12 @@ THINNED = 1e-3
 """Share of its range by which a path that is thinned may differ from its table."""
 POINTS = 9
 """Of a table that stands for a preset which is not linear between its corners."""
+SHORTEST_SLIP = 1e-12
+"""Between points of a strength, m."""
+LARGEST_FACTOR = 1e3
+"""Of a strength."""
+STIFFNESSES = 1e-9, 1e9
+"""Of contact, over the unit of `contact_stiffness`: softer or stiffer, no digits are left."""
 STRAIGHT = 1e-9
 """Share of its range by which rounding bends a straight part of a path."""
 
@@ -51,11 +58,12 @@ class SceneSettings(Settings):
 
     friction_law = choice(
         "coulomb",
-        ["coulomb", "compliant", "slip-dependent"],
+        ["coulomb", "compliant", "slip-dependent", "general"],
         "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
         "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
         "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
-        "run in.",
+        "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
+        "and a cap.",
         group="Contact",
         title="Friction law",
     )
@@ -71,6 +79,52 @@ class SceneSettings(Settings):
         applies=lambda settings: settings.friction_law == "compliant",
         logarithmic=True,
     )
+    tangential_stiffness = quantity(
+        0.0,
+        (0.0, 1e18),
+        (1e4, 1e9),
+        "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
+        "bond, a soft layer. 0: rigid.",
+        group="Contact",
+        title="Tangential stiffness",
+        unit="N/m^2",
+        applies=lambda settings: settings.is_general,
+        logarithmic=True,
+    )
+    cohesion = quantity(
+        0.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Friction force per length of rod without any pressure, beside μ p.",
+        group="Contact",
+        title="Cohesion c",
+        unit="N/m",
+        applies=lambda settings: settings.is_general,
+    )
+    friction_cap = quantity(
+        0.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
+        "none.",
+        group="Contact",
+        title="Friction cap",
+        unit="N/m",
+        applies=lambda settings: settings.is_general,
+    )
+    strength = curve(
+        "constant",
+        ("constant", "linear"),
+        "slip",
+        "factor",
+        ("m", ""),
+        "Factor on the largest friction force over the accumulated slip of a point. constant: 1. "
+        "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
+        "peak, softening and a residual; the last one stays.",
+        group="Contact",
+        title="Strength over slip",
+        applies=lambda settings: settings.is_general,
+    )
 
     friction_ratio = quantity(
         1.5,
@@ -79,7 +133,7 @@ class SceneSettings(Settings):
         "Last friction over the first: above 1 it hardens with slip, below it softens.",
         group="Contact",
         title="Last friction over first",
-        applies=lambda settings: settings.friction_law == "slip-dependent",
+        applies=lambda settings: settings.is_linear_in_slip,
     )
     slip_length = quantity(
         1e-4,
@@ -89,7 +143,7 @@ class SceneSettings(Settings):
         group="Contact",
         title="Slip length",
         unit="m",
-        applies=lambda settings: settings.friction_law == "slip-dependent",
+        applies=lambda settings: settings.is_linear_in_slip,
         logarithmic=True,
     )
 
@@ -121,6 +175,8 @@ class SceneSettings(Settings):
     """Setting of the largest value that the preset of each path reaches."""
     BEHIND: ClassVar[Mapping[str, str]] = {}
     """Settings that place or scale what acts, whether it does or not."""
+    STIFFNESSES: ClassVar[Sequence[str]] = ("tangential_stiffness",)
+    """Stiffnesses of contact; 0 is rigid."""
     PROFILES: ClassVar[Mapping[str, Pairs]] = {}
     """Presets of factors along the body, over shares of its length."""
 
@@ -129,14 +185,41 @@ class SceneSettings(Settings):
         """Settings that a scene is about: the path and size of its load, friction, cuts, and k."""
         return (cls.PATH, "seed", *cls.LOADS, "friction", "substructures", "k_scale")
 
-    def law(self, stiffness: float) -> FrictionLaw:
-        """Law of friction; `stiffness` is the unit of `contact_stiffness`, per area."""
+    @property
+    def is_general(self) -> bool:
+        """Whether all parts of the friction law are given."""
+        return bool(self.friction_law == "general")
+
+    @property
+    def is_linear_in_slip(self) -> bool:
+        """Whether friction changes with slip by a ratio over a length."""
+        by_ratio = self.is_general and self.strength == "linear"
+        return by_ratio or bool(self.friction_law == "slip-dependent")
+
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`: N/m^2 along rods, N/m^3 in the plane."""
+        raise NotImplementedError
+
+    @property
+    def law(self) -> FrictionLaw:
+        """Law of friction, beside mu."""
         if self.friction_law == "compliant":
-            return FrictionLaw(stiffness=self.contact_stiffness * stiffness)
-        if self.friction_law == "slip-dependent":
-            table = Strength((0.0, self.slip_length), (1.0, self.friction_ratio))
-            return FrictionLaw(strength=table)
-        return FrictionLaw()
+            return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
+        table = self.points("strength") if self._changes_with_slip else None
+        strength = None if table is None else Strength(*zip(*table, strict=True))
+        if not self.is_general:
+            return FrictionLaw(strength=strength)
+        return FrictionLaw(
+            stiffness=self.tangential_stiffness or np.inf,
+            cohesion=self.cohesion,
+            cap=self.friction_cap or np.inf,
+            strength=strength,
+        )
+
+    @property
+    def _changes_with_slip(self) -> bool:
+        return self.is_linear_in_slip or (self.is_general and self.strength != "constant")
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""
@@ -270,6 +353,9 @@ class SceneSettings(Settings):
     def points(self, name: str) -> Pairs:
         """Points of a curve setting, or those that stand for its preset."""
         own: str | Pairs = getattr(self, name)
+        if name == "strength" and (self.is_linear_in_slip or isinstance(own, str)):
+            last = self.friction_ratio if self.is_linear_in_slip else 1.0
+            return (0.0, 1.0), (self.slip_length, last)
         if not isinstance(own, str):
             return own
         if name.endswith("_profile"):
@@ -304,7 +390,8 @@ class SceneSettings(Settings):
         return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
 
     def check_together(self) -> None:
-        """Refuse more parts than there is to deal out, and fields beyond memory."""
+        """Refuse more parts than there is to deal out, fields beyond memory, and no law at all."""
+        self._check_law()
         for part, whole in self.PARTS.items():
             value, most = getattr(self, part), getattr(self, whole)
             if value > most:
@@ -324,6 +411,35 @@ class SceneSettings(Settings):
                 if self.n_instants == self.instants
                 else "give paths with fewer points or cycles, or a coarser mesh",
             )
+
+    def _check_law(self) -> None:
+        """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
+        table = self.strength
+        if not self.is_general:
+            return
+        if not isinstance(table, str):
+            slips, factors = np.array(table).T
+            begins = len(table) > 1 and table[0] == (0.0, 1.0)
+            grows = begins and np.all(np.diff(slips) >= SHORTEST_SLIP)
+            if not (grows and factors.min() >= 0.0 and factors.max() <= LARGEST_FACTOR):
+                raise SettingError(
+                    "strength",
+                    table,
+                    "at least two points (slip, factor), the first (0, 1), factors from 0 to "
+                    f"{plain(LARGEST_FACTOR)}, slips that grow by {plain(SHORTEST_SLIP)} m",
+                    "the factor at slip 0 is 1, as the rest of the law says what friction is there",
+                )
+        low, high = (share * self.contact_unit for share in STIFFNESSES)
+        for name in self.STIFFNESSES:
+            value = getattr(self, name)
+            if self.applies(name) and value and not low <= value <= high:
+                unit = about(self.definitions()[name]).unit
+                raise SettingError(
+                    name,
+                    value,
+                    f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
+                    "write 0 where nothing gives way, or take away friction where nothing holds",
+                )
 
 
 def as_points(where: Array, values: Array) -> Pairs:

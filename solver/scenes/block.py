@@ -165,7 +165,7 @@ class BlockSettings(SideSettings):
         gap = self._gap(nodes) if isinstance(table, str) else gap_at(table, nodes)
         return replace(
             self.stack(),
-            support=Support(gap, self.friction),
+            support=Support(gap, self.friction_at_nodes()),
             sides=sides,
             body_force=self._body_force(),
             spring=Spring(0.0, self.spring) if self.features.has_spring else None,
@@ -174,7 +174,7 @@ class BlockSettings(SideSettings):
     def sentence(self) -> str:
         """The block in a sentence."""
         support = {"flat": "flat", "parabola": "round"}.get(str(self.gap), "uneven")
-        rough = "rough" if self.friction else "smooth"
+        rough = "rough" if self.is_rough else "smooth"
         acts: list[str] = []
         for side in LOADED_SIDES:
             if getattr(self, side) in AT_REST:

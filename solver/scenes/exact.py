@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,7 +37,10 @@ STEADY = 0.01
 
 def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     """Friction along the bar, and the loop of its end."""
-    closed, law = closed_form(bar), bar.friction_law
+    # What a known pressure makes and what needs none are one bound.
+    law = replace(bar.friction_law, cohesion=0.0, cap=np.inf)
+    bar = replace(bar, bound=bar.friction_law.without_slip(bar.bound), friction_law=law)
+    closed = closed_form(bar)
     if closed is not None:
         friction = problem.friction
         density = closed.friction_force / friction.by_point(friction.weights)[:, None]
@@ -84,6 +88,12 @@ def _is_even(bar: Rods) -> bool:
     return all(one is None for one in absent) and bar.bound.ndim == 1 and not np.ptp(bar.bound)
 
 
+def _is_coulombs(body: Stack) -> bool:
+    """Whether friction on the support is mu N and no more, with one mu."""
+    assert body.support is not None
+    return body.friction_law == FrictionLaw() and not np.ptp(body.support.friction)
+
+
 def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
@@ -93,8 +103,8 @@ def exact_parabola(
     assert body.support is not None
     total = contact.normal_force.sum(axis=0)
     most = float(total.max())
-    friction = body.support.friction
-    if most <= 0.0 or (friction and body.poisson < UNCOUPLED) or body.friction_law != FrictionLaw():
+    friction = float(np.max(body.support.friction))
+    if most <= 0.0 or not _is_coulombs(body) or (friction and body.poisson < UNCOUPLED):
         return
     wide = body.poisson**2 if body.state == "strain" else 0.0
     modulus = body.young / (1.0 - wide)
@@ -135,7 +145,7 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     It does where it slides much farther than it is deformed, and no side holds it.
     """
     held = any(given.prescribed for side in body.sides.values() for given in side)
-    if held or body.spring is None or body.friction_law != FrictionLaw():
+    if held or body.spring is None or not _is_coulombs(body):
         return
     slide = rigid_slide(body, body.spring)
     pushed, pressed, _ = wrench(body)
@@ -150,11 +160,11 @@ def exact_slope(body: Stack) -> Iterator[ExactCurve]:
     """Force of the spring over the angle: what friction leaves to it, up and down."""
     assert body.tilt is not None
     assert body.support is not None
-    if body.body_force is None or body.friction_law != FrictionLaw():
+    if body.body_force is None or not _is_coulombs(body):
         return
     weight = np.hypot(*body.body_force) * body.length * body.height
     down = weight * np.sin(body.tilt)
-    friction = body.support.friction * weight * np.cos(body.tilt)
+    friction = float(np.max(body.support.friction)) * weight * np.cos(body.tilt)
     force = np.zeros_like(down)
     now = 0.0
     for instant, (least, most) in enumerate(zip(down - friction, down + friction, strict=True)):
@@ -172,9 +182,10 @@ def exact_layers(
         return
     if not given.prescribed:
         return
-    apart = body.friction == 0.0
+    law = body.friction_law
+    apart = law == replace(FrictionLaw(), strength=law.strength) and not np.any(body.friction)
     if not apart:
-        if solution is None:
+        if solution is None or np.isfinite([law.stiffness, law.normal_stiffness]).any():
             return
         if any(solution.contact(name).status.any() for name in problem.rubbing):
             return

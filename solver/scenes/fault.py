@@ -19,6 +19,7 @@ from solver.discrete.fault import Fault, sheared
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Support
 from solver.discrete.structure import LoopFields
+from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of, interpolate
 from solver.profiles import means, shares_of
 from solver.reference.closed_forms import ExactCurve
@@ -128,6 +129,7 @@ class FaultSettings(PlaneSettings):
         logarithmic=True,
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
+    friction_profile = shared.friction_profile("the fault", PROFILES)
     length = shared.size(
         600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
     )
@@ -154,9 +156,10 @@ class FaultSettings(PlaneSettings):
         fluid = spread(place, start, self._along("injection_load", start), self.diffusivity)
         return fluid if start is times else fluid[:, np.searchsorted(start, times)]
 
-    def strength(self, place: Array) -> Array:
+    def strength_along(self, place: Array) -> Array:
         """Largest friction per area, shape (n_places, n_instants), Pa."""
-        return np.asarray(self.friction * (self.pressing(place)[:, None] - self.fluid(place)))
+        effective = self.pressing(place)[:, None] - self.fluid(place)
+        return np.asarray(self.friction_at(place)[:, None] * effective)
 
     def pressing_at_nodes(self) -> Array:
         """Normal stress of the nodes: of a table, its mean over the share of each."""
@@ -167,8 +170,8 @@ class FaultSettings(PlaneSettings):
 
     def strength_at_nodes(self) -> Array:
         """Largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
-        pressing = self.pressing_at_nodes()
-        return np.asarray(self.friction * (pressing[:, None] - self.fluid(self._places)))
+        effective = self.pressing_at_nodes()[:, None] - self.fluid(self._places)
+        return np.asarray(np.reshape(self.friction_at_nodes(), (-1, 1)) * effective)
 
     @property
     def _places(self) -> Array:
@@ -235,10 +238,10 @@ class FaultSettings(PlaneSettings):
         if np.any(np.diff(self.path("injection_load")) < 0.0):
             return
         place = np.linspace(0.0, self.length, FINE + 1)
-        lack = self.strength(place) - stress
+        lack = self.strength_along(place) - stress
         small = ROUND * float(np.abs(lack).max())
         spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
-        if self.friction_law != "coulomb" or not spreads or stress <= 0.0:
+        if self.law != FrictionLaw() or not spreads or stress <= 0.0:
             return
         front = fronts(place, lack)
         if not front.any() or front.max() > INFINITE * min(self.length, self.height):

@@ -120,7 +120,7 @@ class InclineSettings(PlaneSettings):
         density = self.weight / (self.length * self.height)
         return replace(
             self.stack(),
-            support=Support(np.zeros(self.nodes[0]), self.friction),
+            support=Support(np.zeros(self.nodes[0]), self.friction_at_nodes()),
             body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
             spring=Spring(self.slack, self.spring),
             tilt=angle,
@@ -134,7 +134,7 @@ class InclineSettings(PlaneSettings):
         """The block on its slope in a sentence."""
         path = self.path("slope_load")
         moves = acting(path, "rises", "falls", "rises and falls", "rises and falls")
-        slope = f"{'rough' if self.friction else 'smooth'} slope that {moves}"
+        slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
         return f"A block lies on a {slope}; a spring catches it when it slides down."
 
 

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import ClassVar
 
+import numpy as np
 import param
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, quantity, redefined
 from solver.discrete.stack import Stack
+from solver.laws import FrictionLaw
+from solver.loads import interpolate
+from solver.profiles import means, shares_of
 from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Features
@@ -29,11 +35,49 @@ class PlaneSettings(SceneSettings):
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
     MESH: ClassVar = ("elements", "elements_up")
+    STIFFNESSES: ClassVar = ("tangential_stiffness", "normal_stiffness")
+    PROFILES: ClassVar = shared.PROFILES
 
     duration = shared.duration()
     instants = shared.instants(81)
     seed = shared.seed(lambda settings: settings.is_random)
     friction = shared.friction("mu", largest=10.0)
+    friction_profile = shared.friction_profile("the body")
+    tangential_stiffness = redefined(
+        SceneSettings.param["tangential_stiffness"],
+        0.0,
+        (1e8, 1e14),
+        doc="Stiffness of a spring along the interface, in series with friction, per area: a "
+        "joint, a soft layer. 0: rigid.",
+        unit="N/m^3",
+    )
+    normal_stiffness = quantity(
+        0.0,
+        (0.0, 1e18),
+        (1e8, 1e14),
+        "Stiffness of a spring across the interface, in series with contact that may open, per "
+        "area. 0: rigid.",
+        group="Contact",
+        title="Normal stiffness",
+        unit="N/m^3",
+        logarithmic=True,
+        applies=lambda settings: settings.is_general and settings.features.opens,
+    )
+    cohesion = redefined(
+        SceneSettings.param["cohesion"],
+        0.0,
+        (0.0, 1e7),
+        doc="Friction per area without any pressure, beside μ times that. It is gone for good "
+        "where contact opens, and was never there where a gap was.",
+        unit="Pa",
+    )
+    friction_cap = redefined(
+        SceneSettings.param["friction_cap"],
+        0.0,
+        (0.0, 1e8),
+        doc="Largest friction per area that pressure and cohesion make, before slip. 0: none.",
+        unit="Pa",
+    )
     plane = choice(
         "strain",
         ["strain", "stress"],
@@ -117,6 +161,35 @@ class PlaneSettings(SceneSettings):
     )
 
     @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^3."""
+        return float(self.young / self.length)
+
+    @property
+    def law(self) -> FrictionLaw:
+        """Law of friction, beside mu, and what gives way across."""
+        across = self.normal_stiffness if self.applies("normal_stiffness") else 0.0
+        return replace(super().law, normal_stiffness=across or np.inf)
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether anything rubs."""
+        return bool(self.friction or self.law.cohesion)
+
+    def friction_at(self, places: Array) -> Array:
+        """The coefficient mu at places along a body, shape (n_places,)."""
+        return np.asarray(self.friction * interpolate(self.points("friction_profile"), places))
+
+    def friction_at_nodes(self) -> float | Array:
+        """The coefficient mu of the nodes along a body; of a table, its mean over their shares."""
+        if self.friction_profile == "uniform":
+            return self.friction
+        places, table = np.linspace(0.0, self.length, self.nodes[0]), self.friction_profile
+        if isinstance(table, str):
+            return self.friction_at(places)
+        return np.asarray(self.friction * means([table], shares_of(places, self.order)))
+
+    @property
     def k_factors(self) -> tuple[float, float]:
         """Further factors on k of contacts, along and across them."""
         return self.k_friction_scale, self.k_normal_scale
@@ -170,8 +243,8 @@ class PlaneSettings(SceneSettings):
             young=self.young,
             poisson=self.poisson,
             state=self.plane,
-            friction=self.friction,
-            friction_law=self.law(self.young / self.length),
+            friction=self.friction_at_nodes(),
+            friction_law=self.law,
             instants=self.times(),
             duration=self.duration,
         )
@@ -189,9 +262,10 @@ class PlaneSettings(SceneSettings):
             )
 
     def check_together(self) -> None:
-        """Refuse flat elements too, and matrices beyond memory."""
+        """Refuse flat elements too, negative factors on mu, and matrices beyond memory."""
         self._check_shape()
         super().check_together()
+        shared.refuse_negative(self, "friction_profile", "factor")
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)
         if 8 * self.order**3 * columns * rows * (columns + rows) > LARGEST_MATRIX:

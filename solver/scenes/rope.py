@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -13,10 +12,11 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection
-from solver.discrete.helical_wire import RopeWire
+from solver.discrete.helical_wire import HelicalWire, RopeWire
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
+from solver.laws import FrictionLaw
 from solver.loads import PRESETS, PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
@@ -187,6 +187,13 @@ class RopeSettings(SceneSettings):
         """The loop is over the curvature."""
         return Features(loop_is_over_displacement=False)
 
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^2."""
+        helices = [self.section.helix(layer, 0) for layer in range(len(self.section.layers))]
+        longest = max(self._length_of(helix) for helix in helices)
+        return float(max(helix.stiffness for helix in helices) / longest**2)
+
     def check_together(self) -> None:
         """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
         super().check_together()
@@ -222,7 +229,7 @@ class RopeSettings(SceneSettings):
             for layer, own in enumerate(self.section.layers)
             for number in range(own.wires if self.is_clamped else 1)
         ]
-        rope = Rope(
+        return Rope(
             wires=wires,
             substructures=self.substructures,
             tension=tension,
@@ -231,24 +238,28 @@ class RopeSettings(SceneSettings):
             section=self.section,
             instants=self.times(),
             duration=self.duration,
+            friction_law=self.law,
         )
-        return replace(rope, friction_law=self.law(rope.stiffness / rope.length**2))
+
+    def _length_of(self, helix: HelicalWire) -> float:
+        """Length of a wire that is seen, m."""
+        if self.is_clamped:
+            return float(self.length / np.cos(helix.lay))
+        return float(helix.half_pitch)
 
     def _wire(
         self, layer: int, number: int, bound: Array, curvature: Array, tension: Array
     ) -> RopeWire:
         section, helix = self.section, self.section.helix(layer, number)
         own, share = section.layers[layer], np.ones(self.elements + 1)
-        length = helix.half_pitch
         if self.is_clamped:
-            length = self.length / float(np.cos(helix.lay))
             share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
         return RopeWire(
             layer=layer,
             number=number,
             helix=helix,
             diameter=own.diameter,
-            length=length,
+            length=self._length_of(helix),
             bound=bound,
             curvature=np.outer(share, curvature),
             tension=section.wire_tension(layer, tension),
@@ -270,7 +281,7 @@ class RopeSettings(SceneSettings):
     def bent_strand(self) -> BentStrand | None:
         """Closed form of a strand that is bent alike all along, under a tension that stays."""
         tension = self.path("tension_load")
-        is_known = not self.is_clamped and self.friction_law == "coulomb"
+        is_known = not self.is_clamped and self.law == FrictionLaw()
         if not is_known or np.ptp(tension) or not tension[0] or not self.friction:
             return None
         return BentStrand(self.section, self.friction, float(tension[0]))

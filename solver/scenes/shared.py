@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 
 import param
@@ -27,6 +27,13 @@ PLANE_SIZES = {
     "substructures": (1, 2, 4, 8),
 }
 """The same of plane bodies."""
+PROFILES = {
+    "uniform": ((0.0, 1.0), (1.0, 1.0)),
+    "rising": ((0.0, 0.2), (1.0, 1.8)),
+    "falling": ((0.0, 1.8), (1.0, 0.2)),
+    "gap": ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
+}
+"""Factors along a body, over shares of its length."""
 PLANE_GROWS = ("elements", "elements_up", "substructures", "substructures_up")
 
 
@@ -79,6 +86,20 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
         f"Coefficient of friction {which}.",
         group="Contact",
         title="Friction coefficient μ",
+    )
+
+
+def friction_profile(body: str, presets: Iterable[str] = PROFILES) -> CurveParameter:
+    """Define how mu varies along a body."""
+    return curve(
+        "uniform",
+        presets,
+        "position",
+        "factor",
+        ("m", ""),
+        f"Factor on mu along {body}: a preset, or points (m, factor).",
+        group="Contact",
+        title=f"μ along {body}",
     )
 
 

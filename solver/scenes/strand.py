@@ -132,6 +132,11 @@ class StrandSettings(SceneSettings):
         """Number of nodes of all wires."""
         return self.wires * (self.elements + 1)
 
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^2."""
+        return float(self.young * self.section / self.length**2)
+
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
@@ -155,10 +160,9 @@ class StrandSettings(SceneSettings):
         if self.pressure_load != "steady":
             pressure = self.path("pressure_load")
             bound = np.tile(self.friction * pressure, (self.elements + 1, 1))
-        stiffness = self.young * self.section
         return Rods(
             length=self.length,
-            stiffness=stiffness,
+            stiffness=self.young * self.section,
             elements=self.elements,
             substructures=self.substructures,
             bound=bound,
@@ -169,7 +173,7 @@ class StrandSettings(SceneSettings):
             wires=self.wires,
             broken=(self.broken, self._break_node()) if self.broken else None,
             rigid_grip=self.grip == "displacement",
-            friction_law=self.law(stiffness / self.length**2),
+            friction_law=self.law,
         )
 
     def coarser(self) -> Iterator[Rods]:
@@ -210,7 +214,8 @@ class StrandSettings(SceneSettings):
             return
         share = 1.0 - self._break_node() / self.elements
         sides = neighbours(self.broken, self.wires)
-        most = sides * self.friction * share * self.length * self.path("pressure_load")
+        bound = self.law.without_slip(self.friction * self.path("pressure_load"))
+        most = sides * share * self.length * bound * self.law.strongest
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
         if largest > capacity or largest == capacity > 0.0:

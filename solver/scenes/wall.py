@@ -28,8 +28,8 @@ class WallSettings(PlaneSettings):
     PARTS: ClassVar = {}
     PEAKS: ClassVar = {"pressure_load": "pressure", "slope_load": "slope"}
 
-    bricks = count(8, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
-    courses = count(8, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
+    bricks = count(12, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
+    courses = count(6, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
     bond = choice(
         "running",
         ["running", "stack"],
@@ -69,7 +69,7 @@ class WallSettings(PlaneSettings):
         title="Top",
     )
     displacement = quantity(
-        5e-5,
+        1e-4,
         (-1e6, 1e6),
         (-2e-4, 2e-4),
         "Largest displacement of the top along the wall.",
@@ -138,6 +138,9 @@ class WallSettings(PlaneSettings):
     substructures = redefined(PlaneSettings.param["substructures"], 1, applies=lambda _: False)
     substructures_up = redefined(
         PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
+    )
+    friction_profile = redefined(
+        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
     )
     interpolation = redefined(
         PlaneSettings.param["interpolation"], "bilinear", applies=lambda _: False
@@ -222,7 +225,7 @@ class WallSettings(PlaneSettings):
             poisson=self.poisson,
             state=self.plane,
             friction=self.friction,
-            friction_law=self.law(self.young / self.length),
+            friction_law=self.law,
             weight=-weight * np.stack([np.sin(angle), np.cos(angle)]),
             pressure=self.path("pressure_load"),
             moved=driven if self.top == "moved" else None,

@@ -194,14 +194,16 @@ def _points(problem: Problem) -> tuple[Indices, Array]:
     """
     rules, own = rules_of(problem), jumps(problem)
     opening = [law for law in problem.rubbing.values() if law.opens]
-    if len(opening) < len(problem.rubbing) or rules.bounded.any():
+    if len(opening) < len(problem.rubbing):
         raise _no_problem(
             "its friction has a bound that is known beforehand", "take a scene in the plane"
         )
     if rules.compliance.any():
         raise _no_problem("its contact gives way, or is a spring", "set friction_law=coulomb")
-    if not rules.is_linear:
+    if rules.ages:
         raise _no_problem("its friction changes with slip", "set friction_law=coulomb")
+    if not rules.is_linear:
+        raise _no_problem("its friction has a cohesion or a cap", "set friction_law=coulomb")
     if len(rules.gap) > MOST:
         raise _no_problem(
             f"it has {len(rules.gap)} components of contact", f"take fewer elements: at most {MOST}"

@@ -11,7 +11,7 @@ from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
-from solver.scenes import features_of, kind_of
+from solver.scenes import features_of, kind_of, law_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of
 from solver.study.quantities.finished import FinishedRun
@@ -26,6 +26,12 @@ UNLOADED = 1e-3
 
 def _opens(settings: Settings) -> bool:
     return features_of(settings).opens
+
+
+def _rubs_by_mu(settings: Settings) -> bool:
+    """Whether friction before slip is mu N."""
+    law = law_of(settings)
+    return law.cohesion == 0.0 and math.isinf(law.cap)
 
 
 def _in_the_plane(settings: Settings) -> bool:
@@ -153,12 +159,12 @@ def spring_force(run: FinishedRun) -> float:
     return float(run.force.max())
 
 
-@quantity("Smallest friction that holds")
+@quantity("Smallest friction that holds", applies=_rubs_by_mu)
 def holding_friction(run: FinishedRun) -> float:
     """Smallest coefficient of friction at which no interface slides as a whole.
 
-    All its friction over all that presses, at the worst instant. NaN where one slides: the run
-    then cannot tell how much more it would take.
+    All its friction over all that presses, at the worst instant; where mu varies, by its factors.
+    NaN where one slides: the run then cannot tell how much more it would take.
     """
     needed, friction = 0.0, run.settings.friction
     if not friction:
@@ -176,7 +182,8 @@ def holding_friction(run: FinishedRun) -> float:
             bound = law.tangential.bound.sum(axis=0) * run.problem.scales.force
             pressing = np.broadcast_to(bound / friction, run.problem.n_instants)
         else:
-            pressing = contact.normal_force.sum(axis=0)
+            share = law.mean_by_point(law.tangential.friction) / friction
+            pressing = share @ contact.normal_force
         held = np.abs(contact.tangential_force.sum(axis=0))[pressing > 0.0]
         needed = max(needed, float((held / pressing[pressing > 0.0]).max(initial=0.0)))
     return needed if needed > RESIDUE else 0.0

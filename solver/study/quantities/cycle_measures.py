@@ -10,10 +10,10 @@ from solver.arrays import RESIDUE, Array
 from solver.discrete.probes import AxialForce
 from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import stress_ranges
-from solver.laws import OPEN
+from solver.laws import OPEN, FrictionLaw
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
-from solver.scenes import features_of, kind_of, structure_of
+from solver.scenes import features_of, kind_of, law_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, slips_of
 from solver.study.quantities.finished import FinishedRun
@@ -36,12 +36,13 @@ def has_a_limit(settings: Settings) -> bool:
 
     Contacts stay closed where surfaces without a gap rub by Coulomb's law.
     """
-    if not has_cycles(settings) or settings.applies("friction_ratio"):
+    law = law_of(settings)
+    if not has_cycles(settings) or law.strength is not None:
         return False
     if kind_of(settings) != "plane":
         return True
     features = features_of(settings)
-    if not features.opens or features.has_spring or settings.applies("contact_stiffness"):
+    if not features.opens or features.has_spring or law != FrictionLaw():
         return False
     gaps = [hold.gap for hold in structure_of(settings).described().holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)

@@ -38,6 +38,10 @@ CUTS = {"substructures": ("elements", 50), "substructures_up": ("elements_up", 6
 """Numbers of parts, at most that of these elements, and this many."""
 WIDE = {"poisson": (0.0, 0.4999), "friction": (0.02, 2.0), "relaxation": (0.4, 1.0)}
 """Ranges other than those of the sliders."""
+LAW = {"tangential_stiffness", "normal_stiffness", "cohesion", "friction_cap", "strength"}
+"""Settings of the general friction law."""
+PRESSES = ("pressure", "normal_stress")
+"""Settings by which the size of cohesion and cap is drawn, where a scene has one."""
 KEPT = {"max_iterations", "method"}
 """Settings that are not drawn by their definition alone."""
 INSTANTS_A_CYCLE = 4
@@ -136,6 +140,11 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         values["cycles"] = min(values["cycles"], most)
     loads = LOADS.get(kind.scene)
     sizes = loads({**defaults, **values}, generator) if loads is not None else {}
+    for name in ("cohesion", "friction_cap"):
+        given = [{**defaults, **values, **sizes}[p] for p in PRESSES if p in definitions]
+        if name in values and given:
+            most = {**defaults, **values}["friction"] * given[0]
+            values[name] = most * log_uniform(generator, 0.01, 10.0)
     for name, size in sizes.items():
         if isinstance(definitions[name], CurveParameter):
             if generator.random() < CHANGED:
@@ -153,6 +162,8 @@ def _often(name: str, group: str, mixed: bool) -> float:
         return 2.0 * CHANGED if name == "k_scale" else 0.5 * CHANGED
     if name.startswith("pgd_") or name == "seed":
         return 0.5  # taken back without separated bases, or a random path
+    if name in LAW:
+        return 0.5  # taken back where the law is not the general one
     if group == "Method":
         return 2.0 * CHANGED if mixed else 0.0
     return 2.0 * CHANGED if name in ("load", "gap") or name.endswith("_profile") else CHANGED
@@ -191,6 +202,8 @@ def _stretch(
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
     """A value drawn by the definition alone."""
     if isinstance(definition, CurveParameter):
+        if definition.abscissa == "slip" and generator.random() < 0.4:
+            return _strength(generator)
         if definition.abscissa == "position" and generator.random() < 0.4:
             return _profile(name, generator)
         return str(generator.choice(definition.presets))
@@ -237,6 +250,13 @@ def _profile(name: str, generator: Generator) -> list[list[float]]:
         factors[generator.random(len(places)) < 0.2] = 0.0
     peak = float(10.0 ** generator.uniform(-1.0, 1.0))
     return _with_peak(places, factors, peak, 1.0, generator)
+
+
+def _strength(generator: Generator) -> list[list[float]]:
+    """Factors over slip, from 1 on, up and down."""
+    slips = np.cumsum(10.0 ** generator.uniform(-6.0, -3.0, int(generator.integers(1, 5))))
+    factors = generator.uniform(0.0, 2.0, len(slips))
+    return [[0.0, 1.0], *([float(s), float(g)] for s, g in zip(slips, factors, strict=True))]
 
 
 def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:

@@ -37,6 +37,15 @@ PRESSED = {
 }
 """Held by contact alone: pressed from above, then sheared by two thirds of what friction holds."""
 TILTED = {**PRESSED, "top_tangential_traction": 0.0, "top_normal_slope": 2.0}
+GENERAL = {"friction_law": "general"}
+SOFT = {**GENERAL, "tangential_stiffness": 1e9, "normal_stiffness": 1e10}
+STIFF = {**GENERAL, "tangential_stiffness": 1e18, "normal_stiffness": 1e18}
+COHESIVE = {**GENERAL, "friction": 0.0, "cohesion": 5e5}
+SOFTENING = {
+    **GENERAL,
+    "tangential_stiffness": 1e13,
+    "strength": ((0.0, 1.0), (1e-6, 1.2), (1e-5, 0.6)),
+}
 FAULT = {
     "elements": 24,
     "elements_up": 12,
@@ -94,6 +103,14 @@ def block_cases() -> list[Case]:
             {"top_tangential_load": reversals(21, 2e-5)},
         ),
         case("load", "one jump", {"top_normal_load": jump}),
+        case("friction law", "soft springs", SOFT),
+        case("friction law", "stiff springs", STIFF),
+        case("friction law", "cohesion alone", {**COHESIVE, "gap": "flat"}, quick=True),
+        case("friction law", "cap", {**GENERAL, "friction_cap": 2e7}),
+        case("friction law", "softening on a spring", {**SOFTENING, "gap": "flat"}, quick=True),
+        case("friction law", "held by cohesion alone", {**PRESSED, **COHESIVE, "cohesion": 3e7}),
+        case("friction along it", "rising", {"friction_profile": "rising"}),
+        case("friction along it", "none in the middle", {"friction_profile": "gap"}),
         case("refused", "pushed beyond friction", {**PRESSED, "friction": 0.1}, MUST_REFUSE, True),
         case("refused", "lifted", {**PRESSED, "top_normal_traction": 1e8}, MUST_REFUSE),
         case("refused", "tipped over", {**PRESSED, "top_normal_slope": 4.0}, MUST_REFUSE),
@@ -118,6 +135,11 @@ def layers_cases() -> list[Case]:
         case("young", "1", {"young": 1.0, "pressure": 1e-5}, UNSOLVED),
         case("young", "1e18", {"young": 1e18, "pressure": 1e13}, UNSOLVED),
         case("substructures", "1", {"substructures": 1}, UNSOLVED),
+        case("friction law", "soft springs", SOFT),
+        case("friction law", "stiff springs", STIFF),
+        case("friction law", "cohesion alone", COHESIVE),
+        case("friction law", "cap", {**GENERAL, "friction_cap": 3e5}),
+        case("friction law", "softening on a spring", SOFTENING),
         case("instants", "1", {"instants": 1, "bend_load": "ramp"}, UNSOLVED),
     ]
 

@@ -16,6 +16,13 @@ ROPE = {
 }
 ALIKE = {"bending": "uniform"}
 RAMP = {"load": "ramp"}
+GENERAL = {"friction_law": "general"}
+SOFT = {**GENERAL, "tangential_stiffness": 1e4}
+BOND = {
+    **GENERAL,
+    "tangential_stiffness": 1e8,
+    "strength": ((0.0, 1.0), (1e-4, 1.3), (1e-3, 0.6)),
+}
 JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
 PLATEAUS: Pairs = (
     *((0.0, 0.0), (0.2, 800.0), (0.4, 800.0)),
@@ -112,6 +119,11 @@ def bar_cases() -> list[Case]:
             {**SMALL_BAR, "substructures": 20},
             UNSOLVED,
         ),
+        case("friction law", "soft spring", SOFT, quick=True),
+        case("friction law", "stiff spring", {**GENERAL, "tangential_stiffness": 1e14}),
+        case("friction law", "cohesion alone", {**GENERAL, "friction": 0.0, "cohesion": 1500.0}),
+        case("friction law", "cap", {**GENERAL, "friction_cap": 1000.0}),
+        case("friction law", "peak and softening on a spring", BOND, quick=True),
         case("instants", "1", {**RAMP, "instants": 1}, quick=True),
         case("instants", "2", {**RAMP, "instants": 2}),
         case("instants", "20 001, 4 elements", many, UNSOLVED),
@@ -145,6 +157,7 @@ def strand_cases() -> list[Case]:
         case("k_scale", "1000", {"k_scale": 1e3}, UNSOLVED),
         case("substructures", "1", {"substructures": 1}, UNSOLVED),
         case("substructures", "as many as elements", {"substructures": 24}, UNSOLVED),
+        case("friction law", "cohesion alone, soft", {**SOFT, "friction": 0.0, "cohesion": 2e3}),
         case("instants", "1", {"instants": 1, **RAMP}),
     ]
 
