@@ -22,9 +22,8 @@ from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
-from solver.reference.residual import Shown, unbalanced_of
 from solver.reference.rules import rules_of
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.solution import Interrupted, Reference, Shown, unbalanced_of
 from solver.reference.states import States, all_forces, status_of
 
 MOST_JUMPS = 13_000
