@@ -8,7 +8,6 @@ from itertools import count
 from math import inf
 from typing import Any
 
-import numpy as np
 from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
@@ -126,9 +125,8 @@ class Iteration:
         self._show()
 
     def _show(self) -> None:
-        shape = self._problem.n_rows, self._problem.n_instants
-        self.incoming = read_only(self.linear.incoming(self.state, np.empty(shape, order="F")))
-        self.outgoing = read_only(self.linear.to_boundary(self.state))
+        self.incoming = read_only(self.linear.incoming(self.state))
+        self.outgoing = read_only(self.linear.outgoing(self.state))
 
     def _recall(self, start: Checkpoint) -> None:
         """Restore what an acceleration remembers, from a checkpoint of the same run."""

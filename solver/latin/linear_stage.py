@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solver.arrays import Array, Indices, space_time
+from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL, Blocks, at_once
@@ -88,9 +88,9 @@ class LinearStage:
         modes, records = zip(*(bases[number] for number in sorted(bases)), strict=True)
         return Reduction(modes, records)
 
-    def to_boundary(self, state: list[Any]) -> Array:
+    def outgoing(self, state: list[Any]) -> Array:
         """W + F/k of a state, shape (n_rows, n_instants)."""
-        boundary = space_time(*self._shape)
+        boundary = np.empty(self._shape, order="F")
         for group, part in zip(self.groups, state, strict=True):
             group.scatter(group.outgoing(part), boundary)
         return boundary
@@ -123,8 +123,9 @@ class LinearStage:
 
         self._blocks.each(work)
 
-    def incoming(self, state: list[Any], boundary: Array) -> Array:
-        """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
+    def incoming(self, state: list[Any]) -> Array:
+        """W - F/k of a state, shape (n_rows, n_instants)."""
+        boundary = np.empty(self._shape, order="F")
 
         def work(instants: slice) -> None:
             for group, part in zip(self.groups, state, strict=True):

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 from scipy.fft import idct
 
-from solver.arrays import Array, space_time
+from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity, Substructure
@@ -211,12 +211,10 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
 
 
 def _step(stage: LinearStage, state: list[Any], target: Array) -> Callable[[], None]:
-    incoming = space_time(*target.shape)
-
     def step() -> None:
         stage.read(target)
         stage.advance(state, 0.8)
-        stage.incoming(state, incoming)
+        stage.incoming(state)
 
     return step
 
