@@ -58,7 +58,7 @@ def solved() -> list[str]:
 def paper_runs(solved: list[str]) -> Iterator[PaperRuns]:
     """The runs behind the paper's figures, each solved when it is first asked for."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("solve", "incremental"):
+        for name in ("solve", "reference_of"):
             patch.setattr(runs_of_the_paper, name, counted(name, solved))
         yield PaperRuns()
 
@@ -81,7 +81,7 @@ def figures(paper_runs):
 
 def test_all_figures_together_solve_nothing_twice(figures, solved):
     assert tuple(figure.number for figure in figures) == NUMBERS
-    assert solved.count("incremental") == 1
+    assert solved.count("reference_of") == 1
     assert solved.count("solve") == 2 * 4  # to the early iterate, and on from there
 
 
