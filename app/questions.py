@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,9 +31,11 @@ EVEN, DECADES, LISTED = "even steps", "even ratios", "a list"
 LOG = ":log"
 VALUES, COARSE = 13, 10
 """Values of a range, and along each side of a map."""
-TENTH = 0.1
+TENTH, HUNDREDTH = 0.1, 0.01
 CUTS = (1, 2, 5, 10, 20)
 """Numbers of substructures that are compared."""
+COURSES = (4, 6, 8, 10)
+"""Courses of bricks that are compared: all runs take less than a minute."""
 BESIDE = ("peak_friction", "end_displacement", "stiffness", "dissipation", "stuck_share")
 """Taken of every run for the table and other charts: together 1 to 6 % of its time (measured)."""
 
@@ -153,6 +154,15 @@ def iterations_over_k(settings: Settings, name: str = "acceleration") -> Questio
     return Question(tuple(vary), of)
 
 
+def _bricks(settings: Settings) -> Question | None:
+    """Over the courses, which the load passes one after the other; more bricks a course help."""
+    if "courses" not in variable(settings):
+        return None
+    courses = ",".join(map(str, COURSES))
+    of = f"iterations_to_force@{HUNDREDTH}" if has_reference(settings) else "iterations"
+    return Question((f"courses={courses}", "multiscale=true,false"), of)
+
+
 def _fretting(settings: Settings) -> Question | None:
     if not has_cycles(settings):
         return None
@@ -195,7 +205,16 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
     ),
     "Iterations over k and substructures": (
         "Iterations over the factor on k, for several numbers of substructures.",
-        partial(iterations_over_k, name="substructures"),
+        lambda settings: (
+            iterations_over_k(settings, "substructures")
+            if "substructures" in variable(settings)
+            else None
+        ),
+    ),
+    "Iterations over bricks": (
+        "Iterations until the contact force is within 1 % over the courses of a wall, with and "
+        "without the coarse problem, which carries the load through all bricks at once.",
+        _bricks,
     ),
     "Energy over friction and load": (
         "Energy dissipated over friction and load.",

@@ -13,5 +13,9 @@ SMALL: dict[str, dict[str, Any]] = {
     "layers": {"elements": 16, "layers": 2, "instants": 13},
     "fault": {"elements": 16, "elements_up": 8, "instants": 13},
     "incline": {"elements": 12, "elements_up": 6, "instants": 13},
+    "wall": {
+        **{"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "instants": 13},
+        "displacement": 5e-5,
+    },
     "rope": {**SMALL_ROPE, "elements": 10, "instants": 13},
 }

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 from benchmarks import ahead, by_getfem, cycles
 from benchmarks.public_solvers import PUBLIC, Public, solve_by
+from benchmarks.sparse_newton import SparseNewton
 
 from solver.discrete.problem import Problem
 from solver.latin import iterations, solve
@@ -65,6 +67,17 @@ def test_iterations_of_cycles_are_those_to_the_goal_and_slabs_hold_less(
     assert counts[0] == first_within(discretise(settings), settings, cycles.GOAL)
     assert modes[1] > 0
     assert megabytes[2] < megabytes[0]
+
+
+@pytest.mark.parametrize("bond", ["running", "stack"])
+def test_the_sparse_rival_on_a_wall_comes_to_the_same(bond: str) -> None:
+    sizes = {"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "displacement": 5e-5}
+    problem = discretise(CATALOGUE["wall"].settings.checked({**sizes, "bond": bond}))
+    found, reference = SparseNewton(problem).march(), reference_of(problem)
+    assert found.solved.all()
+    for name in ("displacement", "contact_force"):
+        known = getattr(reference, name)
+        assert np.abs(getattr(found, name) - known).max() < 1e-10 * np.abs(known).max()
 
 
 @pytest.mark.parametrize("public", PUBLIC, ids=lambda public: public.name)

@@ -149,8 +149,12 @@ def test_a_block_under_more_shear_than_friction_carries_is_said_to_be_lost():
     of = block(shear=0.5, height=0.2).discretise()
     found = reference_of(of)
     shear = 0.5 * np.sin(2.0 * np.pi * np.maximum(of.instants - 0.25, 0.0) / 0.75)
-    carried = np.abs(shear) < 0.3
+    carried = np.logical_and.accumulate(np.abs(shear) < 0.3)
     assert np.array_equal(found.converged, carried)
+    last = int(carried.sum()) - 1
+    share = (0.3 - shear[last]) / (shear[last + 1] - shear[last])
+    exact = of.instants[last] + share * (of.instants[last + 1] - of.instants[last])
+    assert found.collapse.time == pytest.approx(exact, rel=1e-9)
     assert found.residual > 1e-3
     assert np.abs(found.displacement).max() < 0.1
 

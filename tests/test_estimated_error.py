@@ -183,8 +183,13 @@ def test_the_result_file_says_what_is_known_of_its_error(
 SHORT = {"elements": 16, "instants": 21, "substructures": 2}
 
 
+FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
+"""Bricks of a wall, and what it is moved by: a step is soon worth a trial."""
+
+
 def options(scene: str = "bar", **changes: Any) -> Settings:
-    return CATALOGUE[scene].settings.checked({**SHORT, "finish": "accuracy", **changes})
+    sizes = {**SHORT, **(FEW if scene == "wall" else {})}
+    return CATALOGUE[scene].settings.checked({**sizes, "finish": "accuracy", **changes})
 
 
 @cache

@@ -27,6 +27,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
     "layers": {"contrast": 2.0, "pull": 1e6, "substructures": 2, "friction": 0.31},
     "fault": {"overpressure": 7e6, "injection_load": "stopped", "diffusivity": 0.2},
     "incline": {"slope": 41.0, "weight": 1001.0, "slack": 1e-4, "spring": 1e6},
+    "wall": {"courses": 2, "bond": "stack", "displacement": 4e-5, "slope": 5.0, "top": "pulled"},
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
 }
 

@@ -40,6 +40,10 @@ SIZES = {
     "fault": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "incline": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "rope": {"elements": (2, 12), "layers": (1, 2), "instants": (1, 10)},
+    "wall": {
+        **{"elements": (1, 4), "elements_up": (1, 3), "instants": (1, 8)},
+        **{"bricks": (1, 3), "courses": (1, 3)},
+    },
 }
 """Bounds that keep a run short; all other settings go over their whole range."""
 MOST = {"pgd_modes": 20, "pgd_pairs": 5}

@@ -89,6 +89,7 @@ SOFT = {
     "fault": {"young": 6e7},
     "incline": {"young": 1e5, "weight": 1e4},
     "layers": {"deflection": 0.2},
+    "wall": {"young": 1e7},
     "rope": {"curvature": 30.0},
 }
 
@@ -153,7 +154,7 @@ def cost(scene: str, *, with_reference: bool = True, **values: Any) -> RunCost:
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_the_scenes_defaults_are_neither_long_nor_large(scene: str) -> None:
     found = cost(scene)
-    assert 0.0 < found.seconds < 0.1 * LONG
+    assert 0.0 < found.seconds < 0.15 * LONG
     assert 0.0 < found.memory < 0.1 * LARGE
 
 

@@ -159,7 +159,7 @@ def _anchor(arrows: Arrows, description: Description, layout: Layout) -> tuple[A
     if side == "body":
         length, height = layout.size
         if length < 0.5 * layout.width:
-            return np.array([-0.5 * length - 14.0, height]), "right"
+            return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         return np.array([0.0, 0.5 * height + 14.0]), "center"
     shift = [22.0 * away, -16.0] if aside else [9.0 * away, 15.0]
     return places[-1] + shift, "left" if side == "right" else "right"

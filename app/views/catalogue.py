@@ -10,10 +10,11 @@ from app.views.rope import StressRanges, Unrolled, WireForces, WireSection
 from app.views.scene import Stress
 from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap
+from app.views.thrust import Thrust
 from app.views.view import View
 
 CARDS: tuple[tuple[type[View], ...], ...] = (
-    (ContactForce, WireForces, HysteresisLoop, Stress),
+    (Thrust, ContactForce, WireForces, HysteresisLoop, Stress),
     (StatusMap, Unrolled, WireSection, SlipPlane, Cycles, CycleEnergy, Fretting),
     (Convergence, ErrorTime),
     (Spectra, SpaceModes, TimeFunctions, StressRanges, ClipErrors),

@@ -13,6 +13,7 @@ from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import DrawnRods, floats, thinned
 from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
+from app.worker.thrust import thrust
 from solver.discrete import Problem
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
@@ -256,6 +257,7 @@ EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
     "modes": modes,
     "clips": clips,
     "beside": beside,
+    "thrust": thrust,
     "stress": lambda sampler, iterate, needs: sampler.drawn.stress(iterate, sampler.settings),
 }
 """By the name that a view needs them by."""

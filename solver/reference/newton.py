@@ -85,7 +85,7 @@ class Newton:
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
         self._guesses, self._starts = guesses, Starts()
         self._smooth: Indices = np.flatnonzero(rules.smooth)
-        self._rubs: Indices = np.flatnonzero(rules.friction > 0.0)
+        self._rubs: Indices = np.union1d(np.flatnonzero(rules.friction > 0.0), rules.bonds)
         self._carry: Indices = rules.partner[self._rubs]
         if guesses is not None:
             guesses[self._smooth] = OPEN

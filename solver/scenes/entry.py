@@ -70,6 +70,8 @@ class Features(NamedTuple):
     jumps
         Components of all contacts, which a reference condenses; none on a rigid support of known
         bound.
+    bricks
+        Bodies that touch each other at joints, 0 where a body lies on the next all along.
     loop_is_over_displacement
         Whether the force of its loop stands over a displacement, m.
     """
@@ -78,4 +80,5 @@ class Features(NamedTuple):
     has_spring: bool = False
     has_break: bool = False
     jumps: int = 0
+    bricks: int = 0
     loop_is_over_displacement: bool = True

@@ -171,7 +171,8 @@ class WallSettings(PlaneSettings):
         """A joint more has two bed nodes more."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
-        return super().features._replace(jumps=2 * self.courses * (beds + heads))
+        jumps = 2 * self.courses * (beds + heads)
+        return super().features._replace(jumps=jumps, bricks=self.n_substructures)
 
     def _behind(self) -> Mapping[str, str]:
         driven = "displacement" if self.top == "moved" else "traction"

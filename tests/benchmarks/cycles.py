@@ -39,12 +39,13 @@ MOST, LONGEST = 300, 60.0
 """Iterations of a slab, and seconds of the processor, after which a way is given up."""
 REPEATS, SHORT = 3, 2.0
 """Times that each is measured, and seconds of all from which on once is enough."""
-MODES = 40
-"""Of LATIN-PGD: with 20 the block of 192 x 96 elements stalls at 4 to 6 % (measured)."""
+MODES = 40, 10
+"""Of LATIN-PGD, and a brick of a wall: with 20 the block of 192 x 96 elements stalls at 4 to 6 %;
+with 6 a wall under ten cycles at 1.2 % (measured)."""
 INSTANTS = 40
 """Of a cycle."""
 FEW, MANY = (1, 2, 5, 10), (1, 2, 5, 10, 20, 50, 100)
-PGD = {"linear_stage": "pgd", "pgd_modes": MODES}
+PGD = {"linear_stage": "pgd"}
 WAYS: dict[str, tuple[dict[str, Any], bool]] = {
     "LATIN": ({}, False),
     "LATIN-PGD": (PGD, False),
@@ -53,10 +54,12 @@ WAYS: dict[str, tuple[dict[str, Any], bool]] = {
 }
 """Settings of the method, and whether it goes slab after slab of a cycle."""
 BLOCK = {"elements": 96, "elements_up": 48, "substructures": 2, "substructures_up": 1}
+WALL = {"bricks": 8, "courses": 8, "elements": 6, "elements_up": 3}
 PROBLEMS: dict[str, tuple[str, dict[str, Any], int]] = {
     "block": ("block", BLOCK, MANY[-1]),
     "finer": ("block", {**BLOCK, "elements": 192, "elements_up": 96}, 20),
     "strand": ("strand", {"wires": 20, "elements": 100}, MANY[-1]),
+    "wall": ("wall", WALL, 50),
 }
 """Scene, settings but for the load, and most cycles that the limits on settings allow."""
 NOTES = (
@@ -83,14 +86,20 @@ def settings_of(name: str, cycles: int) -> Settings:
     for cycle in range(cycles):
         if scene == "block":
             path += [[cycle + 0.25, 2e-5], [cycle + 0.75, -2e-5], [cycle + 1.0, 0.0]]
+        elif scene == "wall":
+            path += [[cycle + 0.25, 5e-5], [cycle + 0.75, -5e-5], [cycle + 1.0, 0.0]]
         else:
             path += [[cycle + 0.5, 600.0], [cycle + 1.0, 0.0]]
     load: dict[str, Any] = {"load": path}
     if scene == "block":
         pressed = [[0.0, 0.0], [0.25, -4e-5], [1.0, -4e-5]]
         load = {"top_normal_load": pressed, "top_tangential_load": path}
+    if scene == "wall":
+        pressed = [[0.0, 0.0], [0.1, 1e6]]
+        load = {"pressure_load": pressed, "top_load": [[0.0, 0.0], [0.1, 0.0], *path[1:]]}
+    modes = {"pgd_modes": MODES[scene == "wall"], **changes}
     times = {"instants": INSTANTS * cycles + 1, "duration": float(cycles)}
-    return CATALOGUE[scene].settings.checked({**changes, **times, **load})
+    return CATALOGUE[scene].settings.checked({**modes, **times, **load})
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:

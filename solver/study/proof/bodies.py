@@ -20,6 +20,10 @@ JOHNSON = "K. L. Johnson, Contact Mechanics, Cambridge 1985, section"
 HERTZ = f"{JOHNSON} 4.2 (Hertz)"
 MINDLIN = f"{JOHNSON} 7.2 and 7.4 (Cattaneo, Mindlin)"
 SLOPE = "Equilibrium of a rigid block: its weight along the slope, less or more its friction"
+PILE = (
+    "R. K. Livesley, Limit analysis of structures formed from rigid blocks, Int. J. Numer. Meth. "
+    "Eng. 12, 1978: a pile slides where friction ends, and tips about its toe"
+)
 BEAM = "J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997, section 12: Timoshenko's beam"
 DEFLECTION = 1e-4
 STEPS = 6
@@ -82,6 +86,7 @@ def body_cases() -> list[KnownCase]:
         _shoe(),
         *map(_driven_by_fluid, (0.1, 0.3, 0.5, 0.7, 0.9)),
         _growing_strength(),
+        *_walls(),
     ]
 
 
@@ -249,3 +254,43 @@ def _growing_strength() -> KnownCase:
 
     title = "slip under a strength that grows from the middle"
     return KnownCase(title, BUERGMANN, 4e-2, "fault", values, numbers, PUBLISHED)
+
+
+def _walls() -> Iterator[KnownCase]:
+    """Piles of single bricks whose top is moved until they slide or tip, and a wall's weight."""
+    pressure, unit_weight, length, height, friction = 1e6, 2e4, 0.25, 0.12, 0.3
+    pressed, brick = pressure * length, unit_weight * length * height
+    common = {
+        **{"bond": "stack", "length": length, "height": height, "unit_weight": unit_weight},
+        **{"pressure": pressure, "friction": friction, "elements": 8, "elements_up": 4},
+        **{"instants": 21, "accuracy": 1e-3},
+    }
+
+    def pile(title: str, courses: int, mu: float, way: float, known: Number) -> KnownCase:
+        moved = [[0.0, 0.0], [0.25, 0.0], [1.0, way]]
+        size = {"bricks": 1, "courses": courses, "friction": mu, "top_load": moved}
+
+        def numbers(answer: Answer) -> Iterator[Number]:
+            yield *known[:3], answer.loop_force[-1]
+
+        return KnownCase(title, PILE, 1e-8, "wall", {**common, **size}, numbers)
+
+    slides = friction * (pressed + brick)
+    known = "shear force", "N/m", slides, 0.0
+    yield pile("pile of two bricks that slides", 2, friction, 3e-4, known)
+    # Moments about the toe: what presses, and the weight, have half a length. It ends on one node.
+    tips = 0.5 * length * (pressed + 3.0 * brick) / (3.0 * height)
+    yield pile("pile of three bricks that tips", 3, 0.9, 3e-3, ("shear force", "N/m", tips, 0.0))
+
+    def carried(answer: Answer) -> Iterator[Number]:
+        grounds = [name for name in answer.problem.rubbing if name.startswith("support")]
+        force = 0.0
+        for name in grounds:
+            across = answer.fields.contact(name).normal_force
+            assert across is not None
+            force += float(across[:, -1].sum())
+        yield "force on the ground", "N/m", 4.0 * (pressed + 4.0 * brick), force
+
+    values = {**common, "bond": "running", "bricks": 4, "courses": 4, "displacement": 5e-5}
+    title, source = "wall in running bond", "Balance: the ground carries what weighs and presses"
+    yield KnownCase(title, source, 1e-8, "wall", values, carried)

@@ -60,6 +60,15 @@ INCLINE = {
     "instants": 41,
     "max_iterations": 1000,
 }
+WALL = {
+    "bricks": 4,
+    "courses": 4,
+    "elements": 4,
+    "elements_up": 2,
+    "displacement": 5e-5,
+    "instants": 21,
+    "max_iterations": 1000,
+}
 
 
 def block_cases() -> list[Case]:
@@ -182,4 +191,41 @@ def fault_cases() -> list[Case]:
         case("normal stress", "barriers", {"normal_profile": "barrier", "shear_stress": 5.9e6}),
         case("Young's modulus", "1 Pa", {"young": 1.0, "overpressure": 0.0}),
         case("instants", "1", {"instants": 1}),
+    ]
+
+
+def wall_cases() -> list[Case]:
+    """All cases of the scene `wall`: what is pressed and moved scales with E, as what gives way."""
+    case = cases_with("wall", WALL)
+    pulled = {"top": "pulled", "traction": 3e5}
+    loose = {"top": "pulled", "traction": 0.0, "pressure": 0.0}
+    return [
+        case("wall", "as it is", {}, quick=True),
+        case("bricks", "1", {"bricks": 1, "courses": 1}),
+        case("bricks", "one course", {"courses": 1}),
+        case("bricks", "one column", {"bricks": 1, "bond": "stack"}),
+        case("bricks", "stack bond", {"bond": "stack"}),
+        case("bricks", "12 x 12", {"bricks": 12, "courses": 12, "instants": 11}, UNSOLVED),
+        case("young", "1", {"young": 1.0, "pressure": 1e-4, "unit_weight": 2e-6}),
+        case("young", "1e17", {"young": 1e17, "pressure": 1e13, "unit_weight": 2e11}),
+        case("young", "1e12, pressed as before", {"young": 1e12, "displacement": 5e-7}),
+        case("young", "1e8, pressed as before", {"young": 1e8, "displacement": 5e-3}),
+        case("weight", "none", {"unit_weight": 0.0}),
+        case("weight", "a hundred times", {"unit_weight": 2e6}),
+        case("weight", "alone", {"pressure": 0.0, "displacement": 5e-7}, UNSOLVED),
+        case("friction", "0", {"friction": 0.0}, UNSOLVED),
+        case("friction", "3", {"friction": 3.0}, UNCLEAR),
+        case("friction", "10", {"friction": 10.0}, UNCLEAR),
+        case("ground", "tilted by 20 degrees", {"slope": 20.0}),
+        case("height / length", "0.01", {"height": 2.5e-3}, UNSOLVED),
+        case("height / length", "4", {"height": 1.0}, UNSOLVED),
+        case("k_scale", "0.01", {"k_scale": 1e-2}, UNSOLVED),
+        case("k_scale", "100", {"k_scale": 1e2}, UNSOLVED),
+        case("coarse problem", "none", {"multiscale": False}, UNSOLVED),
+        case("top", "pulled by half of what friction holds", pulled, quick=True),
+        case("top", "moved by 0.1 mm, a tenth is open", {"displacement": 1e-4}, UNSOLVED),
+        case("top", "moved by 0.3 mm, bricks hang", {"displacement": 3e-4}, UNCLEAR),
+        case("instants", "1", {"instants": 1, "top_load": "ramp"}),
+        case("top", "pulled beyond friction", {**pulled, "traction": 7e5}, UNSOLVED),
+        case("ground", "tilted beyond friction", {**loose, "slope": 45.0}, UNSOLVED),
     ]

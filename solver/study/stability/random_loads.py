@@ -125,6 +125,26 @@ def fault_loads(values: Values, generator: Generator) -> Sizes:
     }
 
 
+def wall_loads(values: Values, generator: Generator) -> Sizes:
+    """What presses a wall, and what moves its top while its bricks are held.
+
+    Up to half of the strain by which the pressure shortens it, and of the smaller one of the
+    tractions at which rigid blocks slide and tip. Paths are presets: with a table the top may be
+    moved before anything presses, and then where bricks lie is not determinate.
+    """
+    pressure = values["young"] * 10.0 ** generator.uniform(-6.0, -3.0)
+    height = values["height"] * values["courses"]
+    stable = min(values["friction"], 0.5 * values["length"] * values["bricks"] / height)
+    share = float(generator.uniform(-0.5, 0.5))
+    return {
+        "pressure": pressure,
+        "displacement": share * pressure / values["young"] * height,
+        "traction": share * stable * pressure,
+        "unit_weight": 0.1 * pressure / height * float(generator.uniform()),
+        "slope": 20.0 * share * stable,
+    }
+
+
 LOADS: dict[str, Callable[[Values, Generator], Sizes]] = {
     "bar": bar_loads,
     "strand": strand_loads,
@@ -133,6 +153,7 @@ LOADS: dict[str, Callable[[Values, Generator], Sizes]] = {
     "rope": rope_loads,
     "fault": fault_loads,
     "incline": incline_loads,
+    "wall": wall_loads,
 }
 """Sizes of loads by name, which depend on the other values; of curves, those of their tables. A
 scene without an entry has its loads drawn by their definitions alone."""

@@ -15,7 +15,13 @@ from solver.scenes import CATALOGUE
 from solver.study.page import aligned, bullets, cell, plain_table, table, write_csv, write_page
 from solver.study.stability.case import METHODS, Case, Verdict
 from solver.study.stability.outcome import MEANING, JudgedRun
-from solver.study.stability.plane_cases import block_cases, fault_cases, incline_cases, layers_cases
+from solver.study.stability.plane_cases import (
+    block_cases,
+    fault_cases,
+    incline_cases,
+    layers_cases,
+    wall_cases,
+)
 from solver.study.stability.rod_cases import bar_cases, rope_cases, strand_cases
 
 FILES = "stability.csv", "stability.html"
@@ -45,7 +51,7 @@ RANDOM_NOTES = ("Right are errors of the contact force of at most the accuracy."
 def cases_of(scenes: Sequence[str] = (), *, quick: bool = False) -> list[Case]:
     """Cases of some scenes, or of all, by each method; with `quick` only the few for a check."""
     rods = [*bar_cases(), *strand_cases(), *rope_cases()]
-    plane = [*fault_cases(), *block_cases(), *layers_cases(), *incline_cases()]
+    plane = [*fault_cases(), *block_cases(), *layers_cases(), *incline_cases(), *wall_cases()]
     return [
         case.by(method)
         for case in rods + plane
