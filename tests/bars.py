@@ -7,8 +7,8 @@ from itertools import islice
 import numpy as np
 
 from solver.latin import iterations, solve
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -37,7 +37,7 @@ def sample(chosen, number):
 def measured(settings):
     """Solve without a clock, beside the reference."""
     problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     return solve(problem, method_of(settings), distance=distance, watch=False)
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.discrete.rope import Rope
+from solver.reference.choice import reference_of
 from solver.reference.closed_forms.bent_strand import BentStrand
-from solver.reference.incremental import incremental
 from solver.reference.solution import Reference
 from solver.scenes.rope import RopeSettings
 
@@ -21,7 +21,7 @@ def settings_of(**changes: Any) -> RopeSettings:
 
 def solved(settings: RopeSettings) -> tuple[Rope, Reference]:
     scene = settings.structure()
-    return scene, incremental(scene.discretise())
+    return scene, reference_of(scene.discretise())
 
 
 def moment_of(scene: Rope, found: Reference) -> Array:

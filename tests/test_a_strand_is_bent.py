@@ -18,10 +18,10 @@ from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import CutWires, cut_at, stress_at, stress_ranges, wire_stresses
 from solver.files import result_arrays
 from solver.latin import Auto, Latin, Stop
-from solver.reference.choice import incremental_solver
+from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.closed_forms.bent_strand import BentWire
 from solver.reference.contact import IncrementalContact
-from solver.reference.incremental import IncrementalRod, incremental
+from solver.reference.incremental import IncrementalRod
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
@@ -77,7 +77,7 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
         for wire in scene.wires
     ]
     turned = replace(scene, wires=wires)
-    moments = [moment_of(one, incremental(one.discretise())) for one in (scene, turned)]
+    moments = [moment_of(one, reference_of(one.discretise())) for one in (scene, turned)]
     np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
 
 
@@ -138,7 +138,7 @@ def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None
     settings = settings_of(**changes)
     problem = discretise(settings)
     method = Latin(direction=Auto(), finish=None, stop=Stop(accuracy=1e-4, iterations=3000))
-    found, exact = solve(problem, method).iterate, incremental(problem)
+    found, exact = solve(problem, method).iterate, reference_of(problem)
     scale = np.abs(exact.contact_force).max()
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale
 
@@ -148,7 +148,7 @@ def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_ev
     problem = discretise(settings)
     assert isinstance(incremental_solver(problem), IncrementalRod)
     general = IncrementalContact(discretise(settings_of(**{**CLAMPED, "layers": 1}))).march()
-    special = incremental(general.problem)
+    special = reference_of(general.problem)
     np.testing.assert_array_equal(general.status, special.status)
     np.testing.assert_allclose(general.displacement, special.displacement, atol=1e-12)
     arrays = result_arrays(settings, solve(problem, method_of(settings)))
@@ -265,7 +265,7 @@ def moment_of_wire(arc: Array, slip: Array, curvature: Array) -> Array:
 def moments_of_wire(curvature: Array, elements: int = 40) -> Array:
     """The wire's moment by the incremental solver."""
     scene = rods(curvature, elements)
-    return moment_of_wire(scene.nodes, incremental(scene.discretise()).displacement, curvature)
+    return moment_of_wire(scene.nodes, reference_of(scene.discretise()).displacement, curvature)
 
 
 def to_and_fro(peak: float, steps: int = 60) -> Array:
@@ -286,7 +286,7 @@ def test_what_friction_dissipates_is_what_the_loop_encloses() -> None:
     peak = 1.5 * BENT.first_slip
     curvature = to_and_fro(peak)
     scene = rods(curvature)
-    found = incremental(scene.discretise())
+    found = reference_of(scene.discretise())
     slips = np.diff(found.displacement[:, 60:], axis=1)
     force = found.contact_force[:, 61:]
     # The loop is a wire's mean share in the moment of a metre of strand.

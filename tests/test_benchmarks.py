@@ -15,7 +15,6 @@ from solver.discrete.problem import Problem
 from solver.latin import iterations, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -95,7 +94,7 @@ def test_public_solvers_agree_with_the_incremental_solver(
     sizes = {"elements": 20, "instants": 21}
     problem = discretise(BarSettings.checked({"method": "paper", **sizes, **changes}))
     fields = solve_by(public, problem, public.tolerances[-1])
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     assert distance.of_friction_force(fields) < REACHED[public.name]
     assert distance.of_displacement(fields) < REACHED[public.name]
 

@@ -13,7 +13,6 @@ from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import latin_indicator
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
@@ -42,7 +41,7 @@ def driven(chosen):
 
 def assert_reached(chosen):
     iterate = driven(chosen)
-    reference = incremental(iterate.problem)
+    reference = reference_of(iterate.problem)
     distance = distance_to(reference, iterate.problem)
     assert distance.of_friction_force(iterate) < 1e-8
     assert distance.of_displacement(iterate) < 1e-9
@@ -52,7 +51,7 @@ def assert_reached(chosen):
 def test_the_default_reaches_the_reference_in_fields_and_statuses():
     chosen = options()
     problem = discretise(chosen)
-    reference = incremental(problem)
+    reference = reference_of(problem)
     solution = solve(
         problem, method_of(chosen), distance=distance_to(reference, problem), watch=False
     )

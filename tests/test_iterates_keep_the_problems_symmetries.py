@@ -11,7 +11,7 @@ from bars import SMALL, boundary_of, options, relative, sample, table
 from solver.latin import Iterate, iterations
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Contact, Dirichlet, Neumann
-from solver.reference.incremental import incremental
+from solver.reference.choice import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -117,7 +117,7 @@ def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(l
     chosen = options(load=load, peak=1300.0, **change)
     problem = discretise(chosen)
     k = method_of(chosen).direction.of(problem)
-    displacement, force = boundary_of(problem, incremental(problem))
+    displacement, force = boundary_of(problem, reference_of(problem))
     exact = behaviour_indicator(iterate_of(problem, k, displacement, force))
     assert 0.0 <= exact < 1e-8
     random = np.random.default_rng(5)

@@ -11,8 +11,8 @@ from bars import measured
 from solver.latin import Ending, directions, iterations
 from solver.latin.directions import CALM, TRIAL, sliding_share
 from solver.loads import PRESETS
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -82,7 +82,7 @@ def sample(settings: BarSettings, number: int):
 
 def iterations_to(settings: BarSettings, level: float) -> int:
     problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     found = islice(iterations(problem, method_of(settings)), settings.max_iterations)
     return 1 + sum(1 for _ in takewhile(lambda it: distance.of_friction_force(it) > level, found))
 
@@ -123,7 +123,7 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
     assert np.array_equal(found[back].k, constant[0].k)
     if back - start == TRIAL:  # from the state before the update, as if it had never been
         assert np.allclose(found[back].local_incoming, constant[start].local_incoming, atol=1e-15)
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     assert distance.of_friction_force(found[-1]) < 1e-3
 
 

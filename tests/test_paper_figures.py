@@ -18,8 +18,8 @@ import pytest
 from solver import report_commands
 from solver.cli import main
 from solver.latin import Ending, iterations, solve
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -58,7 +58,7 @@ def solved() -> list[str]:
 def paper_runs(solved: list[str]) -> Iterator[PaperRuns]:
     """The runs behind the paper's figures, each solved when it is first asked for."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("solve", "incremental"):
+        for name in ("solve", "reference_of"):
             patch.setattr(runs_of_the_paper, name, counted(name, solved))
         yield PaperRuns()
 
@@ -81,7 +81,7 @@ def figures(paper_runs):
 
 def test_all_figures_together_solve_nothing_twice(figures, solved):
     assert tuple(figure.number for figure in figures) == NUMBERS
-    assert solved.count("incremental") == 1
+    assert solved.count("reference_of") == 1
     assert solved.count("solve") == 2 * 4  # to the early iterate, and on from there
 
 
@@ -216,7 +216,7 @@ def test_macro_forces_of_the_multiscale_linear_stage_are_in_equilibrium(change):
 def test_monoscale_without_relaxation_stalls_far_from_the_answer():
     chosen = options(relaxation=1.0, multiscale=False)
     problem = discretise(chosen)
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     solution = solve(problem, method_of(chosen), distance=distance)
     assert solution.status.ending is Ending.STALLED
     assert "relaxation" in solution.status.advice

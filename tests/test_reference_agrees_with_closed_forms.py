@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.reference import search as module
+from solver.reference.choice import reference_of
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
-from solver.reference.incremental import Interrupted, Reference, incremental
+from solver.reference.solution import Interrupted, Reference
 from solver.scenes.bar import BarSettings
 
 BOUND = 1500.0
@@ -102,7 +103,7 @@ def test_a_closed_inner_loop_leaves_no_trace(first, turn, depth):
     inside = turn + depth * (first - turn)
     load = [first, turn, inside, turn]
     base = under(scene(elements=20, friction_profile="rising"), load)
-    exact, discrete = solved(base), incremental(base.discretise())
+    exact, discrete = solved(base), reference_of(base.discretise())
     for field in (exact.displacement, discrete.displacement):
         np.testing.assert_allclose(field[:, 3], field[:, 1], rtol=0.0, atol=1e-15)
     np.testing.assert_allclose(exact.normal_force[:, 3], exact.normal_force[:, 1], atol=1e-9)
@@ -112,7 +113,7 @@ def test_a_closed_inner_loop_leaves_no_trace(first, turn, depth):
 @given(FORCES, st.integers(1, 60))
 def test_friction_forces_of_both_references_are_one_under_a_uniform_bound(load, elements):
     base = under(scene(elements=elements, substructures=1), load)
-    exact, discrete = solved(base), incremental(base.discretise())
+    exact, discrete = solved(base), reference_of(base.discretise())
     off_the_clamp = slice(1, None)
     np.testing.assert_allclose(
         discrete.friction_force[off_the_clamp], exact.friction_force[off_the_clamp], atol=1e-9
@@ -126,7 +127,7 @@ def test_incremental_displacement_converges_with_order_two(profile, load, peak):
     errors = []
     for elements in sizes:
         base = scene(elements=int(elements), load=load, peak=peak, friction_profile=profile)
-        exact, discrete = solved(base).displacement, incremental(base.discretise()).displacement
+        exact, discrete = solved(base).displacement, reference_of(base.discretise()).displacement
         errors.append(float(np.linalg.norm(discrete - exact) / np.linalg.norm(exact)))
     assert fitted_order(sizes, errors) > 1.8
     assert errors[-1] < 1e-4
@@ -206,7 +207,7 @@ def assert_equilibrium(of: Problem, found: Reference) -> None:
 @EVERY
 @given(problems())
 def test_every_bar_ends_in_equilibrium_and_obeys_coulomb(of):
-    found = incremental(of)
+    found = reference_of(of)
     assert found.residual <= 1e-12
     assert_coulomb(of, found)
     assert_equilibrium(of, found)
@@ -214,16 +215,16 @@ def test_every_bar_ends_in_equilibrium_and_obeys_coulomb(of):
 
 def test_the_fallback_alone_finds_the_same_minimum(monkeypatch):
     of = problem(load="random", peak=1800.0, instants=15, friction_profile="gap")
-    fast = incremental(of)
+    fast = reference_of(of)
     monkeypatch.setattr(module, "NEWTON_LIMIT", 0)
-    slow = incremental(of)
+    slow = reference_of(of)
     assert slow.residual <= 1e-12
     assert np.array_equal(slow.status, fast.status)
     np.testing.assert_allclose(slow.displacement, fast.displacement, rtol=0.0, atol=1e-15)
 
 
 def test_decomposition_changes_nothing():
-    whole, parts = (incremental(problem(substructures=number)) for number in (1, 10))
+    whole, parts = (reference_of(problem(substructures=number)) for number in (1, 10))
     assert np.array_equal(whole.status, parts.status)
     np.testing.assert_allclose(whole.displacement, parts.displacement, rtol=0.0, atol=1e-15)
     np.testing.assert_allclose(whole.friction_force, parts.friction_force, rtol=0.0, atol=1e-9)
@@ -231,7 +232,7 @@ def test_decomposition_changes_nothing():
 
 def test_without_friction_the_bar_is_elastic():
     scene = BarSettings.checked({"method": "paper", "friction": 0.0}).structure()
-    found = incremental(scene.discretise())
+    found = reference_of(scene.discretise())
     elastic = scene.nodes[:, None] * scene.load / scene.stiffness
     np.testing.assert_allclose(found.displacement, elastic, rtol=0.0, atol=1e-15)
     assert not found.friction_force.any()
@@ -241,5 +242,5 @@ def test_without_friction_the_bar_is_elastic():
 def test_a_stop_interrupts_between_instants():
     calls = iter([False, False, True])
     with pytest.raises(Interrupted):
-        incremental(problem(), stop=lambda: next(calls))
+        reference_of(problem(), stop=lambda: next(calls))
     assert next(calls, None) is None

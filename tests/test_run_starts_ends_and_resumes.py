@@ -32,8 +32,8 @@ from solver.latin import (
 )
 from solver.latin.blocks import Blocks
 from solver.latin.iteration import Iteration
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
@@ -66,7 +66,7 @@ def test_without_load_the_run_stops_at_once(multiscale):
 def test_started_at_the_reference_the_run_stops_at_once(change):
     chosen = options(**change, k_scale=2.0)
     problem = discretise(chosen)
-    reference = incremental(problem)
+    reference = reference_of(problem)
     displacement, force = boundary_of(problem, reference)
     k = method_of(chosen).direction.of(problem)
     start = Checkpoint(0, 0.0, displacement + force / k[:, None])

@@ -14,7 +14,6 @@ from solver.latin import Ending, Solution, iterations, solve
 from solver.reduction.basis import SeparatedBasis
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -30,7 +29,7 @@ def options(**changes: object) -> BarSettings:
 
 def run(settings: BarSettings, **rest: object):
     problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     return solve(problem, method_of(settings), distance=distance, **{"watch": False, **rest})
 
 

@@ -68,6 +68,7 @@ def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
         ("bar", {"friction_law": "compliant"}),
         ("bar", {"pressure_load": "shaken"}),
         ("strand", {}),
+        ("incline", {}),
     ],
 )
 def test_they_have_the_solution_of_the_whole(scene: str, changes: dict[str, Any]) -> None:
@@ -128,7 +129,6 @@ def test_the_command_solves_in_slabs(capsys: pytest.CaptureFixture[str], tmp_pat
         ("bar", {"friction_law": "slip-dependent"}, TIGHT, CYCLE, "friction_law"),
         ("bar", {}, replace(TIGHT, direction=FromStatus()), CYCLE, "k_update"),
         ("bar", {}, TIGHT, 0, "slab"),
-        ("incline", {}, TIGHT, CYCLE, "slab"),
     ],
 )
 def test_what_remembers_more_is_refused(

@@ -73,7 +73,7 @@ class Anderson:
             Of instants, in which states are mixed.
         """
         weights = [group.weights(problem.time_weights) for group in stage.groups]
-        mixable = [own for own in weights if own is not None]
+        mixable = [part for part in weights if part is not None]
         if len(mixable) < len(weights):
             return None
         growth = 1.0
@@ -128,8 +128,8 @@ class AndersonState:
         sizes = [part.size for part in weights]
         self._places = in_a_row(sizes)
         self._chosen = _sample(sizes)
-        sampled = [_flat(part)[own] for part, own in zip(weights, self._chosen, strict=True)]
-        self._samples = in_a_row([len(own) for own in sampled])
+        sampled = [_flat(part)[chosen] for part, chosen in zip(weights, self._chosen, strict=True)]
+        self._samples = in_a_row([len(part) for part in sampled])
         self._root = np.sqrt(np.concatenate(sampled))
         self._free = free and _Motion(free, self._chosen, self._root)
         self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
@@ -156,7 +156,7 @@ class AndersonState:
         return min(self.seen, self._memory + 1)
 
     def start(self, state: list[Array]) -> None:
-        """Take in y, before the iteration that makes g(y) of it."""
+        """Read y, before the iteration that makes g(y) of it."""
         self._take(state, self._start)
 
     def __call__(self, state: list[Array]) -> None:
@@ -165,7 +165,7 @@ class AndersonState:
             self._mix(state)
 
     def observe(self, state: list[Array]) -> bool:
-        """Take in g(y); return whether to mix."""
+        """Read g(y); return whether to mix."""
         residual = self._residual
         self._take(state, residual)
         np.subtract(residual, self._start, out=residual)
@@ -182,9 +182,9 @@ class AndersonState:
             self._remember()
         image = self._images[self._place_of(self.count)]
 
-        def keep(some: slice) -> None:
+        def keep(instants: slice) -> None:
             for part, place in zip(state, self._places, strict=True):
-                image[_within(place, part, some)] = _flat(part[..., some])
+                image[_within(place, part, instants)] = _flat(part[..., instants])
 
         self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
@@ -215,10 +215,10 @@ class AndersonState:
             return
         shares = self._shares(scale * gamma)
 
-        def mix(some: slice) -> None:
+        def mix(instants: slice) -> None:
             for part, place in zip(state, self._places, strict=True):
-                images = self._images[: used + 1, _within(place, part, some)]
-                np.matmul(shares, images, out=_flat(part[..., some]))
+                images = self._images[: used + 1, _within(place, part, instants)]
+                np.matmul(shares, images, out=_flat(part[..., instants]))
 
         self._blocks.each(mix)
 
@@ -227,9 +227,9 @@ class AndersonState:
         shares = np.zeros(len(gamma) + 1)
         shares[self._place_of(self.count)] = 1.0
         for number in range(self.count - len(gamma), self.count):
-            one = gamma[number % self._memory]
-            shares[self._place_of(number + 1)] -= one
-            shares[self._place_of(number)] += one
+            share = gamma[number % self._memory]
+            shares[self._place_of(number + 1)] -= share
+            shares[self._place_of(number)] += share
         return shares
 
     def _place_of(self, number: int) -> int:
@@ -245,10 +245,10 @@ class _Motion:
     """A motion that residuals are blind to, at the places of a sample."""
 
     def __init__(self, free: list[Array], chosen: list[slice | Indices], root: Array) -> None:
-        places = [np.arange(part.size)[own] for part, own in zip(free, chosen, strict=True)]
+        places = [np.arange(part.size)[places] for part, places in zip(free, chosen, strict=True)]
         pairs = list(zip(free, places, strict=True))
-        self._way = root * np.concatenate([_flat(part)[own] for part, own in pairs])
-        instants = np.concatenate([own * part.shape[-1] // part.size for part, own in pairs])
+        self._way = root * np.concatenate([_flat(part)[place] for part, place in pairs])
+        instants = np.concatenate([place * part.shape[-1] // part.size for part, place in pairs])
         size = np.bincount(instants, self._way**2)
         self._dual = self._way / np.where(size > 0.0, size, 1.0)[instants]
         # In order of memory an instant is a run of places, in every part.
@@ -257,16 +257,16 @@ class _Motion:
         self._instants = instants[self._first]
 
     def leave_out(self, residual: Array) -> None:
-        """Take out of a weighted residual what it has of the motion, instant by instant."""
+        """Remove from a weighted residual what it has of the motion, instant by instant."""
         runs = np.add.reduceat(self._dual * residual, self._first)
         share = np.bincount(self._instants, runs)[self._instants]
         residual -= self._way * np.repeat(share, self._lengths)
 
 
-def _within(place: slice, part: Array, some: slice) -> slice:
+def _within(place: slice, part: Array, instants: slice) -> slice:
     """Where some instants of a part stand, which itself stands at a place."""
     each = part.size // part.shape[-1]
-    first, last, _ = some.indices(part.shape[-1])
+    first, last, _ = instants.indices(part.shape[-1])
     return slice(place.start + first * each, place.start + last * each)
 
 

@@ -42,8 +42,8 @@ class Blocks:
     def each(self, work: Callable[[slice], None]) -> None:
         """Do some work for every block of instants."""
         if self._pool is None:
-            for some in self.slices:
-                work(some)
+            for instants in self.slices:
+                work(instants)
             return
         # Read to the end, so that an error in a thread is raised here.
         for _ in self._pool.map(work, self.slices):

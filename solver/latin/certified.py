@@ -47,7 +47,7 @@ def finished(
     moved = (certificate.displacement / scales.displacement)[problem.row_dofs]
     stretched = force / k[:, None]
     fields = moved + stretched, moved - stretched, moved, force
-    outgoing, incoming, local, force = (read_only(np.asfortranarray(own)) for own in fields)
+    outgoing, incoming, local, force = (read_only(np.asfortranarray(field)) for field in fields)
     return Iterate(
         number=number,
         seconds=seconds,
@@ -122,14 +122,14 @@ def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, A
     """
     rows, places, needed, size = [], [], [], 0
     for part in problem.substructures:
-        own, place, stiffness = part.elasticity.boundary
+        points, place, stiffness = part.elasticity.boundary
         force = np.asarray(stiffness @ displacement[part.dofs])
         if part.body_force is not None:
-            force = force - part.body_force[own]
+            force = force - part.body_force[points]
         needed.append(force)
         rows.append(part.rows)
         places.append(size + place)
-        size += len(own)
+        size += len(points)
     entries = np.ones(problem.n_rows), (np.concatenate(places), np.concatenate(rows))
     return sparse.csr_array(entries, shape=(size, problem.n_rows)), np.concatenate(needed)
 

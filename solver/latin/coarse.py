@@ -38,16 +38,18 @@ class CoarseProblem:
         seen, systems = [], []
         constant = load.astype(float)
         for group in groups:
-            own, local, assembly = _local_basis(basis, group.rows)
-            forces = local.T @ group.response.force_rows(own)
+            rows, local, assembly = _local_basis(basis, group.rows)
+            forces = local.T @ group.response.force_rows(rows)
             seen.append(assembly)
-            own_system = forces[:, own] @ local
-            systems.append(np.broadcast_to(own_system, (group.rows.shape[1], *own_system.shape)))
+            system_of_group = forces[:, rows] @ local
+            systems.append(
+                np.broadcast_to(system_of_group, (group.rows.shape[1], *system_of_group.shape))
+            )
             if group.body is not None:
-                held = group.k[own, None, None] * group.body[own]
-                held = local.T @ held.reshape(len(own), -1, order="F")
+                held = group.k[rows, None, None] * group.body[rows]
+                held = local.T @ held.reshape(len(rows), -1, order="F")
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
-            self._members.append(_Member(group, own, local, np.asfortranarray(forces)))
+            self._members.append(_Member(group, rows, local, np.asfortranarray(forces)))
         self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
         system = self._spread @ _diagonal(systems) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
@@ -58,11 +60,12 @@ class CoarseProblem:
         """Add W~ to the targets of all groups."""
         self._blocks.each(self._add_multiplier)
 
-    def _add_multiplier(self, some: slice) -> None:
-        forces = [member.macro_forces(some) for member in self._members]
-        multiplier = self._solve(np.concatenate(forces) if len(forces) > 1 else forces[0], some)
+    def _add_multiplier(self, instants: slice) -> None:
+        forces = [member.macro_forces(instants) for member in self._members]
+        stacked = np.concatenate(forces) if len(forces) > 1 else forces[0]
+        multiplier = self._solve(stacked, instants)
         for member, place in zip(self._members, self._places, strict=True):
-            member.add(multiplier[place], some)
+            member.add(multiplier[place], instants)
 
 
 class _Member:
@@ -70,87 +73,93 @@ class _Member:
 
     Parameters
     ----------
-    group, own
+    group, rows
         The group, and the places of its rows that carry macro quantities, ascending.
     local
-        The basis on these, shape (n_own, n_local).
+        The basis on these, shape (n_carrying, n_local).
     forces
         Macro forces of a target, shape (n_local, n_boundary).
     """
 
-    def __init__(self, group: Group[Any], own: Indices, local: Array, forces: Array) -> None:
+    def __init__(self, group: Group[Any], rows: Indices, local: Array, forces: Array) -> None:
         self._group, self._local, self._forces = group, local, forces
         self.size = local.shape[1] * group.rows.shape[1]
         # Where they follow each other, adding to them copies nothing.
-        breaks = np.flatnonzero(np.diff(own) > 1) + 1
-        starts, ends = [0, *breaks], [*breaks, len(own)]
+        breaks = np.flatnonzero(np.diff(rows) > 1) + 1
+        starts, ends = [0, *breaks], [*breaks, len(rows)]
         self._runs = [
-            (slice(own[start], own[start] + end - start), slice(start, end))
+            (slice(rows[start], rows[start] + end - start), slice(start, end))
             for start, end in zip(starts, ends, strict=True)
         ]
 
-    def macro_forces(self, some: slice) -> Array:
+    def macro_forces(self, instants: slice) -> Array:
         """Macro forces of the target at some instants, shape (size, n_some)."""
-        target = self._columns(some)
+        target = self._columns(instants)
         forces: Array = np.matmul(self._forces, target)
         return forces.reshape(self.size, -1, order="F")
 
-    def add(self, multiplier: Array, some: slice) -> None:
+    def add(self, multiplier: Array, instants: slice) -> None:
         """Add a multiplier, shape (size, n_some), to the target at some instants."""
-        target = self._columns(some)
+        target = self._columns(instants)
         part = multiplier.reshape(self._local.shape[1], -1, order="F")
         change = np.empty((len(self._local), target.shape[1]), order="F")
         np.matmul(self._local, part, out=change)
-        for run, own in self._runs:
-            target[run] += change[own]
+        for run, place in self._runs:
+            target[run] += change[place]
 
-    def _columns(self, some: slice) -> Array:
+    def _columns(self, instants: slice) -> Array:
         target = self._group.target
-        return target[:, :, some].reshape(len(target), -1, order="F")
+        return target[:, :, instants].reshape(len(target), -1, order="F")
 
 
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:
-    """Find the part of the macro basis that all members of a group see alike.
+    """Part of the macro basis that all members of a group see alike.
 
     Returns
     -------
-    Places of the rows that carry macro quantities, shape (n_own,); the basis on them, shape
-    (n_own, n_local); and what adds up the members' macro forces, (n_macro, n_members n_local).
+    Places of the rows that carry macro quantities, shape (n_carrying,); the basis on them, shape
+    (n_carrying, n_local); and what adds up the members' macro forces, (n_macro, n_members n_local).
     Where members do not see the same, or a row has but one macro quantity, the local basis is the
     identity.
     """
     counts = np.diff(basis.indptr)[rows]
-    own = np.flatnonzero(counts.any(axis=1))
-    stacked = sparse.csr_array(basis[rows[own].ravel(order="F")])
+    carrying = np.flatnonzero(counts.any(axis=1))
+    stacked = sparse.csr_array(basis[rows[carrying].ravel(order="F")])
     whole = sparse.csr_array(stacked.T)
     if counts.max() == 1:
-        return own, np.eye(len(own)), whole
+        return carrying, np.eye(len(carrying)), whole
     chosen, local = [], np.zeros((0, 0))
-    for first in range(0, stacked.shape[0], len(own)):
-        seen, shown = _seen(stacked, slice(first, first + len(own)))
+    for first in range(0, stacked.shape[0], len(carrying)):
+        seen, shown = _seen(stacked, slice(first, first + len(carrying)))
         chosen.append(seen)
         if first == 0:
             local = shown
         elif not np.array_equal(shown, local):
-            return own, np.eye(len(own)), whole
+            return carrying, np.eye(len(carrying)), whole
     columns = np.concatenate(chosen)
     shape = (basis.shape[1], len(columns))
     ones = np.ones(len(columns))
-    return own, local, sparse.csr_array((ones, (columns, np.arange(len(columns)))), shape=shape)
+    return (
+        carrying,
+        local,
+        sparse.csr_array((ones, (columns, np.arange(len(columns)))), shape=shape),
+    )
 
 
 def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
-    """Find the columns that some rows have entries in, shape (n,), and the basis there, dense.
+    """Columns that some rows have entries in, shape (n,), and the basis there, dense.
 
     In the order in which the rows meet them, which members of a group share if anything.
     """
     starts = basis.indptr[rows.start : rows.stop + 1]
-    some = slice(starts[0], starts[-1])
+    entries = slice(starts[0], starts[-1])
     row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    columns, first, place = np.unique(basis.indices[some], return_index=True, return_inverse=True)
+    columns, first, place = np.unique(
+        basis.indices[entries], return_index=True, return_inverse=True
+    )
     order = np.argsort(row[first], kind="stable")
     dense = np.zeros((len(starts) - 1, len(columns)))
-    dense[row, place] = basis.data[some]
+    dense[row, place] = basis.data[entries]
     return columns[order], dense[:, order]
 
 
@@ -175,8 +184,12 @@ def _solver(
     """The map from macro-row forces of the targets at some instants to W~ at these rows."""
     factor = splu(system)
     if system.shape[0] > DENSE_UP_TO:
-        return lambda forces, some: spread.T @ factor.solve(constant[:, some] - spread @ forces)
+
+        def solve(forces: Array, instants: slice) -> Array:
+            return np.asarray(spread.T @ factor.solve(constant[:, instants] - spread @ forces))
+
+        return solve
     inverse = spread.T @ factor.solve(np.eye(system.shape[0]))
     shift = np.asfortranarray(inverse @ constant)
     product = np.asfortranarray(inverse @ spread)
-    return lambda forces, some: shift[:, some] - product @ forces
+    return lambda forces, instants: shift[:, instants] - product @ forces

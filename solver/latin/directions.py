@@ -19,8 +19,8 @@ Fields = tuple[Array, Array]
 SOFTENING = 2.0
 """k at least, over the slope by which a friction of known bound falls with slip: below once the
 slope the local stage has several solutions. Faults with friction_ratio 0.7 to 0.9: 1 % of the
-contact force takes 77, 21, 18 and 11 iterations; 87, 21, 14 and 13 with 1.5, 81, 26, 20 and 9 with
-3, and more than 300 with 1.1 or with half the slope (measured)."""
+contact force takes 11 to 77 iterations, as many with 1.5 and 3, more than 300 with 1.1 (measured).
+"""
 LOOK = 3
 """The iteration that tells whether bodies slip on each other anywhere. In the second one what will
 stick may still slip, at a tenth of all points and instants; in the third none does where none does
@@ -66,14 +66,14 @@ class SearchDirection(ABC):
 
     @abstractmethod
     def rule(self, problem: Problem) -> Array:
-        """Return k of every row without the factors, shape (n_rows,), scaled."""
+        """Search direction k of every row without the factors, shape (n_rows,), scaled."""
 
     def of(self, problem: Problem) -> Array:
-        """Return k of every row at the start, shape (n_rows,), scaled, read-only."""
+        """Search direction k of every row at the start, shape (n_rows,), scaled, read-only."""
         return self._with_factors(problem, self.rule(problem))
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """Return k of a run that goes on from a checkpoint, if from any, and how it changes."""
+        """Progress of a run that goes on from a checkpoint, if from any: k, and how it changes."""
         return UpdateProgress("returned", self.of(problem))
 
     def is_due(self, progress: UpdateProgress) -> bool:
@@ -83,13 +83,13 @@ class SearchDirection(ABC):
     def observe(
         self, problem: Problem, progress: UpdateProgress, displacement: Array, incoming: Array
     ) -> UpdateProgress:
-        """Take in W^ of a local stage, and W - F/k that it read, (n_rows, n_instants) each."""
+        """Progress after a local stage: its W^, and W - F/k that it read, (n_rows, n_instants)."""
         return progress
 
     def update(
         self, problem: Problem, progress: UpdateProgress, fields: Fields
     ) -> tuple[UpdateProgress, Fields | None]:
-        """Decide on k; return fields to go on from where it changes."""
+        """How k changes, and where it does the fields to go on from."""
         return progress, None
 
     def _with_factors(self, problem: Problem, k: Array) -> Array:
@@ -108,7 +108,7 @@ class Paper(SearchDirection):
     """The paper's k: the stiffness of a substructure."""
 
     def rule(self, problem: Problem) -> Array:
-        """Return k of every row without the factors, shape (n_rows,), scaled."""
+        """Search direction k of every row without the factors, shape (n_rows,), scaled."""
         return problem.direction
 
 
@@ -127,11 +127,11 @@ class Auto(SearchDirection):
     """
 
     def rule(self, problem: Problem) -> Array:
-        """Return k of every row without the factors, shape (n_rows,), scaled."""
+        """Search direction k of every row without the factors, shape (n_rows,), scaled."""
         return automatic(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """Return k at the start; it stays in a run from the fields of another, which are near."""
+        """Progress at the start; k stays in a run from the fields of another, which are near."""
         if start is not None and start.course is not None:
             return start.course
         laws = problem.rubbing.values()
@@ -145,7 +145,7 @@ class Auto(SearchDirection):
     def observe(
         self, problem: Problem, progress: UpdateProgress, displacement: Array, incoming: Array
     ) -> UpdateProgress:
-        """Look in the third iteration whether anything slips; then k stays."""
+        """Progress, which ends in the third iteration if anything slips: then k stays."""
         if progress.phase != "first":
             return progress
         progress = replace(progress, count=progress.count + 1)
@@ -192,7 +192,7 @@ class FromStatus:
         return self.first.scale
 
     def of(self, problem: Problem) -> Array:
-        """Return k of every row at the start, shape (n_rows,), scaled, read-only."""
+        """Search direction k of every row at the start, shape (n_rows,), scaled, read-only."""
         return self.first.of(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
@@ -208,7 +208,7 @@ class FromStatus:
     def observe(
         self, problem: Problem, progress: UpdateProgress, displacement: Array, incoming: Array
     ) -> UpdateProgress:
-        """Take in what sticks and slips in a local stage, as `SearchDirection.observe`."""
+        """Progress by what sticks and slips in a local stage, as `SearchDirection.observe`."""
         if progress.phase == "updated":
             return replace(progress, count=progress.count + 1)
         if progress.phase != "first":
@@ -252,7 +252,7 @@ def _profile(problem: Problem, progress: UpdateProgress) -> Array:
 
 
 def automatic(problem: Problem, *, sticks: bool = False) -> Array:
-    """Return k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
+    """Search direction k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
 
     It is that of bodies that slip on each other, or of bodies that nowhere do.
 

@@ -130,8 +130,8 @@ def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Chan
     """A change relative to what `solver.reference.distance` divides an error by."""
     n_instants, normal = iterate.problem.n_instants, iterate.problem.rubbing_is_normal
     changes, squares = (
-        np.einsum("ij,ij->j", one, one)
-        for one in (part.reshape(n_instants, -1) for part in (change, force))
+        np.einsum("ij,ij->j", by_instant, by_instant)
+        for by_instant in (field.reshape(n_instants, -1) for field in (change, force))
     )
 
     def share(kind: NDArray[np.bool_] | slice, least: float) -> float:

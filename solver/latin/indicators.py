@@ -15,7 +15,7 @@ from solver.laws.interface import beyond, squared
 
 
 def latin_indicator(iterate: Iterate) -> float:
-    """Compute eta, the relative squared distance of linear and local stage (paper, eq. 2).
+    """Eta, the relative squared distance of linear and local stage (paper, eq. 2).
 
     With ||s||^2 = integral of k W^2 + F^2/k = 1/2 integral of k [(W + F/k)^2 + (W - F/k)^2].
     Zero when both stages are zero.
@@ -40,7 +40,7 @@ STILL = 1e-6
 
 
 def behaviour_indicator(iterate: Iterate) -> float:
-    """Check the linear stage's fields against the interface laws alone (solver/README.md, 4).
+    """Check of the linear stage's fields against the interface laws alone (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q
@@ -61,14 +61,15 @@ def behaviour_indicator(iterate: Iterate) -> float:
 
 
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
+    """Check of W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator`."""
     noise = _rounding(displacement, force)
     groups = problem.contact_groups
     behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]
     energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
-        float(one.dissipated.sum()) for one in behaviours
+        float(behaviour.dissipated.sum()) for behaviour in behaviours
     )
-    allowance = sum(float(one.bound.sum()) for one in behaviours) or float(np.abs(force).sum())
+    allowance = sum(float(behaviour.bound.sum()) for behaviour in behaviours)
+    allowance = allowance or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
     worst = max(map(partial(_worst, mean_slip=mean_slip), groups, behaviours))
     # Against the mean energy per interface, so that many that hold do not hide one that does not.

@@ -8,13 +8,13 @@ from itertools import count
 from math import inf
 from typing import Any
 
-import numpy as np
 from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, one_blas_thread
 from solver.latin.iterate import Checkpoint, Iterate, read_only
+from solver.latin.linear_stage import LinearStage
 from solver.latin.local_stage import LocalStage
 from solver.latin.method import Latin
 from solver.refusal import RefusedError
@@ -86,7 +86,7 @@ class Iteration:
         self._course = latin.direction.begin(problem, start)
         self._assemble()
         if start is None:
-            start = _own_start(problem, latin, self.k)
+            start = _first_state(problem, latin, self.k)
         self._go_to(start)
         if start is not None:
             self._recall(start)
@@ -95,7 +95,7 @@ class Iteration:
         self._read = self.incoming
 
     def _assemble(self) -> None:
-        """Put the parts together for one search direction; the linear stage is factored.
+        """Assemble the parts for one search direction; the linear stage is factored.
 
         Raises
         ------
@@ -105,7 +105,9 @@ class Iteration:
         problem, latin, self.k = self._problem, self._latin, self._course.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         try:
-            self.linear = latin.linear.stage(problem, self.k, blocks, multiscale=latin.multiscale)
+            self.linear = LinearStage(
+                problem, self.k, latin.linear, blocks, multiscale=latin.multiscale
+            )
         except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
             raise RefusedError(
                 "k_scale",
@@ -123,12 +125,11 @@ class Iteration:
         self._show()
 
     def _show(self) -> None:
-        shape = self._problem.n_rows, self._problem.n_instants
-        self.incoming = read_only(self.linear.incoming(self.state, np.empty(shape, order="F")))
-        self.outgoing = read_only(self.linear.to_boundary(self.state))
+        self.incoming = read_only(self.linear.incoming(self.state))
+        self.outgoing = read_only(self.linear.outgoing(self.state))
 
     def _recall(self, start: Checkpoint) -> None:
-        """Bring back what an acceleration remembers, from a checkpoint of the same run."""
+        """Restore what an acceleration remembers, from a checkpoint of the same run."""
         mix = self._mixture
         if start.memory is None or mix is None:
             return
@@ -199,7 +200,7 @@ class Iteration:
         )
 
 
-def _own_start(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
+def _first_state(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
     """The start of the method's own choice; None is zero fields."""
     if problem.rest is not None:
         return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])

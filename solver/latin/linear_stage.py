@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solver.arrays import Array, Indices, space_time
+from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL, Blocks, at_once
@@ -17,6 +16,9 @@ from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
 from solver.latin.response import Responses
 from solver.reduction.basis import Modes, Reduction, ReductionRecord
+
+if TYPE_CHECKING:
+    from solver.latin.pgd import PGD
 
 State = TypeVar("State")
 Bases = dict[int, tuple[Modes, ReductionRecord]]
@@ -37,12 +39,10 @@ class LinearStage:
         What to solve; k has shape (n_rows,).
     multiscale
         Whether the coarse problem is part of it.
-    make_group
-        Makes a group of identical substructures with the same k; that with full fields if None.
+    form
+        How fields are held.
     blocks
         Of instants, in which it works; None for all at once.
-    responses
-        Of stages before it that may serve again.
 
     Attributes
     ----------
@@ -54,17 +54,19 @@ class LinearStage:
         self,
         problem: Problem,
         k: Array,
+        form: Full | PGD | None = None,
+        blocks: Blocks | None = None,
         *,
         multiscale: bool,
-        make_group: Callable[[Problem, list[Substructure], Array, Responses], Group[Any]]
-        | None = None,
-        blocks: Blocks | None = None,
-        responses: Responses | None = None,
     ) -> None:
-        responses = Responses() if responses is None else responses
-        make = make_group or FullGroup
-        self.groups = [make(problem, alike, k, responses) for alike in _alike(problem, k)]
-        self._blocks = blocks or at_once(problem.n_instants)
+        form = form or Full()
+        responses = form.responses or Responses()
+        self.groups: list[Group[Any]] = [
+            form.group(problem, alike, k, responses) for alike in _alike(problem, k)
+        ]
+        if blocks is None or not form.is_local_in_time:
+            blocks = at_once(problem.n_instants)
+        self._blocks = blocks
         self._coarse = (
             CoarseProblem(problem, self.groups, self._blocks)
             if multiscale and problem.has_cuts
@@ -79,26 +81,26 @@ class LinearStage:
     def reduction(self, state: list[Any]) -> Reduction | None:
         """The separated bases of a state, if it has any."""
         bases: Bases = {}
-        for group, own in zip(self.groups, state, strict=True):
-            bases |= group.bases(own)
+        for group, part in zip(self.groups, state, strict=True):
+            bases |= group.bases(part)
         if not bases:
             return None
         modes, records = zip(*(bases[number] for number in sorted(bases)), strict=True)
         return Reduction(modes, records)
 
-    def to_boundary(self, state: list[Any]) -> Array:
+    def outgoing(self, state: list[Any]) -> Array:
         """W + F/k of a state, shape (n_rows, n_instants)."""
-        boundary = space_time(*self._shape)
-        for group, own in zip(self.groups, state, strict=True):
-            group.scatter(group.outgoing(own), boundary)
+        boundary = np.empty(self._shape, order="F")
+        for group, part in zip(self.groups, state, strict=True):
+            group.scatter(group.outgoing(part), boundary)
         return boundary
 
     def read(self, target: Array) -> None:
-        """Take W^ + F^/k of the local stage, shape (n_rows, n_instants), as all groups' target."""
+        """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
 
-        def work(some: slice) -> None:
+        def work(instants: slice) -> None:
             for group in self.groups:
-                group.gather(target, some)
+                group.gather(target, instants)
 
         self._blocks.each(work)
 
@@ -115,18 +117,19 @@ class LinearStage:
         if self._coarse is not None:
             self._coarse.add_multiplier()
 
-        def work(some: slice) -> None:
-            for group, own in zip(self.groups, state, strict=True):
-                group.relax(own, relaxation, some)
+        def work(instants: slice) -> None:
+            for group, part in zip(self.groups, state, strict=True):
+                group.relax(part, relaxation, instants)
 
         self._blocks.each(work)
 
-    def incoming(self, state: list[Any], boundary: Array) -> Array:
-        """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
+    def incoming(self, state: list[Any]) -> Array:
+        """W - F/k of a state, shape (n_rows, n_instants)."""
+        boundary = np.empty(self._shape, order="F")
 
-        def work(some: slice) -> None:
-            for group, own in zip(self.groups, state, strict=True):
-                group.scatter(group.reflect(own, some), boundary, some)
+        def work(instants: slice) -> None:
+            for group, part in zip(self.groups, state, strict=True):
+                group.scatter(group.reflect(part, instants), boundary, instants)
 
         self._blocks.each(work)
         return boundary
@@ -142,32 +145,23 @@ class Full:
         What helps a run that does not converge, to begin a sentence with; nothing here.
     has_to_prove
         Whether a run ends by proof alone, whatever that costs.
+    is_local_in_time
+        Whether it may work on a few instants at a time.
     responses
         Factors of substructures that runs with one k share; None: each run has its own.
     """
 
     remedy: ClassVar[str] = ""
     has_to_prove: ClassVar[bool] = False
+    is_local_in_time: ClassVar[bool] = True
 
     responses: Responses | None = field(default=None, repr=False)
 
-    def stage(
-        self, problem: Problem, k: Array, blocks: Blocks | None = None, *, multiscale: bool
-    ) -> LinearStage:
-        """Factor the linear stage.
-
-        Parameters
-        ----------
-        problem, k
-            What to solve, and the search direction of the rows, shape (n_rows,), scaled.
-        blocks
-            Of instants, in which it works; None for all at once.
-        multiscale
-            Whether the coarse problem is part of it.
-        """
-        return LinearStage(
-            problem, k, multiscale=multiscale, blocks=blocks, responses=self.responses
-        )
+    def group(
+        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
+    ) -> FullGroup:
+        """Group of identical substructures with the same k, shape (n_rows,)."""
+        return FullGroup(problem, parts, k, responses)
 
 
 class Group(ABC, Generic[State]):
@@ -212,18 +206,18 @@ class Group(ABC, Generic[State]):
         """Allocate a zero field of the group."""
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
-    def gather(self, field: Array, some: slice = ALL) -> None:
-        """Take the group's rows of a boundary field as its target, at some instants."""
-        flat = self.target.T.reshape(self._n_instants, -1)[some]
-        np.take(field.T[some], self._order, axis=1, out=flat, mode="clip")
+    def gather(self, field: Array, instants: slice = ALL) -> None:
+        """Make the group's rows of a boundary field its target, at some instants."""
+        flat = self.target.T.reshape(self._n_instants, -1)[instants]
+        np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
 
-    def scatter(self, own: Array, field: Array, some: slice = ALL) -> None:
+    def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
         """Write a field of the group into the rows of a boundary field, at some instants."""
-        flat = own.T.reshape(self._n_instants, -1)[some]
+        flat = values.T.reshape(self._n_instants, -1)[instants]
         if self._back is None:
-            field.T[some, self._order] = flat
+            field.T[instants, self._order] = flat
         else:
-            np.take(flat, self._back, axis=1, out=field.T[some], mode="clip")
+            np.take(flat, self._back, axis=1, out=field.T[instants], mode="clip")
 
     @abstractmethod
     def start(self, checkpoint: Checkpoint | None) -> State:
@@ -234,11 +228,11 @@ class Group(ABC, Generic[State]):
         """W + F/k of a state, a field of the group."""
 
     @abstractmethod
-    def relax(self, state: State, relaxation: float, some: slice = ALL) -> None:
+    def relax(self, state: State, relaxation: float, instants: slice = ALL) -> None:
         """Mix the target into a state, at some instants."""
 
     @abstractmethod
-    def reflect(self, state: State, some: slice = ALL) -> Array:
+    def reflect(self, state: State, instants: slice = ALL) -> Array:
         """W - F/k = 2 W - (W + F/k) of a state, at some instants; the next call overwrites it."""
 
     def weights(self, time_weights: Array) -> Array | None:
@@ -263,9 +257,9 @@ class FullGroup(Group[Array]):
         """W + F/k of a state, which is the state itself."""
         return state
 
-    def relax(self, state: Array, relaxation: float, some: slice = ALL) -> None:
+    def relax(self, state: Array, relaxation: float, instants: slice = ALL) -> None:
         """Mix the target into a state, at some instants."""
-        old, target = state[:, :, some], self.target[:, :, some]
+        old, target = state[:, :, instants], self.target[:, :, instants]
         if relaxation == 1.0:
             np.copyto(old, target)
             return
@@ -273,15 +267,15 @@ class FullGroup(Group[Array]):
         np.multiply(target, relaxation, out=target)
         np.add(old, target, out=old)
 
-    def reflect(self, state: Array, some: slice = ALL) -> Array:
+    def reflect(self, state: Array, instants: slice = ALL) -> Array:
         """W - F/k = 2 W - (W + F/k) of a state, up to date at some instants."""
         flat = (len(self.k), -1)
-        reflected = self._reflected[:, :, some]
+        reflected = self._reflected[:, :, instants]
         self.response.reflect(
-            state[:, :, some].reshape(flat, order="F"), reflected.reshape(flat, order="F")
+            state[:, :, instants].reshape(flat, order="F"), reflected.reshape(flat, order="F")
         )
         if self.body is not None:
-            reflected += 2.0 * self.body[:, :, some]
+            reflected += 2.0 * self.body[:, :, instants]
         return self._reflected
 
     def weights(self, time_weights: Array) -> Array:

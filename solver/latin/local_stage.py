@@ -13,7 +13,7 @@ from solver.latin.sliding_body import Slide, slide_of
 class LocalStage:
     """Interface laws along the search direction E+, ready for one problem and one k.
 
-    It reads z = W - F/k of the linear stage alone, and what it gives is read as
+    It reads z = W - F/k of the linear stage alone, and its result is read as
     W^ + F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together.
 
     Parameters
@@ -26,7 +26,7 @@ class LocalStage:
     Attributes
     ----------
     displacement
-        W^ of the last call, shape (n_rows, n_instants); the next call gives a new one.
+        W^ of the last call, shape (n_rows, n_instants); the next call makes a new field.
     incoming
         z with which the last call obeyed: as read, but for the shift of a body that slides as a
         whole.
@@ -64,13 +64,13 @@ class LocalStage:
         displacement = self.displacement = np.empty_like(self._outgoing)
         for rule in self._remembering:
             rule(incoming, displacement, ALL)
-        self._blocks.each(lambda some: self._at(incoming[:, some], some))
+        self._blocks.each(lambda instants: self._at(incoming[:, instants], instants))
         return self._outgoing
 
-    def _at(self, incoming: Array, some: slice) -> None:
+    def _at(self, incoming: Array, instants: slice) -> None:
         """Obey the laws that are local in time, at some instants, and reflect."""
-        displacement, outgoing = self.displacement[:, some], self._outgoing[:, some]
+        displacement, outgoing = self.displacement[:, instants], self._outgoing[:, instants]
         for rule in self._instant:
-            rule(incoming, displacement, some)
+            rule(incoming, displacement, instants)
         np.multiply(displacement, 2.0, out=outgoing)
         np.subtract(outgoing, incoming, out=outgoing)

@@ -8,7 +8,6 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -16,9 +15,9 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
-from solver.latin.blocks import ALL, Blocks
+from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear_stage import Bases, Group, LinearStage
+from solver.latin.linear_stage import Bases, Group
 from solver.latin.response import Responses
 from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis, nearest_mode
 from solver.refusal import check_range
@@ -47,12 +46,13 @@ class PGD:
         Equal substructures use the same modes if these miss at most this share of each one's field;
         0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
         (solver/study/README.md, 8).
-    remedy, has_to_prove, responses
+    remedy, has_to_prove, is_local_in_time, responses
         As of `Full`.
     """
 
     remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
     has_to_prove: ClassVar[bool] = True
+    is_local_in_time: ClassVar[bool] = False
 
     modes: int = 10
     tolerance: float = 1e-7
@@ -66,17 +66,11 @@ class PGD:
         for name in ("tolerance", "sharing"):
             check_range(self, name, 0.0, 1.0)
 
-    def stage(
-        self, problem: Problem, k: Array, blocks: Blocks | None = None, *, multiscale: bool
-    ) -> LinearStage:
-        """Factor the linear stage, as `Full.stage` does; it works on all instants at once."""
-        return LinearStage(
-            problem,
-            k,
-            multiscale=multiscale,
-            make_group=partial(PGDGroup, pgd=self),
-            responses=self.responses,
-        )
+    def group(
+        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
+    ) -> PGDGroup:
+        """Group of identical substructures with the same k, shape (n_rows,)."""
+        return PGDGroup(problem, parts, k, responses, self)
 
 
 @dataclass
@@ -101,25 +95,16 @@ class Family:
     record: ReductionRecord
 
     def columns(self, field: Array) -> Array:
-        """Take the members of a group field as one matrix, shape (n_boundary, n_columns).
+        """The members of a group field as one matrix, shape (n_boundary, n_columns).
 
         It is a view of the field if there is one member, otherwise a copy.
         """
-        return members_of(field, self.members).reshape(len(field), -1, order="F")
-
-    def time_functions(self, place: int) -> Array:
-        """One member's time functions, shape (n_modes, n_instants)."""
-        return self.basis.time_functions[:, place :: len(self.members)]
-
-
-def members_of(field: Array, members: list[int]) -> Array:
-    """Members of a group field, shape (n_boundary, n_members, n_instants).
-
-    It is a view of the field if there is one member, otherwise a copy.
-    """
-    if len(members) == 1:
-        return field[:, members[0] : members[0] + 1]
-    return np.asfortranarray(field[:, members])
+        members = self.members
+        if len(members) == 1:
+            field = field[:, members[0] : members[0] + 1]
+        else:
+            field = np.asfortranarray(field[:, members])
+        return field.reshape(len(field), -1, order="F")
 
 
 class PGDGroup(Group[list[Family]]):
@@ -167,8 +152,8 @@ class PGDGroup(Group[list[Family]]):
             nearest = (self._basis_of(self.target[:, place], 1) for place in places)
             return [self._family([place], basis) for place, basis in enumerate(nearest)]
         modes, records = checkpoint.reduction.modes, checkpoint.reduction.records
-        own = self._numbers
-        return self._shared([modes[n] for n in own], [records[n] for n in own])
+        numbers = self._numbers
+        return self._shared([modes[n] for n in numbers], [records[n] for n in numbers])
 
     def outgoing(self, state: list[Family]) -> Array:
         """W + F/k of a state, rebuilt."""
@@ -177,7 +162,7 @@ class PGDGroup(Group[list[Family]]):
             self._put(rebuilt, family.members, family.basis.field())
         return rebuilt
 
-    def relax(self, state: list[Family], relaxation: float, some: slice = ALL) -> None:
+    def relax(self, state: list[Family], relaxation: float, instants: slice = ALL) -> None:
         """Bring a state towards the target: update time functions, enrich, downsize."""
         for family in state:
             self._advance(family, relaxation)
@@ -185,7 +170,7 @@ class PGDGroup(Group[list[Family]]):
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share(state)
 
-    def reflect(self, state: list[Family], some: slice = ALL) -> Array:
+    def reflect(self, state: list[Family], instants: slice = ALL) -> Array:
         """W - F/k of a state; the next call overwrites it."""
         for family in state:
             columns = family.columns(self._reflected)
@@ -200,11 +185,12 @@ class PGDGroup(Group[list[Family]]):
         """Separated bases of a state, by number of the substructure."""
         bases: Bases = {}
         for family in state:
+            time_functions = family.basis.time_functions
             for place, member in enumerate(family.members):
                 modes = Modes(
                     outgoing=family.basis.modes,
                     incoming=family.incoming_modes,
-                    time_functions=family.time_functions(place).copy(),
+                    time_functions=time_functions[:, place :: len(family.members)].copy(),
                     k=self.k,
                     stored=self._numbers[family.members[0]],
                 )
@@ -279,14 +265,12 @@ class PGDGroup(Group[list[Family]]):
         state[:] = joined
 
     def _join(self, family: Family, other: Family) -> None:
-        members = sorted(family.members + other.members)
         target = self.field()
         for part in (family, other):
             self._put(target, part.members, part.basis.field())
-        columns = members_of(target, members).reshape(len(target), -1, order="F")
-        basis = self._basis_of(columns, len(members))
-        family.members, family.basis = members, basis
-        family.incoming_modes = self._incoming(basis)
+        family.members = sorted(family.members + other.members)
+        family.basis = self._basis_of(family.columns(target), len(family.members))
+        family.incoming_modes = self._incoming(family.basis)
 
     def _family(self, members: list[int], basis: SeparatedBasis) -> Family:
         record = ReductionRecord.idle(basis.n_modes)

@@ -68,9 +68,9 @@ class SparseResponse:
     def reflect(self, outgoing: Array, out: Array) -> None:
         """Write 2 H k y - y for y of shape (n_boundary, n)."""
         for first in range(0, outgoing.shape[1], self._columns):
-            some = slice(first, first + self._columns)
-            displacement = self._factor.solve(np.asfortranarray(self._load @ outgoing[:, some]))
-            np.multiply(displacement[self._trace], 2.0, out=out[:, some])
+            columns = slice(first, first + self._columns)
+            displacement = self._factor.solve(np.asfortranarray(self._load @ outgoing[:, columns]))
+            np.multiply(displacement[self._trace], 2.0, out=out[:, columns])
         np.subtract(out, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:

@@ -14,7 +14,7 @@ from solver.latin.estimate import WAIT
 from solver.latin.method import Latin
 from solver.latin.step_cost import SYSTEMS, costs_of
 from solver.reference.contact import MOST_JUMPS, jumps_in
-from solver.reference.supports import rubs_on_supports
+from solver.reference.incremental import rubs_on_supports
 
 ITERATIONS, MORE = 30, 2.5
 """That a run takes, and how many more with every contact between bodies but the first, where bodies
@@ -30,10 +30,6 @@ BEGINNING = 0.05
 FIELDS = 25
 """Boundary fields that a run holds at a time, besides those that the acceleration remembers: 22 on
 a block of 768 x 384 elements, 33 on a bar of 16 000 (measured)."""
-SQUARES = 1
-"""Matrices between all jumps that a condensation holds at a time (measured)."""
-ANSWERS = 1
-"""Matrices of all degrees of freedom and jumps that it holds at a time."""
 NUMBER = 8
 """Bytes."""
 LONG, LARGE = 20.0, 1e9
@@ -112,10 +108,13 @@ def _fields(problem: Problem) -> float:
 
 
 def _dense(problem: Problem, n_jumps: int) -> float:
-    """The numbers in the matrices of a condensation; supports have a band."""
+    """The numbers in the matrices of a condensation; supports have a band.
+
+    It holds one between all jumps, and one of all degrees of freedom and jumps.
+    """
     if rubs_on_supports(problem):
         return 0.0
-    return n_jumps * (SQUARES * float(n_jumps) + ANSWERS * problem.n_dofs)
+    return n_jumps * (float(n_jumps) + problem.n_dofs)
 
 
 def _duration(seconds: float) -> str:

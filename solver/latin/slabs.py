@@ -23,7 +23,6 @@ from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.method import Latin
 from solver.latin.response import Responses
-from solver.latin.sliding_body import slide_of
 from solver.latin.solve import Record, Solution, solve
 from solver.latin.start import Nested
 from solver.latin.status import Ending
@@ -43,15 +42,15 @@ class Slab:
 
     Attributes
     ----------
-    some
-        Its instants in the whole interval.
+    instants
+        Its place in the whole interval.
     problem, latin
         What to solve, and the method; slabs of one interval share k and the factors of it.
     start
         Where its iteration begins; None is the method's own start.
     """
 
-    some: slice
+    instants: slice
     problem: Problem
     latin: Latin
     start: Checkpoint | None = None
@@ -86,20 +85,25 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     RefusedError
         If the problem or the method goes by more than fields and where sliders stand.
     """
-    _check(problem, latin, length)
-    some = slice(0, min(1 + length, problem.n_instants))
+    if length < 1:
+        raise RefusedError("slab", length, "instants, from 1 on", "give those of a cycle")
+    if isinstance(latin.direction, FromStatus):
+        raise RefusedError(
+            "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
+        )
+    instants = slice(0, min(1 + length, problem.n_instants))
     direction = _OfWhole(k=latin.direction.of(problem))
     linear = replace(latin.linear, responses=Responses())
-    start = latin.start and Nested(partial(_at, latin.start, some))
+    start = latin.start and Nested(partial(_at, latin.start, instants))
     stop, accuracy = latin.stop, latin.stop.accuracy
     if np.isfinite(accuracy):
         stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)
-    own = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
-    return Slab(some, slab_of(problem, some), own)
+    method = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
+    return Slab(instants, slab_of(problem, instants), method)
 
 
-def _at(start: Nested, some: slice) -> Iterator[Problem]:
-    return (slab_of(one, some) for one in start.problems())
+def _at(start: Nested, instants: slice) -> Iterator[Problem]:
+    return (slab_of(problem, instants) for problem in start.problems())
 
 
 def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Slab | None:
@@ -110,12 +114,12 @@ def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Sla
     problem, length
         As for `first_slab`.
     slab, solved
-        The one before, and its solution.
+        The slab before, and its solution.
     """
-    first = slab.some.stop
+    first = slab.instants.stop
     if first == problem.n_instants:
         return None
-    some = slice(first, min(first + length, problem.n_instants))
+    instants = slice(first, min(first + length, problem.n_instants))
     moved, force = solved.local_displacement, solved.boundary_local_force
     ends = {
         # Pairs of one point that stand apart could never stick together again.
@@ -123,19 +127,21 @@ def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Sla
         for name, law in solved.problem.rubbing.items()
     }
     before = slice(solved.problem.n_instants - length, None)
-    outgoing = solved.outgoing[:, before][:, : some.stop - some.start]
-    start = Checkpoint(0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(solved, before, some))
-    return Slab(some, slab_of(problem, some, ends), slab.latin, start)
+    outgoing = solved.outgoing[:, before][:, : instants.stop - instants.start]
+    start = Checkpoint(
+        0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(solved, before, instants)
+    )
+    return Slab(instants, slab_of(problem, instants, ends), slab.latin, start)
 
 
-def _cut(solved: Iterate, before: slice, some: slice) -> Reduction | None:
+def _cut(solved: Iterate, before: slice, instants: slice) -> Reduction | None:
     """The bases of a slab with the time functions of another."""
     if solved.reduction is None or solved.residual is not None:
         return None
-    size = some.stop - some.start
+    size = instants.stop - instants.start
     modes = (
-        replace(own, time_functions=own.time_functions[:, before][:, :size])
-        for own in solved.reduction.modes
+        replace(basis, time_functions=basis.time_functions[:, before][:, :size])
+        for basis in solved.reduction.modes
     )
     return replace(solved.reduction, modes=tuple(modes)).at_rest
 
@@ -168,7 +174,7 @@ def solve_in_slabs(
     """
     began = time.perf_counter()
     slab: Slab | None = first_slab(problem, latin, length)
-    if slab is not None and slab.some.stop == problem.n_instants:
+    if slab is not None and slab.instants.stop == problem.n_instants:
         whole = replace(latin, finish=StatusStep())
         return solve(problem, whole, distance=distance, watch=False, spent=spent)
     solutions: list[Solution] = []
@@ -177,23 +183,23 @@ def solve_in_slabs(
         billed = spent + time.perf_counter() - began
         solutions.append(solve(slab.problem, method, start=slab.start, watch=False, spent=billed))
         slab = next_slab(problem, slab, solutions[-1].iterate, length)
-    missed = (one for one in solutions if one.status.ending is not Ending.CONVERGED)
+    missed = (solution for solution in solutions if solution.status.ending is not Ending.CONVERGED)
     status = next(missed, solutions[-1]).status
-    joined = together(problem, [one.iterate for one in solutions])
+    joined = together(problem, [solution.iterate for solution in solutions])
     return Solution(joined, _records(solutions, joined, distance), status)
 
 
 def together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
-    """Put iterates of all slabs one after the other; they have no common bases."""
+    """Iterates of all slabs one after the other; they have no common bases."""
     return Iterate(
-        number=sum(one.number for one in parts),
-        seconds=sum(one.seconds for one in parts),
+        number=sum(part.number for part in parts),
+        seconds=sum(part.seconds for part in parts),
         problem=problem,
         k=parts[0].k,
-        outgoing=_joined([one.outgoing for one in parts]),
-        incoming=_joined([one.incoming for one in parts]),
-        local_displacement=_joined([one.local_displacement for one in parts]),
-        local_incoming=_joined([one.local_incoming for one in parts]),
+        outgoing=_joined([part.outgoing for part in parts]),
+        incoming=_joined([part.incoming for part in parts]),
+        local_displacement=_joined([part.local_displacement for part in parts]),
+        local_incoming=_joined([part.local_incoming for part in parts]),
     )
 
 
@@ -206,9 +212,11 @@ def _records(
 ) -> list[Record]:
     """The records of all slabs, numbered through; the last is of the whole interval."""
     records: list[Record] = []
-    for one in solutions:
+    for solution in solutions:
         number = records[-1].iteration if records else 0
-        records += [replace(own, iteration=number + own.iteration) for own in one.records]
+        records += [
+            replace(record, iteration=number + record.iteration) for record in solution.records
+        ]
     records[-1] = replace(
         records[-1],
         indicator=latin_indicator(whole),
@@ -217,19 +225,3 @@ def _records(
         error_force=distance.of_friction_force(whole) if distance else math.nan,
     )
     return records
-
-
-def _check(problem: Problem, latin: Latin, length: int) -> None:
-    if length < 1:
-        raise RefusedError("slab", length, "instants, from 1 on", "give those of a cycle")
-    if isinstance(latin.direction, FromStatus):
-        raise RefusedError(
-            "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
-        )
-    if slide_of(problem) is not None:
-        raise RefusedError(
-            "slab",
-            length,
-            "only where no body slides as a whole",
-            "solve the whole interval at once",
-        )

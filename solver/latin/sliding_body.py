@@ -42,9 +42,9 @@ def slide_of(problem: Problem) -> Array | None:
         return None
     slides, across = law.tangent.above, law.normal.component.above
     wanted = np.concatenate([np.ones(len(slides)), np.zeros(len(across))])
-    own = problem.motions[problem.row_dofs[np.concatenate([slides, across])]]
-    shares = np.linalg.lstsq(own, wanted, rcond=None)[0]
-    is_held = np.abs(own @ shares - wanted).max() > SAME
+    moved = problem.motions[problem.row_dofs[np.concatenate([slides, across])]]
+    shares = np.linalg.lstsq(moved, wanted, rcond=None)[0]
+    is_held = np.abs(moved @ shares - wanted).max() > SAME
     return None if is_held else np.asarray(problem.motions @ shares)
 
 
@@ -57,12 +57,15 @@ def _is_spring(law: Contact) -> bool:
 class Slide:
     """The shift of a body to where the forces of a local stage balance its load.
 
-    With the pressing forces known friction falls with the shift, as the spring does.
+    With the pressing forces known, all points that rub move by one shift. Their forces and the
+    spring's fall with it, in straight lines between the shifts at which a point begins to slip and
+    the spring to pull, so that there is one zero. A point that sticks remembers where it came to
+    rest, which ties each instant to the one before.
 
     Parameters
     ----------
     problem, way
-        What is solved, and the motion, as `slide_of` gives it.
+        What is solved, and the motion, as of `slide_of`.
     k
         Search direction of the rows, shape (n_rows,), scaled.
     """
@@ -74,59 +77,36 @@ class Slide:
         assert law is not None
         assert spring is not None
         assert spring.softness is not None
-        held, pulls = law.component.above, spring.component.above
-        rubs = along.component.above
-        self._across, self._along, self._end = held, rubs, pulls
-        self._closed, self._k = -law.gap[:, None], k[held, None]
+        self._across, self._along = law.component.above, along.component.above
+        self._end = spring.component.above
+        self._closed, self._k = -law.gap[:, None], k[self._across, None]
         self._bound, self._friction = along.bound, along.friction[:, None]
-        soft = 1.0 / k[rubs] + (0.0 if along.softness is None else along.softness)
+        soft = 1.0 / k[self._along] + (0.0 if along.softness is None else along.softness)
         self._soft = soft[:, None]
-        stop = float(1.0 / (1.0 / k[pulls] + spring.softness)[0])
+        # A point that sticks pulls the body back with its stiffness.
+        self._stiffness = 1.0 / soft
+        self._start = np.zeros(len(soft)) if along.start is None else along.start
+        self._spring = float(1.0 / (1.0 / k[self._end] + spring.softness)[0])
         self._slack = float(spring.gap[0])
         self._way = way[problem.row_dofs, None]
         parts = problem.substructures
-        loads = [way[one.dofs] @ one.body_force for one in parts if one.body_force is not None]
-        load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
-        self._balance = Balance(1.0 / soft, stop, load)
+        loads = [way[part.dofs] @ part.body_force for part in parts if part.body_force is not None]
+        self._load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
 
     def balanced(self, incoming: Array) -> Array:
         """Shift z = W - F/k of all rows, shape (n_rows, n_instants), instant by instant."""
-        shifted = np.empty_like(incoming)
-        np.multiply(self._way, self.shifts(incoming), out=shifted)
-        return np.add(shifted, incoming, out=shifted)
-
-    def shifts(self, incoming: Array) -> Array:
-        """The shift of every instant, shape (n_instants,), scaled."""
         held = incoming[self._across]
         pressing = self._k * (np.maximum(held, self._closed) - held)
         reach = (self._bound + self._friction * pressing) * self._soft
         targets = np.ascontiguousarray(incoming[self._along].T)
         ends = -self._slack - incoming[self._end][0]
-        return self._balance(targets, np.ascontiguousarray(reach.T), ends)
+        shifts = self._shifts(targets, np.ascontiguousarray(reach.T), ends)
+        shifted = np.empty_like(incoming)
+        np.multiply(self._way, shifts, out=shifted)
+        return np.add(shifted, incoming, out=shifted)
 
-
-class Balance:
-    """The shifts at which friction of many points, a spring and a load balance.
-
-    All points move by one shift. Their forces fall with it, in straight lines between the shifts at
-    which a point begins to slip and the spring to pull, so that there is one zero. A point that
-    sticks remembers where it came to rest, which ties each instant to the one before.
-
-    Parameters
-    ----------
-    stiffness
-        With which a point that sticks pulls the body back, shape (n_points,).
-    spring
-        Stiffness of the spring.
-    load
-        Shape (n_instants,).
-    """
-
-    def __init__(self, stiffness: Array, spring: float, load: Array) -> None:
-        self._stiffness, self._spring, self._load = stiffness, spring, load
-
-    def __call__(self, targets: Array, reach: Array, ends: Array) -> Array:
-        """The shift of every instant, shape (n_instants,).
+    def _shifts(self, targets: Array, reach: Array, ends: Array) -> Array:
+        """The shift of every instant, shape (n_instants,), scaled.
 
         Parameters
         ----------
@@ -140,8 +120,8 @@ class Balance:
         enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
         # Points are seen from the body, where the digits of how far they are behind stay.
         back = -np.diff(targets, axis=0, prepend=0.0)
-        numbers = (one.tolist() for one in (ends, self._load, enough))
-        held, shift = np.zeros(targets.shape[1]), 0.0
+        numbers = (values.tolist() for values in (ends, self._load, enough))
+        held, shift = self._start, 0.0
         steps = []
         for came, least, most, end, load, left in zip(back, -reach, reach, *numbers, strict=True):
             given = held + came, least, most, end - shift, load
@@ -185,7 +165,7 @@ class Balance:
     def _between(
         self, behind: Array, least: Array, most: Array, end: float, load: float
     ) -> tuple[float, Array]:
-        """Look for the same between the shifts at which anything begins to slip or pull."""
+        """The same, sought between the shifts at which anything begins to slip or pull."""
 
         def held(step: float) -> Array:
             return np.minimum(np.maximum(behind - step, least), most)

@@ -13,28 +13,20 @@ import numpy as np
 
 from solver.discrete.problem import Problem
 from solver.latin.directions import sliding_share
-from solver.latin.sliding_body import slide_of
 from solver.reference.contact import jumps_in
+from solver.reference.incremental import rubs_on_supports
 from solver.reference.states import HELD, States
-from solver.reference.supports import rubs_on_supports
 
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""
-APART = 40
-"""The same of rods on supports of their own, so many that LATIN needs its 20 to 30 iterations for
-the last of them: from any statuses a step takes 5 to 30 systems an instant, each rod on its own
-way, and so ends for sure (measured on 37 and 91 wires near a clamp, 60 and 200 elements)."""
-FOLLOWING = 40
-"""The same where friction softens, and a solution is followed in parts of an instant: blocks and
-faults take 2 to 35 systems an instant, whatever k is (measured)."""
+ENDS_FOR_SURE = 40
+"""The same where a step ends for sure, from any statuses: of rods on supports of their own it takes
+5 to 30 (37 and 91 wires near a clamp); where friction softens, and a solution is followed in parts
+of an instant, 2 to 35 (blocks and faults, whatever k is; measured)."""
 AT_REST, SAVED = 0.02, 10
 """Share of the jumps that move up to which statuses are right at once, as nothing slips and nothing
 is open but while nothing presses; and the iterations that a step then saves, at least. Layers 200
 to 1000 times as long as thick: solved after 2 iterations instead of 10 (measured)."""
-SHARE = 1.0
-"""Share of the time of all iterations that a step may take: it is tried again at twice as many
-iterations, so that all trials together take twice as long as the iterations. Under loads far beyond
-friction an instant takes ten systems from any statuses, and from the exact force (measured)."""
 TRIED = 2.0
 """Times the iterations so far that a step may cost, three systems an instant included, whatever the
 force does: on 70 random runs 0.84 to 0.96 of the time with once, by scene, and no more than 1.35;
@@ -63,8 +55,6 @@ PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
 CALLS, OF_ITERATION = 2e-4, 5e-4
 """Seconds of a dense system, and of an iteration, that no size makes less (measured)."""
-SHIFT = 8e-6
-"""Seconds that an iteration takes an instant to shift a body that slides as a whole (measured)."""
 BAND, BAND_CALLS = 6e-8, 3e-5
 """Seconds a number of a system with a band matrix, and those that no size makes less (measured)."""
 
@@ -117,9 +107,13 @@ class Costs:
         return step <= TRIED * iterations * self.iteration
 
     def systems(self, iterations: float) -> int:
-        """The number of linear systems that a step may solve after so many iterations."""
-        worth = SHARE * iterations * self.iteration
-        return max(self.in_any_case * self.n_instants, int(worth / self.system))
+        """The number of linear systems that a step may solve after so many iterations.
+
+        As many as take the time of these. It is tried again at twice as many iterations, so that
+        all trials together take twice as long as the iterations.
+        """
+        affordable = int(iterations * self.iteration / self.system)
+        return max(self.in_any_case * self.n_instants, affordable)
 
 
 def moving_share(states: States) -> float:
@@ -149,13 +143,12 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     products = sum(2.0 * len(part.rows) ** 2 for part in problem.substructures)
     products = min(products, 200.0 * problem.n_rows)
     passes = products / DENSE + PASSES * PASS * problem.n_rows
-    shift = 0.0 if slide_of(problem) is None else SHIFT
-    iteration = OF_ITERATION + problem.n_instants * (passes + shift)
+    iteration = OF_ITERATION + problem.n_instants * passes
     softens = any(law.tangential.softens for law in problem.rubbing.values())
-    room = FOLLOWING if softens else SYSTEMS
+    room = ENDS_FOR_SURE if softens else SYSTEMS
     if rubs_on_supports(problem):
         system = BAND_CALLS + BAND * n_jumps
-        room = APART if len(problem.rubbing) > 1 else room
+        room = ENDS_FOR_SURE if len(problem.rubbing) > 1 else room
         return Costs(0.0, system, iteration, problem.n_instants, in_any_case=room)
     for part in problem.substructures:
         stiffness = part.elasticity.stiffness

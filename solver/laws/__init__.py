@@ -3,9 +3,10 @@
 from solver.laws.around import Bodies, PointOfBody, Rod
 from solver.laws.boundary import Dirichlet, Neumann
 from solver.laws.contact import OPEN, Contact
-from solver.laws.friction import Friction, FrictionLaw, Strength
+from solver.laws.friction import Friction, FrictionLaw
 from solver.laws.interface import Component, Interface, RowValues
 from solver.laws.perfect import Perfect
+from solver.laws.play import Strength
 from solver.laws.unilateral import Unilateral
 
 __all__ = [

@@ -6,12 +6,14 @@ Small k converges fast globally and slowly locally, large k the reverse (solver/
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.interface import Component
+
+if TYPE_CHECKING:
+    from solver.laws.contact import Contact
 
 FRICTION_FACTOR = 2.0
 """k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h.
@@ -25,78 +27,21 @@ force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs 
 elements along (measured). Twice as much takes up to 20."""
 AT_A_POINT = 0.1
 """k of a point where a spring pulls, over E, for a metre of thickness. With that of a whole contact
-on this one point, where mostly no force acts, it is what keeps a body from sliding. Blocks on
-slopes, 14 of any load, mesh, shape, spring, slack and friction: 1 % of the contact force takes 8 to
-18 iterations, one as high as long 42; as many with 0.03, two more with 0.3, some 26 with 1, and 29
-to more than 120 with that of a contact (measured)."""
+on this one point, where mostly no force acts, it is what keeps a body from sliding. On 14
+blocks on slopes 1 % of the contact force takes 8 to 18 iterations, as many with 0.03, some 26 with
+1, and 29 to more than 120 with that of a contact (measured)."""
 RESOLVED, FINER = 96.0, 1.0 / 3.0
 """Elements along a support from which its k grows with their number, and to which power. What is
 local then is stiffer than the body as a whole, so a constant k finds it ever later. Block of
-768 x 384 elements on a parabola: 1 % of the contact force takes 14 iterations, 1e-4 takes 52; 13
-and 104 with a constant k, 18 and 47 with three times as much; flat, 17 and 53, instead of 29 and
-62. With the power 1/2, of the geometric mean of global and local stiffness, 1 % takes 21 if k grows
-from 48 elements on; and 96 x 96 need more than 15 without acceleration (measured). Layers, where k
-is of their sliding, gain nothing."""
+768 x 384 elements on a parabola: 1e-4 of the contact force takes 52 iterations, 104 with a constant
+k; flat, 53 instead of 62 (measured). Layers, where k is of their sliding, gain nothing."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
 """The tangential k between two bodies over the normal one: layers slide on each other along their
 length. Measured as `SLENDER` is: at most 45 iterations; 76 with half as much, 67 with twice."""
 SLENDER = 40.0
-"""How many times as long as thick two bodies in contact may be before k must be smaller. Measured
-on 2 to 10 layers, 10 to 1000 times as long as thick, friction 0.3 and 1, one to four substructures
-along and one or two up, pressures that let them slide: 1 % of the contact force takes 10 to 45
-iterations. At most 54 with half of it, 46 with twice, 82 with four times; layers 1000 times as long
-as thick take more than 150 with no such limit."""
-
-
-class Surface(Protocol):
-    """What k depends on of an interface; attributes as of `Friction`."""
-
-    @property
-    def components(self) -> tuple[Component, ...]:
-        """All components, the tangential one last."""
-
-    @property
-    def positions(self) -> Array:
-        """Of the points, shape (n_points,), m."""
-
-    @property
-    def weights(self) -> Array:
-        """Of the pairs, shape (n_pairs,), m or m^2."""
-
-    @property
-    def is_on_support(self) -> bool:
-        """Whether what lies below is rigid."""
-
-
-class Around(Protocol):
-    """What is around an interface with friction.
-
-    Attributes
-    ----------
-    elsewhere
-        Factor on the paper's k of all rows that do not rub.
-    on_cuts
-        The same of those on cuts, beside it.
-    """
-
-    elsewhere: ClassVar[float]
-    on_cuts: ClassVar[float]
-
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface into that of all rows, shape (n_rows,).
-
-        Parameters
-        ----------
-        law
-            The interface.
-        k
-            Scaled, shape (n_rows,).
-        parts
-            Over the share of one interface that slides, the number of interfaces.
-        """
-
-    def stick(self, law: Surface, k: Array) -> None:
-        """Write the k of an interface that nowhere slips, where that is another; as `choose`."""
+"""How many times as long as thick two bodies in contact may be before k must be smaller. Two to ten
+layers, 10 to 1000 times as long as thick: 1 % of the contact force takes 10 to 45 iterations, at
+most 54 with half of it, 46 with twice, 82 with four times, more than 150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +63,10 @@ class Rod:
     ----------
     modulus
         Stiffness of what rubs around each pair, shape (n_pairs,), scaled; None where it is 1.
+    elsewhere
+        Factor on the paper's k of all rows that do not rub.
+    on_cuts
+        The same of those on cuts, beside it.
     """
 
     modulus: Array | None = None
@@ -127,8 +76,18 @@ class Rod:
     """Measured with 1 to 50 substructures: 1 % of friction force takes 16 to 17 iterations with 10,
     16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
 
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Around` says."""
+    def choose(self, law: Contact, k: Array, parts: float) -> None:
+        """Write the k of an interface.
+
+        Parameters
+        ----------
+        law
+            The interface.
+        k
+            Of all rows, scaled, shape (n_rows,), in which that of the interface is written.
+        parts
+            Over the share of one interface that slides, the number of interfaces.
+        """
         length = law.weights.sum()
         spacing = length / max(len(law.positions) - 1, 1)
         stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
@@ -137,8 +96,8 @@ class Rod:
             if self.modulus is not None:
                 k[rows] *= self.modulus
 
-    def stick(self, law: Surface, k: Array) -> None:
-        """Leave k as it is."""
+    def stick(self, law: Contact, k: Array) -> None:
+        """Where it nowhere slips k stays as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,8 +121,8 @@ class Bodies:
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
 
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Around` says.
+    def choose(self, law: Contact, k: Array, parts: float) -> None:
+        """Write the k of an interface, as `Rod.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d: 1 % of
         the contact force takes 9 and 14 iterations where it is 100 and 1000 times as long as high,
@@ -177,13 +136,13 @@ class Bodies:
             pressing = CONTACT_STIFFNESS * self._slender(law)
             sliding = SLIDING_BETWEEN_BODIES * pressing
         share = law.weights / length
-        *normal, tangent = law.components
-        for component, stiffness in ((tangent, sliding), *((one, pressing) for one in normal)):
+        for component in law.components:
+            stiffness = sliding if component is law.tangent else pressing
             for rows, modulus in zip(component.sides, self.moduli, strict=False):
                 k[rows] = modulus * stiffness * share
 
-    def stick(self, law: Surface, k: Array) -> None:
-        """Write the k of two bodies that nowhere slip on each other, as `Around` says.
+    def stick(self, law: Contact, k: Array) -> None:
+        """Write the k of two bodies that nowhere slip on each other.
 
         They bend and stretch as one, but for what is as short as they are deep: which resists with
         E / d per area of the softer, across and along. Layers 200, 500 and 1000 times as long as
@@ -197,8 +156,8 @@ class Bodies:
         for rows in (rows for component in law.components for rows in component.sides):
             k[rows] = np.maximum(k[rows], squeezed)
 
-    def _slender(self, law: Surface) -> float:
-        """Give the factor on k between two bodies that are thin beside their length.
+    def _slender(self, law: Contact) -> float:
+        """Factor on k between two bodies that are thin beside their length.
 
         Layers slide like rods: what is global is the stiffness E d / l^2 per area of a rod of depth
         d along the contact's length l, what is local E d / (l h) with the distance h of its points,
@@ -226,11 +185,15 @@ class PointOfBody:
     elsewhere: ClassVar[float] = Bodies.elsewhere
     on_cuts: ClassVar[float] = Bodies.on_cuts
 
-    def choose(self, law: Surface, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Around` says."""
+    def choose(self, law: Contact, k: Array, parts: float) -> None:
+        """Write the k of an interface, as `Rod.choose`."""
         for component in law.components:
             for rows in component.sides:
                 k[rows] = AT_A_POINT * self.modulus
 
-    def stick(self, law: Surface, k: Array) -> None:
-        """Leave k as it is."""
+    def stick(self, law: Contact, k: Array) -> None:
+        """Where it nowhere slips k stays as it is."""
+
+
+Around = Rod | Bodies | PointOfBody
+"""What k depends on beside the interface itself."""

@@ -36,11 +36,11 @@ class Dirichlet(Interface):
     displacement: Array
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Take the displacement as it is."""
+        """W^ is the displacement that is prescribed."""
         rows, given = as_slice(self.rows), self.displacement
 
-        def prescribe(_incoming: Array, displacement: Array, some: slice) -> None:
-            displacement[rows] = given[:, some]
+        def prescribe(_incoming: Array, displacement: Array, instants: slice) -> None:
+            displacement[rows] = given[:, instants]
 
         return prescribe
 
@@ -49,9 +49,9 @@ class Dirichlet(Interface):
         missed = beyond(displacement[self.rows] - self.displacement, noise)
         return Gaps(displacement=squared(missed))
 
-    def during(self, some: slice) -> Self:
-        """Give what is prescribed at some instants."""
-        return replace(self, displacement=self.displacement[:, some])
+    def during(self, instants: slice) -> Self:
+        """Law of some instants alone."""
+        return replace(self, displacement=self.displacement[:, instants])
 
     @property
     def given_displacement(self) -> RowValues:
@@ -87,8 +87,8 @@ class Neumann(Interface):
         rows = as_slice(self.rows)
         moved = self.force / k[self.rows, None]
 
-        def push(incoming: Array, displacement: Array, some: slice) -> None:
-            displacement[rows] = incoming[rows] + moved[:, some]
+        def push(incoming: Array, displacement: Array, instants: slice) -> None:
+            displacement[rows] = incoming[rows] + moved[:, instants]
 
         return push
 
@@ -97,12 +97,12 @@ class Neumann(Interface):
         return Gaps(force=squared(beyond(force[self.rows] - self.force, noise)))
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Give the macro forces, which the load balances."""
+        """Macro forces, which the load balances."""
         yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
 
-    def during(self, some: slice) -> Self:
-        """Give what is prescribed at some instants."""
-        return replace(self, force=self.force[:, some])
+    def during(self, instants: slice) -> Self:
+        """Law of some instants alone."""
+        return replace(self, force=self.force[:, instants])
 
     @property
     def given_force(self) -> RowValues:

@@ -69,13 +69,13 @@ class Behaviour:
         both are positive, tension times the mean slip, and overlap times the mean force.
         """
         held = np.clip(self.friction, -self.bound, self.bound)
-        found = self.dissipated + held * self.slip
-        found += np.abs(self.friction - held) * mean_slip
+        violation = self.dissipated + held * self.slip
+        violation += np.abs(self.friction - held) * mean_slip
         if self.pressing is not None and self.opening is not None:
             pressed, opened = np.maximum(self.pressing, 0.0), np.maximum(self.opening, 0.0)
-            found += pressed * opened + (pressed - self.pressing) * mean_slip
-            found += mean_force * (opened - self.opening)
-        return np.maximum(found, 0.0)
+            violation += pressed * opened + (pressed - self.pressing) * mean_slip
+            violation += mean_force * (opened - self.opening)
+        return np.maximum(violation, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,9 +150,9 @@ class Contact(Interface):
         """Law whose sliders begin elsewhere, as `Friction.begun`."""
         return replace(self, tangential=self.tangential.begun(start))
 
-    def during(self, some: slice) -> Self:
+    def during(self, instants: slice) -> Self:
         """Law of some instants alone."""
-        return replace(self, tangential=self.tangential.during(some))
+        return replace(self, tangential=self.tangential.during(instants))
 
     @property
     def kind(self) -> Hashable:
@@ -187,10 +187,10 @@ class Contact(Interface):
     def by_point(self, values: Array) -> Array:
         """Sum of the values of each point's pairs: (n_pairs, ...) to (n_points, ...)."""
         once, again = self._first_pairs
-        found = np.zeros((len(self.positions), *values.shape[1:]))
-        found[self.points[once]] = values[once]
-        np.add.at(found, self.points[again], values[again])
-        return found
+        sums = np.zeros((len(self.positions), *values.shape[1:]))
+        sums[self.points[once]] = values[once]
+        np.add.at(sums, self.points[again], values[again])
+        return sums
 
     @cached_property
     def _first_pairs(self) -> tuple[Indices, Indices]:
@@ -233,7 +233,7 @@ class Contact(Interface):
         if self.is_on_support:
             return Gaps()
         sums = (sum(force[rows] for rows in component.sides) for component in self.components)
-        return Gaps(force=sum(squared(beyond(np.asarray(one), noise)) for one in sums))
+        return Gaps(force=sum(squared(beyond(np.asarray(missing), noise)) for missing in sums))
 
     def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
         """Prepare the check of W and F against the law; parameters as of `gaps`."""
@@ -254,7 +254,7 @@ class Contact(Interface):
         )
 
     def capacity(self, held: NDArray[np.bool_]) -> float:
-        """Give the friction force that it can ever carry without pressing, beside the supports.
+        """Largest friction force that it can ever carry without pressing, beside the supports.
 
         Parameters
         ----------
@@ -264,9 +264,9 @@ class Contact(Interface):
         return float(self.tangential.bound.max(axis=1)[~held[self.tangent.above]].sum())
 
     def carried(self, force: Array) -> float:
-        """Give the largest force on a pair where it may open, of that of all rows."""
+        """Largest force on a pair where it may open, of the force of all rows."""
         rows = [component.above for component in self.components if self.opens]
-        return max((float(np.abs(force[own]).max()) for own in rows), default=0.0)
+        return max((float(np.abs(force[above]).max()) for above in rows), default=0.0)
 
     @property
     def acts(self) -> bool:

@@ -21,69 +21,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.arrays import Array, Indices, in_rows
-from solver.laws.interface import Component
-from solver.laws.play import Play
-from solver.laws.springs import Springs
+from solver.arrays import Array, in_rows
+from solver.laws.interface import Component, Springs
+from solver.laws.play import Play, Strength, follow
 from solver.refusal import RefusedError, check_range
 
 OPENED = 1e-9
 """Opening, as a share of the largest normal jump, from which on a bond is broken."""
-
-
-@dataclass(frozen=True)
-class Strength:
-    """Factor on the friction bound over accumulated slip, linear between points.
-
-    Attributes
-    ----------
-    slips
-        Ascending from 0, m, or scaled; beyond the last the factor stays.
-    factors
-        Non-negative, the first is 1; as many.
-
-    Raises
-    ------
-    RefusedError
-        For other points.
-    """
-
-    slips: tuple[float, ...]
-    factors: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        slips, factors = np.array(self.slips), np.array(self.factors)
-        is_table = len(slips) == len(factors) >= 2 and np.all(np.isfinite([slips, factors]))
-        if not (is_table and slips[0] == 0.0 and factors[0] == 1.0 and np.all(np.diff(slips) > 0)):
-            raise RefusedError(
-                "strength",
-                list(zip(self.slips, self.factors, strict=False)),
-                "points (slip, factor), the first (0, 1), with slips that grow",
-                "divide all factors by the first, and begin at slip 0",
-            )
-        if np.any(factors < 0.0):
-            raise RefusedError("strength", factors.min(), "factors from 0 on", "raise it")
-
-    def __call__(self, slip: Array) -> Array:
-        """Factor after accumulated slip, of any shape."""
-        found: Array = np.interp(slip, self.slips, self.factors)
-        return found
-
-    @property
-    def slopes(self) -> Array:
-        """Growth per slip between the points, and none beyond, shape (n_points,)."""
-        return np.asarray(np.append(np.diff(self.factors) / np.diff(self.slips), 0.0))
-
-    def segment(self, slip: Array) -> Indices:
-        """Number of the point behind each slip, of any shape."""
-        return np.asarray(np.searchsorted(self.slips, slip, side="right") - 1)
-
-    def lowest_slope(self, first: Array, last: Array) -> Array:
-        """Smallest growth per slip on the way from one slip to a larger one, shape (n,)."""
-        passed = np.arange(len(self.slips))[:, None]
-        on_way = (self.segment(first) <= passed) & (passed <= self.segment(last))
-        found: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
-        return found
 
 
 @dataclass(frozen=True)
@@ -302,9 +246,9 @@ class Friction:
         """Whether the bound falls with slip anywhere."""
         return self.strength is not None and bool(self.strength.slopes.min() < 0.0)
 
-    def during(self, some: slice) -> Friction:
+    def during(self, instants: slice) -> Friction:
         """Law of some instants alone."""
-        return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, some])
+        return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, instants])
 
     @classmethod
     def concatenated(cls, laws: Sequence[Friction]) -> Friction:
@@ -366,7 +310,7 @@ class FrictionRule:
         self,
         incoming: Array,
         displacement: Array,
-        _some: slice,
+        _instants: slice,
         pressing: Array | None = None,
         opening: Array | None = None,
     ) -> None:
@@ -385,48 +329,3 @@ class FrictionRule:
         if self._reach is not None and opening is None:
             return self._reach if pressing is None else self._reach + self._grows * pressing
         return np.asarray(self._law.without_slip(pressing, opening) * self._lag)
-
-
-def follow(target: Array, reach: Array, strength: Strength) -> Array:
-    """Positions of sliders that follow a target with a reach that changes with their slip.
-
-    Parameters
-    ----------
-    target
-        Where they would be without friction, shape (n_points, n_instants).
-    reach
-        How far each may stay behind before it has slipped, same shape or (n_points, 1).
-    strength
-        Factor on that over accumulated slip.
-    """
-    found = np.empty_like(target)
-    position, gone = np.zeros((2, len(target)))
-    reaches = np.broadcast_to(reach, target.shape).T
-    for after, wanted, most in zip(found.T, target.T, reaches, strict=True):
-        away = wanted - position
-        slip = _slip(np.abs(away), most, gone, strength)
-        position = position + np.sign(away) * slip
-        gone = gone + slip
-        after[:] = position
-    return found
-
-
-def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:
-    """Smallest slip a >= 0 of one instant with a + reach g(gone + a) = distance, shape (n,).
-
-    The left side is linear in a between the points of g, of which the first that is no less than
-    the distance ends the way. Where it falls with a, as friction softens faster than the search
-    direction unloads, and the distance is within reach, the point sticks: that is the solution that
-    it is at already.
-    """
-    slip, missing = np.zeros_like(distance), distance - reach * strength(gone)
-    left = missing > 0.0
-    for end in strength.slips[1:]:
-        ahead = np.maximum(end - gone, slip)
-        after = distance - ahead - reach * strength(gone + ahead)
-        ends = left & (after <= 0.0)
-        share = np.divide(missing, missing - after, out=np.zeros_like(after), where=ends)
-        slip = np.where(ends, slip + share * (ahead - slip), np.where(left, ahead, slip))
-        left &= ~ends
-        missing = after
-    return np.where(left, distance - reach * strength.factors[-1], slip)

@@ -1,4 +1,4 @@
-"""What every interface is asked, whatever its law."""
+"""What interfaces of every law have: components, search directions, rules, gaps."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol, Self
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, as_slice
 
 
 class Component(NamedTuple):
@@ -27,14 +27,50 @@ class Component(NamedTuple):
     below: Indices | None = None
 
     def jump(self, field: Array) -> Array:
-        """Give a row field above minus that below, shape (n_pairs, ...)."""
-        found: Array = field[self.above]
-        return found if self.below is None else found - field[self.below]
+        """A row field above minus that below, shape (n_pairs, ...)."""
+        above: Array = field[self.above]
+        return above if self.below is None else above - field[self.below]
 
     @property
     def sides(self) -> tuple[Indices, ...]:
         """Rows of both sides, or of the one there is."""
         return (self.above,) if self.below is None else (self.above, self.below)
+
+
+class Springs:
+    """Search directions of a component: springs 1/k on both sides, in series.
+
+    Attributes
+    ----------
+    soft
+        Both added, shape (n_pairs, 1), scaled.
+    """
+
+    def __init__(self, component: Component, k: Array) -> None:
+        self._above = as_slice(component.above)
+        self._below: slice | Indices | None = None
+        self.soft = 1.0 / k[component.above, None]
+        self._share_below: Array | None = None
+        if component.below is not None:
+            self._below = as_slice(component.below)
+            soft_below = 1.0 / k[component.below, None]
+            self.soft = self.soft + soft_below
+            self._share_below = soft_below / self.soft
+
+    def jump(self, incoming: Array) -> Array:
+        """Z of the jump, shape (n_pairs, n_instants)."""
+        above: Array = incoming[self._above]
+        return above if self._below is None else above - incoming[self._below]
+
+    def close(self, incoming: Array, jump: Array, held: Array, displacement: Array) -> None:
+        """Write W^ of both sides, with which the jump is `held` instead of `jump`."""
+        if self._share_below is None:
+            displacement[self._above] = held
+            return
+        moved = held - jump
+        under = self._share_below * moved
+        displacement[self._below] = incoming[self._below] - under
+        displacement[self._above] = incoming[self._above] + (moved - under)
 
 
 class RowValues(NamedTuple):
@@ -73,7 +109,7 @@ class MacroPart(NamedTuple):
 class Rule(Protocol):
     """A law that is ready for one k: it obeys in the local stage (paper, problem 2.1)."""
 
-    def __call__(self, incoming: Array, displacement: Array, some: slice, /) -> None:
+    def __call__(self, incoming: Array, displacement: Array, instants: slice, /) -> None:
         """Write W^ of the interface's rows.
 
         Parameters
@@ -82,8 +118,8 @@ class Rule(Protocol):
             z = W - F/k of all rows, shape (n_rows, n) of n instants.
         displacement
             W^, same shape; what is not of the interface stays.
-        some
-            Which instants these are; all of them where the rule remembers.
+        instants
+            Which these are; all of them where the rule remembers.
         """
 
 
@@ -119,7 +155,7 @@ class Interface(ABC):
 
     @abstractmethod
     def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
-        """Give by how much W and F of all rows miss continuity and balance, without k.
+        """How much W and F of all rows miss continuity and balance by, without k.
 
         Parameters
         ----------
@@ -129,12 +165,12 @@ class Interface(ABC):
             What rounding makes of either; less is nothing.
         """
 
-    def during(self, some: slice) -> Self:
-        """Give the law of some instants alone; where bodies stand before them is another matter."""
+    def during(self, instants: slice) -> Self:
+        """Law of some instants alone; where bodies stand before them is another matter."""
         return self
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Give what is in equilibrium in the coarse problem."""
+        """Macro forces that are in equilibrium in the coarse problem."""
         return iter(())
 
     @property
@@ -159,11 +195,11 @@ class Interface(ABC):
 
 
 def beyond(field: Array, noise: float) -> Array:
-    """Give a field with what may be rounding taken as zero."""
+    """A field in which what may be rounding is zero."""
     return np.where(np.abs(field) > noise, field, 0.0)
 
 
 def squared(field: Array) -> float:
-    """Give the sum of the squares of a field."""
+    """Sum of the squares of a field."""
     numbers = field.ravel(order="K")  # without a copy, however it lies in memory
     return float(np.dot(numbers, numbers))

@@ -48,13 +48,14 @@ class Perfect(Interface):
         return [cls(first, second, np.zeros((len(first), 0)))]
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Give both sides the mean of what they would do, weighted by k."""
+        """Both sides move by the mean of their z, weighted by k (solver/README.md, 2)."""
         first, second = as_slice(self.first), as_slice(self.second)
         k, other = k[self.first], k[self.second]
         share = (k / (k + other))[:, None]
 
-        def glue(incoming: Array, displacement: Array, _some: slice) -> None:
-            common = perfect(incoming[first], incoming[second], share)
+        def glue(incoming: Array, displacement: Array, _instants: slice) -> None:
+            below = incoming[second]
+            common = below + share * (incoming[first] - below)
             displacement[first] = common
             displacement[second] = common
 
@@ -67,27 +68,10 @@ class Perfect(Interface):
         return Gaps(squared(beyond(apart, 2.0 * noise)), squared(beyond(unbalanced, noise)))
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Give the macro forces of both sides, which cancel."""
+        """Macro forces of both sides, which cancel."""
         yield MacroPart(self.rows, np.concatenate([self.macro, self.macro]))
 
 
 def _at(field: Array, rows: Indices) -> Array:
-    """Give rows of a field that is contiguous in space, as it lies in memory: (n_times, n)."""
+    """Rows of a field that is contiguous in space, as it lies in memory: (n_times, n)."""
     return np.take(field.T, rows, axis=1)
-
-
-def perfect(first: Array, second: Array, share: Array) -> Array:
-    """Find the common displacement of two glued sides (solver/README.md, 2).
-
-    Parameters
-    ----------
-    first, second
-        z = W - F/k of the sides, shape (n_points, n_times), m.
-    share
-        k / (k + k') of the first side, shape (n_points, 1).
-
-    Returns
-    -------
-    Displacement of both sides, shape (n_points, n_times), m.
-    """
-    return second + share * (first - second)

@@ -2,14 +2,17 @@
 
 A clip of a clip is a clip, so the recursion in time is an associative scan: for few points, blocks
 of instants are composed side by side; for many points, walking in time already keeps the processor
-busy and moves less memory.
+busy and moves less memory. Where the reach changes with the slip that has gone by, time is walked.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
+from solver.refusal import RefusedError
 
 WALK_FROM_POINTS = 150
 """From this many points on, the walk beats the scan (measured: between 60 and 211)."""
@@ -107,3 +110,107 @@ class _Scan:
         np.maximum(self._entry, low, out=self._position)
         np.minimum(self._position, high, out=self._position)
         return self._result.T
+
+
+@dataclass(frozen=True)
+class Strength:
+    """Factor on the friction bound over accumulated slip, linear between points.
+
+    Attributes
+    ----------
+    slips
+        Ascending from 0, m, or scaled; beyond the last the factor stays.
+    factors
+        Non-negative, the first is 1; as many.
+
+    Raises
+    ------
+    RefusedError
+        For other points.
+    """
+
+    slips: tuple[float, ...]
+    factors: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        slips, factors = np.array(self.slips), np.array(self.factors)
+        is_table = len(slips) == len(factors) >= 2 and np.all(np.isfinite([slips, factors]))
+        if not (is_table and slips[0] == 0.0 and factors[0] == 1.0 and np.all(np.diff(slips) > 0)):
+            raise RefusedError(
+                "strength",
+                list(zip(self.slips, self.factors, strict=False)),
+                "points (slip, factor), the first (0, 1), with slips that grow",
+                "divide all factors by the first, and begin at slip 0",
+            )
+        if np.any(factors < 0.0):
+            raise RefusedError("strength", factors.min(), "factors from 0 on", "raise it")
+
+    def __call__(self, slip: Array) -> Array:
+        """Factor after accumulated slip, of any shape."""
+        factor: Array = np.interp(slip, self.slips, self.factors)
+        return factor
+
+    @property
+    def slopes(self) -> Array:
+        """Growth per slip between the points, and none beyond, shape (n_points,)."""
+        return np.asarray(np.append(np.diff(self.factors) / np.diff(self.slips), 0.0))
+
+    def segment(self, slip: Array) -> Indices:
+        """Number of the point behind each slip, of any shape."""
+        return np.asarray(np.searchsorted(self.slips, slip, side="right") - 1)
+
+    def slope(self, slip: Array) -> Array:
+        """Growth per further slip, of any shape."""
+        return np.asarray(self.slopes[self.segment(slip)])
+
+    def lowest_slope(self, first: Array, last: Array) -> Array:
+        """Smallest growth per slip on the way from one slip to a larger one, shape (n,)."""
+        passed = np.arange(len(self.slips))[:, None]
+        on_way = (self.segment(first) <= passed) & (passed <= self.segment(last))
+        lowest: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
+        return lowest
+
+
+def follow(target: Array, reach: Array, strength: Strength) -> Array:
+    """Positions of sliders that follow a target with a reach that changes with their slip.
+
+    Parameters
+    ----------
+    target
+        Where they would be without friction, shape (n_points, n_instants).
+    reach
+        How far each may stay behind before it has slipped, same shape or (n_points, 1).
+    strength
+        Factor on that over accumulated slip.
+    """
+    positions = np.empty_like(target)
+    position, gone = np.zeros((2, len(target)))
+    reaches = np.broadcast_to(reach, target.shape).T
+    for after, wanted, most in zip(positions.T, target.T, reaches, strict=True):
+        away = wanted - position
+        slip = _slip(np.abs(away), most, gone, strength)
+        position = position + np.sign(away) * slip
+        gone = gone + slip
+        after[:] = position
+    return positions
+
+
+def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:
+    """Smallest slip a >= 0 of one instant with a + reach g(gone + a) = distance, shape (n,).
+
+    The left side is linear in a between the points of g, of which the first that is no less than
+    the distance ends the way. Where it falls with a, as friction softens faster than the search
+    direction unloads, and the distance is within reach, the point sticks: that is the solution that
+    it is at already.
+    """
+    slip, missing = np.zeros_like(distance), distance - reach * strength(gone)
+    left = missing > 0.0
+    for end in strength.slips[1:]:
+        ahead = np.maximum(end - gone, slip)
+        after = distance - ahead - reach * strength(gone + ahead)
+        ends = left & (after <= 0.0)
+        share = np.divide(missing, missing - after, out=np.zeros_like(after), where=ends)
+        slip = np.where(ends, slip + share * (ahead - slip), np.where(left, ahead, slip))
+        left &= ~ends
+        missing = after
+    return np.where(left, distance - reach * strength.factors[-1], slip)

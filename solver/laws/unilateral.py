@@ -13,8 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction import FrictionRule
-from solver.laws.interface import Component
-from solver.laws.springs import Springs
+from solver.laws.interface import Component, Springs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +73,7 @@ class ContactRule:
         soft = self._springs.soft
         self._share = None if law.softness is None else soft / (soft + law.softness[:, None])
 
-    def __call__(self, incoming: Array, displacement: Array, some: slice) -> None:
+    def __call__(self, incoming: Array, displacement: Array, instants: slice) -> None:
         """Press where the sides would overlap; write W^ of all rows, as `Rule`."""
         jump = self._springs.jump(incoming)
         held = np.maximum(jump, self._closed)
@@ -83,4 +82,4 @@ class ContactRule:
             held = jump + self._share * (held - jump)
         self._springs.close(incoming, jump, held, displacement)
         pressing = (held - jump) / self._springs.soft
-        self._friction(incoming, displacement, some, pressing, opening)
+        self._friction(incoming, displacement, instants, pressing, opening)

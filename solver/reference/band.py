@@ -40,30 +40,30 @@ class Band:
         self._beside = upper[0, 1:].copy()
         sums = np.abs(self._diagonal)
         for offset in range(1, self._width + 1):
-            one = np.abs(upper[self._width - offset, offset:])
-            sums[offset:] += one
-            sums[: len(sums) - offset] += one
+            beside = np.abs(upper[self._width - offset, offset:])
+            sums[offset:] += beside
+            sums[: len(sums) - offset] += beside
         self.largest_row = float(sums.max())
         self._added: Array | None = None
         self.solutions = 0
 
     @classmethod
     def _of(cls, upper: Array) -> Self:
-        found = cls.__new__(cls)
-        found._set(upper)
-        return found
+        band = cls.__new__(cls)
+        band._set(upper)
+        return band
 
     def apart(self, movable: Array) -> Indices:
-        """Give the first of every run of degrees of freedom that nothing movable ties to others."""
+        """First of every run of degrees of freedom that nothing movable ties to others."""
         if self._width != 1:
             return np.zeros(1, dtype=np.intp)
         tied = self._beside * movable[1:] * movable[:-1] != 0.0
         return np.concatenate([[0], 1 + np.flatnonzero(~tied)])
 
     def product(self, field: Array) -> Array:
-        """Give K v."""
-        found = np.asarray(blas.dsbmv(self._width, 1.0, self._upper, field))
-        return found if self._added is None else found + self._added * field
+        """K v."""
+        force = np.asarray(blas.dsbmv(self._width, 1.0, self._upper, field))
+        return force if self._added is None else force + self._added * field
 
     def solve_kept(self, keep: Array, force: Array) -> Array:
         """Solve on the degrees of freedom where `keep` is 1; where it is 0, the force must be 0.
@@ -90,21 +90,21 @@ class Band:
         return np.asarray(solved).reshape(len(force))
 
     def stiffened(self, diagonal: Array) -> Self:
-        """Give it with a diagonal matrix added, which may be negative, where degrees are kept."""
-        found = copy(self)
-        found._added, found.solutions = diagonal, 0
-        return found
+        """The matrix plus a diagonal one, which may be negative, where degrees are kept."""
+        band = copy(self)
+        band._added, band.solutions = diagonal, 0
+        return band
 
-    def only(self, some: Flags) -> Self:
-        """Give the matrix of some degrees of freedom that nothing movable ties to the others."""
-        places = np.flatnonzero(some)
+    def only(self, kept: Flags) -> Self:
+        """The matrix of some degrees of freedom that nothing movable ties to the others."""
+        places = np.flatnonzero(kept)
         upper = np.asfortranarray(self._upper[:, places])
         upper[:-1, 1:][:, np.diff(places) > 1] = 0.0
-        found = self._of(upper)
-        return found if self._added is None else found.stiffened(self._added[places])
+        band = self._of(upper)
+        return band if self._added is None else band.stiffened(self._added[places])
 
     def tied(self, group: Indices, movable: Array) -> Self:
-        """Give the stiffness of degrees of freedom, tied together where they are movable.
+        """Stiffness of degrees of freedom that are tied together where they are movable.
 
         Parameters
         ----------
@@ -127,10 +127,10 @@ class Band:
                 (self._width - (second - first), second),
                 entries * np.where(first == second, 2.0, 1.0),
             )
-        found = self._of(upper)
+        band = self._of(upper)
         if self._added is None:
-            return found
-        return found.stiffened(summed(group, self._added * movable))
+            return band
+        return band.stiffened(summed(group, self._added * movable))
 
 
 def summed(group: Indices, values: Array) -> Array:

@@ -17,10 +17,10 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
+from solver.reference.assembly import points_dofs
 from solver.reference.band import Band
 from solver.reference.rules import Rules, rules_of
 from solver.reference.search import Minimum, Search
-from solver.reference.supports import points_dofs
 
 TRIALS = 50
 """Sets of points of the strength that are passed, at most."""
@@ -51,17 +51,17 @@ class Bounds:
 
     def at(self, gone: Array) -> Array:
         """Bounds after accumulated slip, shape (n_dofs,) both."""
-        found = self.first.copy()
+        bounds = self.first.copy()
         if self.rules.ages:
-            found[self.dofs] *= self.rules.factor(gone[self.dofs])
-        return found
+            bounds[self.dofs] *= self.rules.factor(gone[self.dofs])
+        return bounds
 
     def growth(self, first: Array, last: Array) -> Array:
         """Least growth of the bound per slip on the way from one slip to another, (n_dofs,)."""
-        found = np.zeros_like(self.first)
-        own = self.dofs
-        found[own] = self.first[own] * self.rules.lowest_growth(first[own], last[own])
-        return found
+        growths = np.zeros_like(self.first)
+        dofs = self.dofs
+        growths[dofs] = self.first[dofs] * self.rules.lowest_growth(first[dofs], last[dofs])
+        return growths
 
 
 def bounds_of(problem: Problem) -> list[Bounds]:
@@ -69,7 +69,7 @@ def bounds_of(problem: Problem) -> list[Bounds]:
     dofs, rules = points_dofs(problem), rules_of(problem)
     first = np.zeros((problem.n_dofs, rules.bound.shape[1]))
     first[dofs] = rules.bound
-    return [Bounds(own, dofs, rules) for own in np.ascontiguousarray(first.T)]
+    return [Bounds(bound, dofs, rules) for bound in np.ascontiguousarray(first.T)]
 
 
 def least_with_changing_bound(
@@ -103,7 +103,7 @@ def least_with_changing_bound(
     return None
 
 
-def _same(bounds: Bounds, one: Array, other: Array) -> bool:
+def _same(bounds: Bounds, first: Array, second: Array) -> bool:
     """Whether all slips are between the same points of the strength."""
     dofs, segment = bounds.dofs, bounds.rules.segment
-    return np.array_equal(segment(one[dofs]), segment(other[dofs]))
+    return np.array_equal(segment(first[dofs]), segment(second[dofs]))

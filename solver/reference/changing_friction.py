@@ -54,12 +54,12 @@ class NewtonWithChangingFriction(Newton):
     ) -> None:
         super().__init__(condensed, rules, rest, guesses, may_hold)
         self._gone = np.zeros_like(rules.gap)
-        self._softens = any(one.slopes.min() < 0.0 for one in rules.strengths)
+        self._softens = any(strength.slopes.min() < 0.0 for strength in rules.strengths)
         self._of_motions = condensed.gauge.T @ condensed.stiffness @ condensed.gauge
         self._ties = None if len(condensed.base) == len(rules.gap) else condensed.ties.toarray()
 
     def __call__(self, instant: int) -> Marched:
-        """Give what an instant adds, as `Newton`."""
+        """What an instant adds, as `Newton`."""
         added = super().__call__(instant)
         self._gone += np.abs(added.slip)
         return added
@@ -75,7 +75,8 @@ class NewtonWithChangingFriction(Newton):
             Increment(still, self._force[:, None], still[: len(sides.load)], still[:0]),
             np.zeros(len(still)),
         )
-        guesses = [one[:, instant] for one in (self._guesses, self._at_rest) if one is not None]
+        known = [states for states in (self._guesses, self._at_rest) if states is not None]
+        guesses = [states[:, instant] for states in known]
         share, length = 0.0, 1.0
         while share < 1.0:
             target = min(share + length, 1.0)
@@ -109,7 +110,7 @@ class NewtonWithChangingFriction(Newton):
         return None
 
     def _elsewhere(self, at: Reached, sides: Sides, guesses: list[States]) -> Reached | None:
-        """Look for a stable solution beyond one that is lost, or give None.
+        """A stable solution beyond one that is lost, or None.
 
         With the friction that slip so far has left the next slip is larger, and so on up to the
         nearest solution; Newton's method is tried once the same contacts slip again. What the last
@@ -129,13 +130,13 @@ class NewtonWithChangingFriction(Newton):
         return None if slid is None else self._stable(slid, sides)
 
     def _stable(self, near: Reached, sides: Sides) -> Reached | None:
-        """Find the solution near what is none yet, or give None where it is not stable."""
+        """The solution near what is none yet, or None where it is not stable."""
         reached = self._reach(near.states, near, sides)
         is_stable = reached is not None and self._goes_on(reached, reached, sides)
         return reached if is_stable else None
 
     def _slid(self, factor: Array, sides: Sides, guesses: list[States]) -> Reached | None:
-        """Solve with a given factor on friction, (n, 1), whatever slips, or give None."""
+        """Solve with a given factor on friction, (n, 1), whatever slips; None without solution."""
         rules = replace(self._rules, friction=self._rules.friction * factor[:, 0])
         self.response.set_friction(rules.friction, np.zeros_like(rules.friction))
         given = replace(sides, bound=sides.bound * factor)
@@ -143,8 +144,8 @@ class NewtonWithChangingFriction(Newton):
             solved = self._iterate(states, given)
             if solved is not None:
                 return Reached(*solved, self._slip_of(solved[1], sides))
-        found = unload(self.response, rules, given)
-        solved = None if found is None else self._iterate(found, given)
+        beyond = unload(self.response, rules, given)
+        solved = None if beyond is None else self._iterate(beyond, given)
         return None if solved is None else Reached(*solved, self._slip_of(solved[1], sides))
 
     def _slip_of(self, step: Increment, sides: Sides) -> Array:
@@ -152,7 +153,7 @@ class NewtonWithChangingFriction(Newton):
         return np.where(self._rules.normal, 0.0, (step.jump - sides.held)[:, 0])
 
     def _reach(self, states: States, begin: Reached, sides: Sides) -> Reached | None:
-        """Seek states and slip, from those of a solution nearby, or give None."""
+        """Seek states and slip, from those of a solution nearby; None without."""
         slip, force = begin.slip, begin.step.force[:, 0]
         pieces: list[bytes] = []
         for _ in range(NEWTON_LIMIT):
@@ -173,7 +174,7 @@ class NewtonWithChangingFriction(Newton):
         return None
 
     def _linearised(self, slip: Array, force: Array, sides: Sides) -> Sides:
-        """Set the tangent of the friction bound at slips (n,) >= 0, and give what is left of it."""
+        """Set the tangent of the friction bound at slips (n,) >= 0; return what is left of it."""
         rules, most = self._rules, self._most(force, sides)
         grows = rules.growth(self._gone + slip) * most
         factor = rules.factor(self._gone + slip)
@@ -192,7 +193,7 @@ class NewtonWithChangingFriction(Newton):
         return np.minimum(self._carried(force, sides), self._rules.cap)
 
     def _obeys(self, states: States, slip: Array, force: Array, sides: Sides) -> bool:
-        """Tell whether friction is what slip has left, not only by its tangent."""
+        """Whether friction is what slip has left, not only by its tangent."""
         if self.response.unbalanced > CONVERGED * self._largest:
             return False
         slips = np.abs(states) == 1
@@ -201,14 +202,14 @@ class NewtonWithChangingFriction(Newton):
         return bool(wrong.max(initial=0.0) <= SETTLED * max(self._largest, np.abs(force).max()))
 
     def _goes_on(self, at: Reached, reached: Reached, sides: Sides) -> bool:
-        """Tell whether a solution is the one that another goes over into.
+        """Whether a solution is the one that another goes over into.
 
         So it is if the structure is stable however far the contacts that slip in either have
         softened on the way: then no other solution slips there alone.
         """
         begin, end = np.abs(at.slip), np.abs(reached.slip)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        most = np.maximum(*(self._most(one.step.force[:, 0], sides) for one in (at, reached)))
+        most = np.maximum(*(self._most(end.step.force[:, 0], sides) for end in (at, reached)))
         on_way = self._gone + np.minimum(begin, end), self._gone + np.maximum(begin, end)
         growth = np.where(slips, self._rules.lowest_growth(*on_way) * most, 0.0)
         if not np.any(growth < 0.0):

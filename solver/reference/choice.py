@@ -10,9 +10,8 @@ from typing import Protocol
 from solver.discrete.problem import Problem
 from solver.reference.condensation import NoReferenceError
 from solver.reference.contact import IncrementalContact
-from solver.reference.incremental import IncrementalRod
+from solver.reference.incremental import IncrementalRod, rubs_on_supports
 from solver.reference.solution import Reference, States
-from solver.reference.supports import rubs_on_supports
 
 
 class Incremental(Protocol):
@@ -35,11 +34,11 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
     problem
         A structure with at least one interface with friction.
     stop
-        Called once per instant; `Interrupted` is raised as soon as it gives True.
+        Called once per instant; `Interrupted` is raised as soon as it returns True.
     """
     start = time.perf_counter()
-    found = incremental_solver(problem).march(stop=stop)
-    return replace(found, seconds=time.perf_counter() - start)
+    solution = incremental_solver(problem).march(stop=stop)
+    return replace(solution, seconds=time.perf_counter() - start)
 
 
 def incremental_solver(problem: Problem) -> Incremental:

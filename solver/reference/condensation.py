@@ -34,10 +34,9 @@ from scipy.sparse.linalg import SuperLU, splu
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.blocks import blocks, symmetrise
-from solver.reference.glued import from_jumps, jumps
+from solver.reference.dense import blocks, symmetrise
+from solver.reference.glued import base_of, from_jumps, jumps, self_stresses
 from solver.reference.rules import rules_of
-from solver.reference.self_stress import base_of, self_stresses
 
 LOOSE = 1e-14
 """Pivot, as a share of its diagonal entry, below which a structure counts as not held."""
@@ -112,17 +111,17 @@ class Condensation:
         self._overlap = np.maximum(-rules.gap, 0.0)
         self._fixed, self._prescribed, self._free = fixed, prescribed, free
         self.given: Array = self._jumps[:, fixed] @ prescribed
-        own = self._jumps[:, free]
-        self.moving: Indices = np.flatnonzero(np.diff(own.indptr))
-        own, rigid = own[self.moving], self.compliance[self.moving] == 0.0
-        self.base, self.ties = base_of(own, rigid)
-        own, rigid = own[self.base], rigid[self.base]
+        free_jumps = self._jumps[:, free]
+        self.moving: Indices = np.flatnonzero(np.diff(free_jumps.indptr))
+        free_jumps, rigid = free_jumps[self.moving], self.compliance[self.moving] == 0.0
+        self.base, self.ties = base_of(free_jumps, rigid)
+        free_jumps, rigid = free_jumps[self.base], rigid[self.base]
         self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
-        self.stresses: Array = self_stresses(own, rigid)
+        self.stresses: Array = self_stresses(free_jumps, rigid)
         self._rings = np.flatnonzero(self.stresses.any(axis=1))
-        self._condense(own)
+        self._condense(free_jumps)
 
-    def _condense(self, own: sparse.csr_array) -> None:
+    def _condense(self, free_jumps: sparse.csr_array) -> None:
         """Factor the glued structure once, and take it out for all jumps and instants together."""
         free = self._free
         stiffness = self._whole[free]
@@ -130,9 +129,9 @@ class Condensation:
         stiffness = stiffness[:, free]
         diagonal = stiffness.diagonal()
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
-        self.springs: Array = 1.0 / (abs(own) @ (1.0 / diagonal))
+        self.springs: Array = 1.0 / (abs(free_jumps) @ (1.0 / diagonal))
         self.tie = TIE * float(self.springs.max(initial=0.0))
-        self._jumped, self._glued = from_jumps(own)
+        self._jumped, self._glued = from_jumps(free_jumps)
         strained = sparse.csr_array(stiffness @ self._jumped)
         self._pulled = sparse.csr_array(self._glued.T @ strained)
         self._factor = factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
@@ -140,8 +139,8 @@ class Condensation:
         self._alone = self._solved(self._glued.T @ patterns) @ course
         load = self._jumped.T @ load - self._pulled.T @ self._alone
         whole = (self._jumped.T @ strained).toarray(order="C")
-        for some in blocks(len(whole)):
-            whole[:, some] -= self._pulled.T @ self._solved(self._pulled[:, some].toarray())
+        for columns in blocks(len(whole)):
+            whole[:, columns] -= self._pulled.T @ self._solved(self._pulled[:, columns].toarray())
         symmetrise(whole)
         self._tie(whole)
         self.stiffness: Array = whole
@@ -150,32 +149,32 @@ class Condensation:
             self._set_motions_apart()
 
     def _solved(self, sides: Array) -> Array:
-        """Give how the glued structure moves under forces on it, shape (n_glued, ...)."""
+        """Displacement of the glued structure under forces on it, shape (n_glued, ...)."""
         return np.asarray(self._factor.solve(sides)) if len(sides) else sides
 
     def _balanced(self, forces: Array) -> Array:
-        """Take from forces, or from jumps, of the base what moves nothing."""
-        rings, own = self._rings, self.stresses[self._rings]
-        found = forces.copy()
-        found[rings] -= own @ (own.T @ forces[rings])
-        return found
+        """Forces, or jumps, of the base without what moves nothing."""
+        rings, stresses = self._rings, self.stresses[self._rings]
+        balanced = forces.copy()
+        balanced[rings] -= stresses @ (stresses.T @ forces[rings])
+        return balanced
 
     def _tie(self, stiffness: Array) -> None:
         """Tie jumps of the base that depend on others to them, in S."""
-        rings, own = self._rings, self.stresses[self._rings]
-        stiffness[rings] -= own @ (own.T @ stiffness[rings])
-        stiffness[:, rings] -= (stiffness[:, rings] @ own) @ own.T
-        stiffness[np.ix_(rings, rings)] += self.tie * own @ own.T
+        rings, stresses = self._rings, self.stresses[self._rings]
+        stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
+        stiffness[:, rings] -= (stiffness[:, rings] @ stresses) @ stresses.T
+        stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
 
     def _set_motions_apart(self) -> None:
-        """Take from S what rounding makes rigid motions cost, and from q what it adds to loads."""
+        """Remove from S what rounding makes rigid motions cost, from q what it adds to loads."""
         gauge, stiffness = self.gauge, self.stiffness
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
         size = float(np.diagonal(stiffness).mean())
-        for some in blocks(len(stiffness)):
-            more = costs[some] @ gauge.T + gauge[some] @ (costs - size * gauge).T
-            stiffness[some] -= more
+        for rows in blocks(len(stiffness)):
+            more = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
+            stiffness[rows] -= more
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
     @property
@@ -188,26 +187,26 @@ class Condensation:
         return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
 
     def deformation(self, strained: Array) -> Array:
-        """Give all displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
+        """All displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
 
         Parameters
         ----------
         strained
             Jumps y of the base, shape (n_base, n_instants), scaled.
         """
-        found = np.empty_like(self._force)
-        found[self._fixed] = self._prescribed
+        displacement = np.empty_like(self._force)
+        displacement[self._fixed] = self._prescribed
         jumped = self._balanced(strained - self._given_of_base)
         glued = self._alone - self._solved(self._pulled @ jumped)
-        found[self._free] = self._jumped @ jumped + self._glued @ glued
-        return found
+        displacement[self._free] = self._jumped @ jumped + self._glued @ glued
+        return displacement
 
     def jump(self, displacement: Array) -> Array:
-        """Give the jumps of a displacement, shape (n_forces, n_instants)."""
+        """Jumps of a displacement, shape (n_forces, n_instants)."""
         return np.asarray(self._jumps @ displacement)
 
     def unbalanced(self, deformation: Array, force: Array) -> Array:
-        """Give the forces out of balance where nothing is prescribed, (n_free, n_instants).
+        """Forces out of balance where nothing is prescribed, (n_free, n_instants).
 
         Parameters
         ----------
@@ -243,10 +242,10 @@ class Condensation:
     @cached_property
     def unit(self) -> Array:
         """A stiffness of every jump and what is in series with it, shape (n_forces,), scaled."""
-        found = np.ones(len(self.compliance))
+        unit = np.ones(len(self.compliance))
         springs = abs(self.ties) @ self.springs
-        found[self.moving] = springs / (1.0 + springs * self.compliance[self.moving])
-        return found
+        unit[self.moving] = springs / (1.0 + springs * self.compliance[self.moving])
+        return unit
 
     @cached_property
     def largest_force(self) -> float:
@@ -260,7 +259,7 @@ class Condensation:
 
 
 def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
-    """Give rigid motions, and the jumps Q of the base that they make, orthonormal."""
+    """Rigid motions, and the jumps Q of the base that they make, orthonormal."""
     if problem.motions is None:
         return np.zeros((problem.n_dofs, 0)), np.zeros((base.shape[0], 0))
     _, size = np.linalg.qr(base @ problem.motions)

@@ -20,13 +20,11 @@ from numpy.typing import NDArray
 from solver.discrete.problem import Problem
 from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, TooLargeError
-from solver.reference.contact_states import all_forces, status_of
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
-from solver.reference.residual import Shown, unbalanced_of
 from solver.reference.rules import rules_of
-from solver.reference.solution import Interrupted, Reference
-from solver.reference.states import States
+from solver.reference.solution import Interrupted, Reference, Shown, unbalanced_of
+from solver.reference.states import States, all_forces, status_of
 
 MOST_JUMPS = 13_000
 """Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB, and its

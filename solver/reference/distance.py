@@ -12,9 +12,8 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.glued import jumps
+from solver.reference.glued import jumps, self_stresses
 from solver.reference.rules import rules_of
-from solver.reference.self_stress import self_stresses
 
 VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
@@ -100,12 +99,12 @@ class Distance:
         self._sizes = [max(self._norm(self._force[kind]), least) for kind in self._kinds]
 
     def of_displacement(self, fields: Fields) -> float:
-        """Give the relative error of the displacement."""
+        """Relative error of the displacement."""
         difference = fields.displacement[self._dofs] * self._held - self._displacement
         return self._norm(difference) / self._displacement_size
 
     def of_friction_force(self, fields: Fields) -> float:
-        """Give the relative error of the contact forces: of friction, or of pressure if larger.
+        """Relative error of the contact forces: of friction, or of pressure if larger.
 
         Each relative to its own norm; to `LEAST_SHARE` of both together where that is more.
         """
@@ -154,7 +153,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
 
 
 def held_instants(problem: Problem, contact_force: Array) -> NDArray[np.bool_]:
-    """Tell at which instants contact forces say where all bodies are, shape (n_instants,).
+    """Instants at which contact forces determine where all bodies are, shape (n_instants,).
 
     A body that contact alone holds may lie anywhere along a rigid motion that neither goes against
     a contact that presses nor rubs: without friction, on level ground. Until contacts first carry
@@ -183,11 +182,11 @@ def held_instants(problem: Problem, contact_force: Array) -> NDArray[np.bool_]:
 
 
 def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
-    """Tell where contact forces are determinate, stacked, shape (n_forces, n_instants).
+    """Where contact forces are determinate, stacked, shape (n_forces, n_instants).
 
     Where prescribed displacements alone make a jump, a normal force is not, nor is the friction
     that it carries; friction of a known bound is while it slips. Forces that can balance each other
-    (`solver.reference.self_stress`) are not.
+    (`solver.reference.glued`) are not.
     """
     dofs, displacement = problem.prescribed
     free = np.ones(problem.n_dofs)
@@ -198,8 +197,8 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
     slips[rules.normal] = False
     slips &= (moves | ~rules.normal)[rules.partner][:, None]
     moves &= (moves | ~rules.normal)[rules.partner]
-    own = np.flatnonzero(moves)
-    free_jumps = (all_jumps @ sparse.diags_array(free))[own]
-    ring = np.any(self_stresses(free_jumps, rules.compliance[own] == 0.0) != 0.0, axis=1)
-    moves[own[ring]] = False
+    moving = np.flatnonzero(moves)
+    free_jumps = (all_jumps @ sparse.diags_array(free))[moving]
+    ring = np.any(self_stresses(free_jumps, rules.compliance[moving] == 0.0) != 0.0, axis=1)
+    moves[moving[ring]] = False
     return np.asarray(moves[:, None] | slips)

@@ -45,7 +45,7 @@ def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
         rules.compliance,
         rules.cap,
         rules.strength,
-        *(np.array([one.slips, one.factors]) for one in rules.strengths),
+        *(np.array([strength.slips, strength.factors]) for strength in rules.strengths),
     )
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         matrix.sort_indices()

@@ -3,20 +3,32 @@
 Every jump is the displacement of one degree of freedom, or of one minus another. So jumps join
 degrees of freedom to trees, and the ground is a root. A displacement is u = T j + Z a: a moves each
 tree as one, the structure glued at its contacts, and j are the jumps along its branches.
+
+Where contacts join bodies in a ring, jumps depend on each other, and some of their forces balance
+each other: at a broken wire, say, both of its new ends rub on the neighbours left and right, four
+jumps between four points. These forces are not determinate.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.sparse.csgraph import (
+    breadth_first_order,
+    connected_components,
+    minimum_spanning_tree,
+)
+from scipy.sparse.linalg import splu
 
-from solver.arrays import Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
+
+NONE = 1e-9
+"""Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
 
 
 def jumps(problem: Problem) -> sparse.csr_array:
-    """Give J, the jumps of all pairs, shape (n_forces, n_dofs)."""
+    """J, the jumps of all pairs, shape (n_forces, n_dofs)."""
     rows, columns, values, first = [], [], [], 0
     for law in problem.rubbing.values():
         points, pairs = np.unique(law.points, return_index=True)
@@ -31,7 +43,7 @@ def jumps(problem: Problem) -> sparse.csr_array:
 
 
 def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
-    """Give the two points that every jump is between, the last of all the ground, smaller first."""
+    """The two points that every jump is between, the last of all the ground, smaller first."""
     ground = jumps.shape[1]
     first = jumps.indices[jumps.indptr[:-1]]
     last = np.where(np.diff(jumps.indptr) == 2, jumps.indices[jumps.indptr[1:] - 1], ground)
@@ -47,7 +59,7 @@ def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]
 
 
 def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Give T and Z.
+    """T and Z.
 
     Parameters
     ----------
@@ -97,8 +109,96 @@ def _along_branches(
     held = parents < ground
     ones = np.ones(np.count_nonzero(held))
     beyond = sparse.csr_array((ones, (points[held], parents[held])), shape=(ground, ground))
-    found = step
+    moved = step
     while step.nnz:
         step = sparse.csr_array(beyond @ step)
-        found = found + step
-    return sparse.csr_array(found)
+        moved = moved + step
+    return sparse.csr_array(moved)
+
+
+def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
+    """Forces that move nothing, an orthonormal basis of shape (n_jumps, n_stresses).
+
+    Parameters
+    ----------
+    jumps
+        Each of one degree of freedom, or of one minus another, shape (n_jumps, n_dofs).
+    rigid
+        Jumps with nothing in series, shape (n_jumps,): what has tells its own force.
+    """
+    stresses = _of_rigid(jumps[np.flatnonzero(rigid)])
+    whole = np.zeros((len(rigid), stresses.shape[1]))
+    whole[rigid] = stresses
+    return whole
+
+
+def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_array]:
+    """Jumps from which those with something in series follow, where they depend on others.
+
+    Parameters
+    ----------
+    jumps, rigid
+        As `self_stresses`.
+
+    Returns
+    -------
+    The base, shape (n_base,): all rigid jumps, and of the others as many as are independent. And
+    what all jumps are of them, shape (n_jumps, n_base).
+    """
+    size = len(rigid)
+    edges = graph_of(jumps)
+    trees, _ = trees_of(edges, jumps.shape[1])
+    if rigid.all() or size + trees == jumps.shape[1] + 1:  # a forest: no ring
+        return np.arange(size), sparse.csr_array(sparse.eye_array(size))
+    dear = np.where(rigid, 1.0, 2.0)
+    first, last = edges
+    # Of edges that join the same two points SciPy would take the sum of both for one.
+    order = np.lexsort((np.arange(size), dear, last, first))
+    new = np.ones(size, dtype=bool)
+    new[1:] = np.any(np.diff(np.stack(edges)[:, order], axis=1) != 0, axis=0)
+    single = order[new]
+    nodes = jumps.shape[1] + 1
+    weights = sparse.csr_array((dear[single], (first[single], last[single])), shape=(nodes, nodes))
+    tree = minimum_spanning_tree(weights).tocoo()
+    number = sparse.csr_array((single + 1, (first[single], last[single])), shape=(nodes, nodes))
+    tree_jumps = np.asarray(number[tree.coords[0], tree.coords[1]]).ravel() - 1
+    base = np.union1d(np.flatnonzero(rigid), tree_jumps)
+    others = np.setdiff1d(np.arange(size), base)
+    branches = jumps[tree_jumps]
+    squares = splu(sparse.csc_array(branches @ branches.T))
+    paths = squares.solve((branches @ jumps[others].T).toarray())
+    rows = np.concatenate([base, np.repeat(others, len(tree_jumps))])
+    places = np.searchsorted(base, tree_jumps)
+    columns = np.concatenate([np.arange(len(base)), np.tile(places, len(others))])
+    values = np.concatenate([np.ones(len(base)), np.round(paths).T.ravel()])
+    ties = sparse.csr_array((values, (rows, columns)), shape=(size, len(base)))
+    ties.eliminate_zeros()
+    return base, ties
+
+
+def _of_rigid(jumps: sparse.csr_array) -> Array:
+    size, ground = jumps.shape
+    trees, _ = trees_of(graph_of(jumps), ground)
+    if size + trees == ground + 1:  # a forest: no ring
+        return np.zeros((size, 0))
+    products = sparse.csr_array(jumps @ jumps.T)
+    _, group = connected_components(products, directed=False)
+    stresses = []
+    for number in np.flatnonzero(_rings(jumps, group)):
+        members = np.flatnonzero(group == number)
+        values, vectors = np.linalg.eigh(products[members][:, members].toarray())
+        null = vectors[:, values < NONE]
+        whole = np.zeros((size, null.shape[1]))
+        whole[members] = np.where(np.abs(null) > NONE, null, 0.0)
+        stresses.append(whole)
+    return np.concatenate(stresses, axis=1)
+
+
+def _rings(jumps: sparse.csr_array, group: Indices) -> Indices:
+    """Count the rings in every group of jumps that share points: edges beyond those of a tree."""
+    _, at = np.unique(jumps.indices, return_index=True)
+    of_entries = np.repeat(group, np.diff(jumps.indptr))
+    edges = np.bincount(group)
+    nodes = np.bincount(of_entries[at], minlength=len(edges))
+    nodes[np.unique(group[np.diff(jumps.indptr) == 1])] += 1  # the ground is one more
+    return np.asarray(edges - nodes + 1)

@@ -14,29 +14,31 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.reference.assembled_rods import AssembledRods
+from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
+from solver.reference.band import Band
+from solver.reference.changing_bound import bounds_of, least_with_changing_bound
 from solver.reference.condensation import LEFT_INSIDE
 from solver.reference.contact import IncrementalContact
-from solver.reference.search import Minimum
+from solver.reference.search import Minimum, Search
 from solver.reference.solution import Interrupted, Reference, States
-from solver.reference.starts import Starts
-from solver.reference.supports import rubs_on_supports
+from solver.reference.states import Starts
 
 DEARER = 30
 """Points that make a system of the general solver cost one more of the band's (measured)."""
 
 
-def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve instant by instant (solver/README.md, 6), as `IncrementalRod` does."""
-    start = time.perf_counter()
-    found = IncrementalRod(problem).march(stop=stop)
-    return replace(found, seconds=time.perf_counter() - start)
+def rubs_on_supports(problem: Problem) -> bool:
+    """Whether all friction is of known bound, on rigid supports, one at every point."""
+    if not all(law.is_plain for law in problem.rubbing.values()):
+        return False
+    dofs = points_dofs(problem)
+    return len(problem.rubbing) == 1 or len(np.unique(dofs)) == len(dofs)
 
 
 class IncrementalRod:
@@ -62,7 +64,16 @@ class IncrementalRod:
         self._problem = problem
         if not rubs_on_supports(problem):
             raise ValueError("this solver knows Coulomb's friction of known bound on supports")
-        self._structure = AssembledRods(problem)
+        self._dofs = points_dofs(problem)
+        self._band = Band(assembled_stiffness(problem))
+        self._fixed, prescribed = problem.prescribed
+        # The steps of the load and of the supports, one row an instant.
+        self._load_steps = np.diff(external_force(problem).T, axis=0, prepend=0.0)
+        self._moves = np.diff(prescribed.T, axis=0, prepend=0.0)
+        self._movable = np.ones(problem.n_dofs)
+        self._movable[self._fixed] = 0.0
+        self._bounds = bounds_of(problem)
+        self._search = self._search_within(self._bounds[0].first)
 
     @cached_property
     def _general(self) -> IncrementalContact:
@@ -96,52 +107,85 @@ class IncrementalRod:
             If friction softens so fast that the general solver is needed, and there are too many
             points for it.
         """
-        start = time.perf_counter()
-        structure, starts = self._structure, Starts()
-        guesses = None if guess is None else structure.at_dofs(guess)
-        solved = structure.band.solutions
-        found: list[Minimum] = []
+        start, starts = time.perf_counter(), Starts()
+        band, solved = self._band, self._band.solutions
+        minima: list[Minimum] = []
         balance, status, gone = np.zeros((3, self._problem.n_dofs))
+        guessed = status.copy()
         for instant in range(self._problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and structure.band.solutions - solved >= most:
+            if most is not None and band.solutions - solved >= most:
                 break
-            done, from_guess = structure.band.solutions, starts.from_guess
-            begin = guesses[instant] if guesses is not None and from_guess else status
-            load, move = structure.load_steps[instant] + balance, structure.moves[instant]
-            least = structure.minimise(instant, load, move, begin, gone)
+            done, from_guess = band.solutions, starts.from_guess
+            begin = status
+            if guess is not None and from_guess:
+                guessed[self._dofs] = guess[:, instant]
+                begin = guessed
+            least = self._minimise(instant, self._load_steps[instant] + balance, begin, gone)
             if least is None:
                 return self._general.march(guess, most and most // self._dearer, stop)
-            found.append(least)
-            starts.took(structure.band.solutions - done, from_guess=from_guess)
+            minima.append(least)
+            starts.took(band.solutions - done, from_guess=from_guess)
             balance, status = least.pull, least.status
             gone = gone + np.abs(least.increment)
         seconds = time.perf_counter() - start
-        return self._gathered(found, structure.band.solutions - solved, seconds)
+        return self._gathered(minima, band.solutions - solved, seconds)
+
+    def _minimise(self, instant: int, force: Array, status: Array, gone: Array) -> Minimum | None:
+        """Minimise phi over one instant, from a guess of the statuses; None where it has none.
+
+        Parameters
+        ----------
+        instant
+            Its number.
+        force, status, gone
+            Load, guess, and accumulated slip before, shape (n_dofs,).
+        """
+        move = self._moves[instant]
+        given = np.zeros(len(force))
+        given[self._fixed] = move
+        is_constant = len(self._bounds) == 1
+        bounds = self._bounds[0 if is_constant else instant]
+        search = self._search if is_constant else self._search_within(bounds.first)
+        load = self._movable * (force - self._band.product(given))
+        status = status * search.rubs
+        least: Minimum | None
+        if bounds.stay:
+            least = search(load, status)
+        else:
+            least = least_with_changing_bound(self._band, bounds, self._movable, load, status, gone)
+        if least is not None:
+            least.increment[self._fixed] = move
+            reached = bounds.at(gone + np.abs(least.increment))
+            least.pull[self._fixed] = reached[self._fixed] * np.sign(move)
+        return least
+
+    def _search_within(self, bound: Array) -> Search:
+        return Search(self._band, bound * self._movable, self._movable)
 
     @property
     def _dearer(self) -> int:
         """How many of these systems one of the general solver takes as long as."""
-        return 1 + len(self._structure.point_dofs) // DEARER
+        return 1 + len(self._dofs) // DEARER
 
-    def _gathered(self, found: list[Minimum], steps: int, seconds: float) -> Reference:
-        """Put together the minima of the first instants, from which on nothing moves."""
-        problem, dofs = self._problem, self._structure.point_dofs
+    def _gathered(self, minima: list[Minimum], steps: int, seconds: float) -> Reference:
+        """Solution of the first instants' minima, after which nothing moves."""
+        problem, dofs = self._problem, self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
-        for instant, one in enumerate(found):
-            increments[instant], pulls[instant] = one.increment, one.pull
+        for instant, least in enumerate(minima):
+            increments[instant], pulls[instant] = least.increment, least.pull
         moved = np.cumsum(increments, axis=0).T
-        inside = self._structure.band.largest_row * float(np.abs(moved).max(initial=0.0))
+        inside = self._band.largest_row * float(np.abs(moved).max(initial=0.0))
         return Reference(
             problem=problem,
             displacement=moved * problem.scales.displacement,
             contact_force=0.0 - pulls.T[dofs] * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
-            residual=max([0.0, *(one.residual for one in found)]),
-            unbalanced=max([0.0, *(one.violation for one in found)]) * problem.scales.force,
+            residual=max([0.0, *(least.residual for least in minima)]),
+            unbalanced=max([0.0, *(least.violation for least in minima)]) * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,
-            converged=np.arange(problem.n_instants) < len(found),
+            converged=np.arange(problem.n_instants) < len(minima),
             ambiguous=np.zeros(problem.n_instants, dtype=bool),
             steps=steps,
             seconds=seconds,

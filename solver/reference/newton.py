@@ -18,11 +18,9 @@ import numpy as np
 from solver.arrays import ROUNDING, Array, Indices, at_instant
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
-from solver.reference.contact_states import states_at
 from solver.reference.response import Response
 from solver.reference.rules import Rules
-from solver.reference.starts import Starts
-from solver.reference.states import HELD, Increment, Sides, States
+from solver.reference.states import HELD, Increment, Sides, Starts, States, states_at
 from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30

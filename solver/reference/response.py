@@ -11,7 +11,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.reference.condensation import Condensation
-from solver.reference.factors import Factors
+from solver.reference.dense import Factors
 from solver.reference.rules import Rules
 from solver.reference.states import HELD, Increment, Sides, States
 
@@ -61,7 +61,7 @@ class Response:
         self.unbalanced, self.turned, self.singular = 0.0, False, False
 
     def _forces_of_unknowns(self) -> Array:
-        """Give what forces of all jumps are of y and of forces of jumps that follow from others.
+        """Forces of all jumps as a matrix on y and on forces of jumps that follow from others.
 
         Shape (n, n).
         """
@@ -75,7 +75,7 @@ class Response:
         return found
 
     def set_friction(self, friction: Array, growth: Array) -> None:
-        """Take other coefficients of friction, and bounds that grow by so much per slip, (n,)."""
+        """Change coefficients of friction, and growths of their bounds per slip, shape (n,)."""
         self.friction, self._growth, self._states = friction, growth, None
 
     def __call__(self, states: States, sides: Sides) -> Increment:
@@ -97,12 +97,12 @@ class Response:
         if not self._is_plain:
             right = np.concatenate([right, self._gauge_kept.T @ unknown[kept]])
             if len(sprung):
-                own = rows[sprung]
-                come = self._come @ unknown[:n_base] + self._soft[own] * force[own]
-                right[sprung] = self._share * (sides.held[own] - come)
-        found = self._factors.solve(right)
-        motion = found[n_rows:]
-        unknown[self._free], unknown[n_base:] = found[:n_free], found[n_free:n_rows]
+                springs = rows[sprung]
+                come = self._come @ unknown[:n_base] + self._soft[springs] * force[springs]
+                right[sprung] = self._share * (sides.held[springs] - come)
+        solution = self._factors.solve(right)
+        motion = solution[n_rows:]
+        unknown[self._free], unknown[n_base:] = solution[:n_free], solution[n_free:n_rows]
         if len(motion):
             unknown[kept] -= self._gauge_kept @ motion
             stays = self._forces(unknown, kept)
@@ -119,7 +119,7 @@ class Response:
         return Increment(self._ends(strained, motion, force, sides.held), force, strained, motion)
 
     def _forces(self, unknown: Array, places: Indices, rows: Array | None = None) -> Array:
-        """Give the forces of all jumps that the unknowns at some places make.
+        """Forces of all jumps that the unknowns at some places make.
 
         Most of what is held comes to nothing, and few jumps slip at a time: so S, which is
         symmetric, is read at the rows of what does.
@@ -134,9 +134,9 @@ class Response:
         if rows is None:
             places = places[unknown[places].any(axis=1)]
             if self._ties is not None or len(places) * FEW > len(unknown):
-                some = np.zeros_like(unknown)
-                some[places] = unknown[places]
-                return np.asarray(self._of_unknowns @ some)
+                alone = np.zeros_like(unknown)
+                alone[places] = unknown[places]
+                return np.asarray(self._of_unknowns @ alone)
             rows = self._stiffness[places]
         return np.asarray(rows.T @ unknown[places])
 
@@ -146,23 +146,23 @@ class Response:
         return strained if self._ties is None else np.asarray(self._ties @ strained)
 
     def _ends(self, strained: Array, motion: Array, force: Array, held: Array) -> Array:
-        """Give what all jumps come to, the held ones to the last bit."""
+        """What all jumps come to, the held ones to the last bit."""
         if self._is_plain:
             return strained.copy()
-        found = self._jump(strained, motion) + self._soft * force
-        found[self._held] = held[self._held]
-        return found
+        ends = self._jump(strained, motion) + self._soft * force
+        ends[self._held] = held[self._held]
+        return ends
 
     def on_base(self, force: Array) -> Array:
-        """Give what forces of all jumps are to the base."""
+        """Forces on the base that forces of all jumps are."""
         return force if self._ties is None else np.asarray(self._ties.T @ force)
 
     def inside(self, strained: Array) -> float:
-        """Give the largest force that y of a single jump of the base takes."""
+        """Largest force that y of a single jump of the base takes."""
         return float((self._alone * np.abs(strained)).max())
 
     def blur(self, motion: Array) -> Array:
-        """Give the force that rounding of a rigid motion may make at every jump, shape (n,)."""
+        """Force that rounding of a rigid motion may make at every jump, shape (n,)."""
         if self._is_plain:
             return np.zeros(1)
         moved = self._jump(np.zeros((len(self._base), 1)), motion)
@@ -174,9 +174,9 @@ class Response:
         self._free: Indices = np.flatnonzero(is_free[self._base])
         self._kept: Indices = np.flatnonzero(~is_free[self._base])
         rows = np.concatenate([self._base[self._free], self._others])
-        self._rows, own = rows, states[rows]
-        self._sprung: Indices = np.flatnonzero(own == HELD)
-        way = np.where(np.abs(own) == 1, own, 0).astype(float)
+        self._rows, of_rows = rows, states[rows]
+        self._sprung: Indices = np.flatnonzero(of_rows == HELD)
+        way = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
         slope = way * self.friction[rows]
         self._stiffer = (np.abs(way) * self._growth[rows])[:, None]
         self._grows = bool(self._stiffer.any())
@@ -206,7 +206,7 @@ class Response:
         self.singular = self._factors.make_sure(least)
 
     def _with_motions(self, forces: Array) -> Array:
-        """Let what is in series come to its end, and choose y: all equations.
+        """All equations: what is in series comes to its end, and y is chosen.
 
         Parameters
         ----------
@@ -220,10 +220,10 @@ class Response:
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
         if gauge.size:
-            own = self._share_of_own * self._pulls_of_motions(self._rows)
+            pulls = self._share_of_own * self._pulls_of_motions(self._rows)
             tied = np.flatnonzero(self._slope)
-            own[tied] += self._slope[tied] * self._pulls_of_motions(self._under[tied])
-            matrix[:n_rows, n_rows:] = own
+            pulls[tied] += self._slope[tied] * self._pulls_of_motions(self._under[tied])
+            matrix[:n_rows, n_rows:] = pulls
             if self._grows:
                 matrix[:n_rows, n_rows:] += self._stiffer * (self._slips[:, free] @ gauge[free])
         if len(sprung):
@@ -242,10 +242,10 @@ class Response:
         moved = self._of_unknowns[np.ix_(rows, free)] @ self._gauge[free]
         return np.asarray(moved - self._pulls_of_gauge[rows])
 
-    def _jumps_of(self, own: Indices) -> Array:
-        """Give what some jumps are of those of the base, shape (n_own, n_base)."""
+    def _jumps_of(self, numbers: Indices) -> Array:
+        """Jumps at some places as a matrix on those of the base, shape (n, n_base)."""
         if self._ties is not None:
-            return np.asarray(self._ties[own])
-        found = np.zeros((len(own), len(self._base)))
-        found[np.arange(len(own)), own] = 1.0
+            return np.asarray(self._ties[numbers])
+        found = np.zeros((len(numbers), len(self._base)))
+        found[np.arange(len(numbers)), numbers] = 1.0
         return found

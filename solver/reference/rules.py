@@ -92,7 +92,7 @@ class Rules:
     @cached_property
     def ages(self) -> bool:
         """Whether friction changes with slip anywhere."""
-        return any(set(one.factors) != {1.0} for one in self.strengths)
+        return any(set(strength.factors) != {1.0} for strength in self.strengths)
 
     @property
     def is_linear(self) -> bool:
@@ -101,32 +101,26 @@ class Rules:
 
     def factor(self, gone: Array) -> Array:
         """Factor on the friction bound after accumulated slip, shape (n, ...) both."""
-        return self._of_strengths(gone, Strength.__call__)
+        return self._of_strengths(Strength.__call__, gone)
 
     def growth(self, gone: Array) -> Array:
         """Growth of the factor per further slip, shape (n,) both."""
-        return self._of_strengths(gone, lambda one, slip: one.slopes[one.segment(slip)])
+        return self._of_strengths(Strength.slope, gone)
 
     def lowest_growth(self, first: Array, last: Array) -> Array:
         """Smallest growth of the factor on the way from one slip to a larger one, shape (n,)."""
-        found = np.zeros_like(first)
-        for number, one in enumerate(self.strengths):
-            own = self.strength == number
-            found[own] = one.lowest_slope(first[own], last[own])
-        return found
+        return self._of_strengths(Strength.lowest_slope, first, last)
 
     def segment(self, gone: Array) -> Indices:
         """Numbers of the points of the strengths behind accumulated slips, shape (n,)."""
-        return self._of_strengths(gone, lambda one, slip: one.segment(slip).astype(float)).astype(
-            np.intp
-        )
+        return self._of_strengths(Strength.segment, gone).astype(np.intp)
 
-    def _of_strengths(self, gone: Array, value: Callable[[Strength, Array], Array]) -> Array:
-        found = np.ones_like(gone)
-        for number, one in enumerate(self.strengths):
-            own = self.strength == number
-            found[own] = value(one, gone[own])
-        return found
+    def _of_strengths(self, value: Callable[..., Array | Indices], *slips: Array) -> Array:
+        values = np.ones_like(slips[0])
+        for number, strength in enumerate(self.strengths):
+            points = self.strength == number
+            values[points] = value(strength, *(slip[points] for slip in slips))
+        return values
 
     def before_slip(self, bound: Array, force: Array) -> Array:
         """Friction force r + mu f_n up to its cap, before slip changes it, shape (n, n_instants).
@@ -162,10 +156,10 @@ def rules_of(problem: Problem) -> Rules:
     """Rules of all interfaces with friction, stacked as `Problem.sum_of_contact` says."""
     strengths, parts, first = [PLAIN], list[Rules](), 0
     for law in problem.rubbing.values():
-        own = law.tangential.strength or PLAIN
-        if own not in strengths:
-            strengths.append(own)
-        parts += _components(law, first, strengths.index(own))
+        of_law = law.tangential.strength or PLAIN
+        if of_law not in strengths:
+            strengths.append(of_law)
+        parts += _components(law, first, strengths.index(of_law))
         first += len(law.components) * len(law.positions)
     names = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance", "strength")
     stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in names}
@@ -175,7 +169,7 @@ def rules_of(problem: Problem) -> Rules:
 def _components(law: Contact, first: int, strength: int) -> list[Rules]:
     """Rules of one interface, component by component, from a place in the stack on."""
     size, along = len(law.positions), law.tangential
-    none, no, own = np.zeros(size), np.zeros(size, dtype=bool), first + np.arange(size)
+    none, no, places = np.zeros(size), np.zeros(size, dtype=bool), first + np.arange(size)
     endless, plain = np.full(size, np.inf), np.zeros(size, dtype=np.intp)
     soft = law.in_parallel(along.softness)
     bound, friction = law.by_point(along.bound), law.mean_by_point(along.friction)
@@ -183,9 +177,9 @@ def _components(law: Contact, first: int, strength: int) -> list[Rules]:
     if law.normal is not None:
         across = law.in_parallel(law.normal.softness)
         gap = law.mean_by_point(law.normal.gap)
-        normal = [Rules(~no, gap, own, none, none[:, None], endless, across, plain, ())]
+        normal = [Rules(~no, gap, places, none, none[:, None], endless, across, plain, ())]
         # Without friction what is in series along changes nothing, and tells the jump from others.
         soft = soft if bound.any() or friction.any() else across
     cap = endless if along.cap is None else law.by_point(along.cap)
     strengths = np.full(size, strength)
-    return [*normal, Rules(no, none, own, friction, bound, cap, soft, strengths, ())]
+    return [*normal, Rules(no, none, places, friction, bound, cap, soft, strengths, ())]

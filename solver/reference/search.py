@@ -61,24 +61,24 @@ class Search:
         self._rod = np.repeat(np.arange(len(sizes)), sizes)
 
     def __call__(self, force: Array, status: Array) -> Minimum:
-        """Find the minimum from a guess of the statuses; no force where nothing moves."""
+        """Minimum, sought from a guess of the statuses; no force where nothing moves."""
         found = self._newton(force, status)
         if found.solved is not None:
             return self._judged(force, found.status, *found.solved)
         rods, settled = found.changing, found.status
         if 2 * np.count_nonzero(rods) >= len(force):
             return self._of(force, self._mended(force, status))
-        own = Search(self._band.only(rods), self._bound[rods], self._movable[rods])
-        settled[rods] = own._mended(force[rods], status[rods])
-        self._band.solutions += -(-own._band.solutions * len(own._bound) // len(force))
+        parts = Search(self._band.only(rods), self._bound[rods], self._movable[rods])
+        settled[rods] = parts._mended(force[rods], status[rods])
+        self._band.solutions += -(-parts._band.solutions * len(parts._bound) // len(force))
         return self._of(force, settled)
 
     def released(self, force: Array, status: Array) -> Minimum:
-        """Find the minimum from statuses, releasing or stopping one point after the other."""
+        """Minimum, sought from statuses by releasing or stopping one point after the other."""
         return self._of(force, self._descend(force, status))
 
     def _of(self, force: Array, status: Array) -> Minimum:
-        """Give the minimum whose statuses these are."""
+        """Minimum whose statuses these are."""
         increment = self._slip(force, status)
         return self._judged(force, status, increment, force - self._band.product(increment))
 
@@ -90,21 +90,21 @@ class Search:
         return Minimum(increment, held, status, violation, relative)
 
     def _mended(self, force: Array, status: Array) -> Array:
-        """Find the statuses where those of Newton's method do not come to rest."""
+        """Statuses where those of Newton's method do not come to rest."""
         if len(force) >= COARSEST:
-            found = self._newton(force, self._from_coarser(force, status))
-            if found.solved is not None:
-                return found.status
-            status = found.status
+            guess = self._newton(force, self._from_coarser(force, status))
+            if guess.solved is not None:
+                return guess.status
+            status = guess.status
         return self._descend(force, status)
 
     def _guessed(self, force: Array, status: Array) -> Array:
         """Guess the statuses, where need be from those of a mesh that is coarser still."""
-        found = self._newton(force, status)
-        if found.solved is not None or len(force) < COARSEST:
-            return found.status
+        guess = self._newton(force, status)
+        if guess.solved is not None or len(force) < COARSEST:
+            return guess.status
         again = self._from_coarser(force, status)
-        return self._newton(force, np.where(found.changing, again, found.status)).status
+        return self._newton(force, np.where(guess.changing, again, guess.status)).status
 
     def _from_coarser(self, force: Array, status: Array) -> Array:
         coarser, group = self._coarser
@@ -148,7 +148,7 @@ class Search:
         return self._band.solve_kept(keep, keep * (force - self._bound * status))
 
     def _rounding(self, largest: float, increment: Array) -> float:
-        """Give what rounding leaves of a pull, where the largest force is given."""
+        """What rounding leaves of a pull, where the largest force is given."""
         return ROUNDING * float(self._band.largest_row * np.abs(increment).max() + largest)
 
     def _descend(self, force: Array, status: Array) -> Array:
@@ -191,12 +191,12 @@ class Search:
         pull = force - self._band.product(increment)
         excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
         most = np.maximum.reduceat(excess, self._starts)
-        found = rods & (most > self._rounding(largest, increment))
-        points = self._first(excess == most[self._rod], found)
+        released = rods & (most > self._rounding(largest, increment))
+        points = self._first(excess == most[self._rod], released)
         status[points] = np.sign(pull[points])
-        return found
+        return released
 
     def _first(self, is_one: Flags, rods: Flags) -> Indices:
-        """Give the first degree of freedom of each of some rods that is one of these."""
+        """First of these degrees of freedom on each of the rods."""
         places = np.flatnonzero(is_one & rods[self._rod])
         return places[np.unique(self._rod[places], return_index=True)[1]]

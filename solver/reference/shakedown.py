@@ -57,7 +57,7 @@ UNBOUNDED = 3
 """Status of `linprog` where the factor may grow without end."""
 
 
-def shakedown_limit(problem: Problem, some: slice) -> float:
+def shakedown_limit(problem: Problem, cycle: slice) -> float:
     """Largest factor on all loads of rods under which slip ceases.
 
     It is infinite where the loads stay the same, or nothing that rubs feels them.
@@ -66,7 +66,7 @@ def shakedown_limit(problem: Problem, some: slice) -> float:
     ----------
     problem
         Bodies whose friction has known bounds; all that acts is scaled, but for these.
-    some
+    cycle
         The instants of a cycle; what came before says nothing of the limit.
 
     Raises
@@ -84,18 +84,18 @@ def shakedown_limit(problem: Problem, some: slice) -> float:
     rules = rules_of(problem).kept(condensed.moving)
     if rules.ages:
         raise NoReferenceError("Where friction changes with slip the theorem says nothing.")
-    residual, elastic, rings = condensed.stiffness, -condensed.load[:, some], condensed.stresses
+    residual, elastic, rings = condensed.stiffness, -condensed.load[:, cycle], condensed.stresses
     if rules.compliance.any():
         rings = np.zeros((len(rules.compliance), 0))  # what gives way tells its own force
         stiff = 1.0 / rules.compliance[:, None]
         tied = stiff * condensed.ties.toarray()
         gives = np.linalg.solve(residual + condensed.ties.T @ tied, tied.T)
         residual = np.diagflat(stiff) - tied @ gives
-        elastic = gives.T @ elastic - residual @ condensed.shift[:, some]
+        elastic = gives.T @ elastic - residual @ condensed.shift[:, cycle]
     rubs, free = np.flatnonzero(rules.bounded), np.flatnonzero(~rules.bounded)
     carried = np.linalg.solve(residual[np.ix_(free, free)], residual[np.ix_(free, rubs)]).T
     elastic = elastic[rubs] - carried @ elastic[free]
-    bound = np.broadcast_to(rules.bound[rubs], (len(rubs), problem.n_instants))[:, some]
+    bound = np.broadcast_to(rules.bound[rubs], (len(rubs), problem.n_instants))[:, cycle]
     scale = float(bound.max(initial=0.0)) or 1.0
     elastic, bound = elastic / scale, bound / scale
     if rings.shape[1]:
@@ -198,10 +198,12 @@ def slip_space(problem: Problem) -> SlipSpace:
     still = (stiffness @ closed)[:, None] - condensed.load
     friction, pressing = rules.friction[rubs, None], rules.partner[rubs]
     carried, bound = friction * stiffness[np.ix_(pressing, rubs)], rules.bound[rubs]
-    own, held = stiffness[np.ix_(rubs, rubs)], friction * still[pressing] + bound
+    tangential, held = stiffness[np.ix_(rubs, rubs)], friction * still[pressing] + bound
     # Friction that takes pressing says so by itself.
     alone = np.setdiff1d(np.flatnonzero(rules.normal), pressing[~rules.bounded[rubs]])
-    matrix = np.concatenate([own - carried, -own - carried, -stiffness[np.ix_(alone, rubs)]])
+    matrix = np.concatenate(
+        [tangential - carried, -tangential - carried, -stiffness[np.ix_(alone, rubs)]]
+    )
     limit = np.concatenate([held - still[rubs], held + still[rubs], still[alone]])
     force = problem.scales.force
     return SlipSpace(matrix * force / problem.scales.displacement, limit * force)
@@ -215,14 +217,14 @@ def _elastic(condensed: Condensation) -> Array:
     return np.asarray(stiffness - held @ gauge.T)
 
 
-def largest_swing(space: SlipSpace, some: slice) -> tuple[float, Array]:
+def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     """How much a load may swing about its mean until no slip could stay, or a contact opens.
 
     Parameters
     ----------
     space
         The planes.
-    some
+    cycle
         The instants of whole cycles, equally far apart.
 
     Returns
@@ -238,7 +240,7 @@ def largest_swing(space: SlipSpace, some: slice) -> tuple[float, Array]:
     NoReferenceError
         Where not even the mean of the load could be held.
     """
-    limit = space.limit[:, some]
+    limit = space.limit[:, cycle]
     mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)
     least = (limit - mean[:, None]).min(axis=1)
     unit, scale = float(np.abs(space.matrix).max()), float(np.abs(limit).max()) or 1.0
@@ -250,14 +252,14 @@ def largest_swing(space: SlipSpace, some: slice) -> tuple[float, Array]:
     return float(solution.x[size]), solution.x[:size] * scale / unit
 
 
-def room_of_two(space: SlipSpace, some: slice) -> Array:
+def room_of_two(space: SlipSpace, cycle: slice) -> Array:
     """Where two points may stay at all instants, between the lines that come farthest.
 
     Returns
     -------
     Corners in their order, shape (n_corners, 2), m; none where nothing is left.
     """
-    matrix, limit = space.matrix, space.limit[:, some].min(axis=1)
+    matrix, limit = space.matrix, space.limit[:, cycle].min(axis=1)
     slack = SLACK * float(np.abs(space.limit).max(initial=0.0))
     corners = []
     for pair in combinations(range(len(matrix)), 2):

@@ -145,7 +145,7 @@ def _course(
     counts = []
     while slab is not None:
         fields = (reference.displacement, reference.contact_force)
-        part = AtInstants(*(field[:, slab.some] for field in fields))
+        part = AtInstants(*(field[:, slab.instants] for field in fields))
         distance = distance_to(part, slab.problem)
         way_there = iterations(slab.problem, slab.latin, slab.start, resumable=False)
         for iterate in islice(way_there, MOST):

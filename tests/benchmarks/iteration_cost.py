@@ -80,7 +80,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
         def step() -> None:
             stage.read(target)
             stage.advance(state, settings.relaxation)
-            stage.incoming(state, incoming)
+            stage.incoming(state)
 
         return step
 

@@ -52,9 +52,8 @@ def measure(settings: Settings, repeats: int) -> list[float]:
     def step() -> None:
         linear.read(target)
         linear.advance(state, settings.relaxation)
-        linear.incoming(state, space)
+        linear.incoming(state)
 
-    space = space_time(problem.n_rows, problem.n_instants)
     parts: list[Callable[[], object]] = [lambda: local(incoming), step]
     if can_be_clipped(settings):
         clips = clips_in(settings, iterate)

@@ -32,8 +32,7 @@ from scipy import sparse
 
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.supports import points_dofs
+from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
 
 Solve = Callable[[Array, Array], Array]
 """From the bounds of K w, each of shape (n,), to w, shape (n,)."""

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 from scipy.fft import idct
 
-from solver.arrays import Array, space_time
+from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity, Substructure
@@ -141,7 +141,7 @@ def reduction_cost(
     stages: list[LinearStage] = [LinearStage(problem, k, multiscale=True)]
     for tolerance in (1.0, TIGHT):
         forms = [PGD(size, tolerance, pairs=1, sharing=0.0) for size in sizes]
-        stages += [form.stage(problem, k, multiscale=True) for form in forms]
+        stages += [LinearStage(problem, k, form, multiscale=True) for form in forms]
     # All begin from bases that are full, also where no residual is enough for another mode.
     states = [stage.start(start) for stage in (stages[0], *2 * stages[1 + len(sizes) :])]
     steps = [_step(*each, target) for each in zip(stages, states, strict=True)]
@@ -211,12 +211,10 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
 
 
 def _step(stage: LinearStage, state: list[Any], target: Array) -> Callable[[], None]:
-    incoming = space_time(*target.shape)
-
     def step() -> None:
         stage.read(target)
         stage.advance(state, 0.8)
-        stage.incoming(state, incoming)
+        stage.incoming(state)
 
     return step
 

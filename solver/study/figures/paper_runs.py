@@ -8,8 +8,8 @@ from functools import cached_property
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, Record, solve
 from solver.reduction.svd import Decomposition, InterfaceField, decompositions
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -50,7 +50,7 @@ class PaperRuns:
     @cached_property
     def reference(self) -> Reference:
         """The incremental solution; how the bar is decomposed makes no difference to it."""
-        return incremental(discretise(self.settings))
+        return reference_of(discretise(self.settings))
 
     @cached_property
     def multiscale(self) -> PaperRun:

@@ -1,4 +1,4 @@
-"""Factors of a dense matrix whose rows may differ by any number of digits."""
+"""Dense matrices: factored, or taken some columns at a time where they fill the memory."""
 
 from __future__ import annotations
 
@@ -9,6 +9,22 @@ from solver.arrays import Array
 
 SINGULAR = 1e-12
 """Pivot, as a share of the largest, below which a system is singular."""
+BLOCK = 500
+"""Columns at a time."""
+
+
+def blocks(size: int) -> list[slice]:
+    """Slices of as many columns, or rows, as are taken at a time."""
+    return [slice(first, first + BLOCK) for first in range(0, size, BLOCK)]
+
+
+def symmetrise(matrix: Array) -> None:
+    """Replace a square matrix by the mean of it and its transpose."""
+    for rows in blocks(len(matrix)):
+        others = slice(rows.start, None)
+        mean = matrix[rows, others] + matrix[others, rows].T
+        mean *= 0.5
+        matrix[rows, others], matrix[others, rows] = mean, mean.T
 
 
 class Factors:
@@ -47,23 +63,23 @@ class Factors:
         self.turned = bool((np.count_nonzero(diagonal < 0.0) + swaps) % 2)
 
     def make_sure(self, least: float) -> bool:
-        """Tell whether the matrix is singular: whether a pivot is too small, or below `least`."""
+        """Whether the matrix is singular: whether a pivot is too small, or below `least`."""
         sizes = np.abs(np.diagonal(self._factors))
         least = max(SINGULAR * float(sizes.max(initial=0.0)), least)
         self._is_singular = bool(sizes.min(initial=np.inf) <= least)
         return self._is_singular
 
     def solve(self, right: Array) -> Array:
-        """Give x with A x = b, shape (n, k); where A is singular the smallest that fits best."""
+        """Solve A x = b, b of shape (n, k); where A is singular, by the least x that fits best."""
         if not len(right):
             return right
         if not self.scaled:
             return self._solve(right)
         right = self._rows[:, None] * right
-        found = self._solve(right)
+        solution = self._solve(right)
         if not self._is_singular:
-            found += self._solve(right - self._matrix @ found)
-        return np.asarray(self._columns[:, None] * found)
+            solution += self._solve(right - self._matrix @ solution)
+        return np.asarray(self._columns[:, None] * solution)
 
     def _solve(self, right: Array) -> Array:
         if self._is_singular:
@@ -72,6 +88,6 @@ class Factors:
 
 
 def _sizes(matrix: Array, axis: int) -> Array:
-    """Give powers of two that bring the largest entries along an axis near 1."""
+    """Powers of two that bring the largest entries along an axis near 1."""
     _, exponent = np.frexp(np.abs(matrix).max(axis=axis, initial=0.0))
     return np.asarray(np.ldexp(1.0, -exponent))
