@@ -110,6 +110,11 @@ class Run:
     """Its displacement and force, shape (2, n_instants)."""
     reference_seconds: float = float("nan")
     """Time that it took, s."""
+    mechanism: Floats | None = None
+    """Displacement of the nodes as the structure begins to collapse, (n_nodes, 2), m, the size of a
+    body at most; None where it does not."""
+    collapses_at: float = float("nan")
+    """When it does, s."""
     is_idle: bool = False
     """Whether nothing acts, so that nothing moves."""
 

@@ -16,6 +16,8 @@ from app.views.colors import EDGE, ERROR, FORCE, STATUS
 from app.views.layout import BAND, IMAGE, LETTER, Layout, turned
 from solver.arrays import Array
 
+MECHANISM = 0.12
+"""Share of the height of all bodies that the largest motion of a mechanism is drawn as."""
 Columns = dict[str, Any]
 Strokes = list[tuple[Array, str, float]]
 """Lines, NaN between them, with a colour and a width, px."""
@@ -127,6 +129,13 @@ class Picture:
         geometry: Geometry = frame.run.geometry
         nodes = self._moved(geometry.nodes, frame.deformed.nodes[:, :, column])
         return _pair(self._page(_drawn(geometry.rims, nodes)))
+
+    def mechanism(self, moved: Array) -> Columns:
+        """Outline of the bodies as they begin to collapse, on the page."""
+        size = float(np.abs(moved).max(initial=0.0)) or 1.0
+        shown = MECHANISM * self.layout.top / size * moved
+        nodes = self.layout.local(self._geometry.nodes + shown)
+        return _pair(self._page(_drawn(self._geometry.outlines, nodes)))
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""

@@ -95,6 +95,8 @@ class Scene(View):
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None and ghost.run.settings.scene == run.settings.scene:
             past = picture.ghost(ghost, ghost.run.column(selection.phase))
+        if run.mechanism is not None and run.instants[picture.column] >= run.collapses_at:
+            past = picture.mechanism(run.mechanism)
         self.fill("ghost", **past)
         self.show("open", any(each.bound is None for each in run.interfaces.values()))
         is_rods = run.geometry.description.height is None

@@ -85,6 +85,10 @@ class Drawn:
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         raise NotImplementedError
 
+    def nodes_of(self, displacement: Array) -> Floats:
+        """Displacement of the nodes, of bodies in the plane, by that of degrees of freedom."""
+        raise NotImplementedError
+
 
 class DrawnRods(Drawn):
     """Rods as rectangles above each other; they rub between them, or on what is below."""
@@ -149,6 +153,13 @@ class DrawnMesh(Drawn):
             shown = von_mises(stress, values["poisson"], values["plane"])
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
         return "von Mises stress", "Pa", floats(np.stack(means, axis=1))
+
+    def nodes_of(self, displacement: Array) -> Floats:
+        """Displacement of the nodes, (n_nodes, 2), of that of degrees of freedom, (n_dofs,), m."""
+        moved, still = (
+            self._inside.displacement(size * displacement[:, None], [0]) for size in (1.0, 0.0)
+        )
+        return floats((moved - still)[self._nodes, :, 0])
 
     def _moved(self, iterate: Iterate) -> Array:
         return self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]

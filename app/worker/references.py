@@ -15,9 +15,9 @@ from solver.reference.solution import Reference
 from solver.scenes import features_of
 from solver.settings import Settings
 
-MOST_JUMPS = 1000
-"""Jumps up to which a reference takes no longer than a second or two; its time grows with their
-cube (measured: 8 s for 1900)."""
+MOST_JUMPS = 1500
+"""Jumps up to which a reference takes no longer than some seconds; its time grows with their cube
+(measured: layers 8 s for 1900, a wall 1 s for 1400)."""
 ENTRIES = 8
 
 
@@ -35,7 +35,7 @@ class ReferenceCache:
     def of(
         self, settings: Settings, problem: Problem, stop: Callable[[], bool]
     ) -> Reference | None:
-        """The reference of a problem, or None where there is none.
+        """The reference of a problem, or None where there is none; one that collapses is told.
 
         Raises
         ------
@@ -49,8 +49,10 @@ class ReferenceCache:
         if reference is None:
             with suppress(NoReferenceError):
                 reference = reference_of(problem, stop)
-        if reference is None or not reference.converged.all():
+        if reference is None:
             return None
+        if not reference.converged.all():
+            return reference if reference.collapse is not None else None
         self._kept[key] = replace(reference, problem=None)
         if len(self._kept) > ENTRIES:
             self._kept.popitem(last=False)

@@ -13,6 +13,7 @@ from app.worker.references import ReferenceCache, has_reference
 from app.worker.sampling import Sampler
 from solver.latin import Ending, Iterate, Record, Status, judged, record
 from solver.latin.run_cost import RunCost, run_cost
+from solver.latin.status import collapses
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted
 from solver.scenes import discretise
@@ -139,6 +140,11 @@ class Runner:
         except Interrupted:
             return
         self._is_compared = self.has_news = True
+        if reference is not None and reference.collapse is not None:
+            self.sampler.collapse(reference.collapse)
+            if self.status is None or self.status.ending is not Ending.CONVERGED:
+                self.status = collapses(reference.collapse.time)
+            return
         self.sampler.complete(reference)
         if reference is not None:
             self._distance = distance = distance_to(reference, problem)

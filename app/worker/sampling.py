@@ -20,6 +20,7 @@ from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.status import CANCELLED
+from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Reference
 from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of
@@ -87,6 +88,11 @@ class Sampler:
             self.run = replace(
                 self.run, reference=contact, reference_loop=loop, reference_seconds=seconds
             )
+
+    def collapse(self, collapse: Collapse) -> None:
+        """Add the mechanism by which the structure begins to fail, and when."""
+        moved = self.drawn.nodes_of(collapse.mechanism * self.problem.scales.displacement)
+        self.run = replace(self.run, mechanism=moved, collapses_at=collapse.time)
 
     def frame(
         self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
