@@ -76,8 +76,8 @@ def collapses(time: float) -> Status:
     """Status of a run whose loads no contact forces can balance from a time on, s."""
     return Status(
         Ending.STALLED,
-        f"There is no equilibrium from {time:.4g} s on: no contact forces within friction balance the "
-        "loads, and the structure collapses. Lower the load, or raise friction or pressure.",
+        f"There is no equilibrium from {time:.4g} s on: no contact forces within friction balance "
+        "the loads, and the structure collapses. Lower the load, or raise friction or pressure.",
     )
 
 
