@@ -12,6 +12,7 @@ from app.state import PageState, default_settings
 from app.views.picture import bands
 from app.views.rope import StressRanges, Unrolled, WireSection
 from app.views.scene import HEIGHT, WIDTH, Scene, Stress
+from app.views.thrust import WIDEST, Thrust
 from app.views.timeline import Timeline, paths_of
 from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
@@ -24,9 +25,13 @@ SMALL = {"elements": 24, "instants": 21}
 PHASES = np.linspace(0.0, 1.0, 7)
 
 
-def frame_of(settings: Settings, *, extras: frozenset[str] = frozenset()) -> Frame:
-    """Frame of the second iterate."""
+def frame_of(
+    settings: Settings, *, extras: frozenset[str] = frozenset(), ends: bool = False
+) -> Frame:
+    """Frame of the second iterate, or that with which the run ends."""
     runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    while ends and runner.rest() is not None:
+        runner.advance()
     while len(runner.history) < 2 and runner.status is None:
         runner._iterate()
     return runner.frame(Needs(extras=extras))
@@ -42,8 +47,8 @@ def frame(request: pytest.FixtureRequest) -> Frame:
     return frame_of(small(request.param), extras=frozenset(EXTRAS | OF_ROPE))
 
 
-def shown(frame: Frame, phase: float = 0.75) -> Scene:
-    view = Scene(PageState(frame.run.settings))
+def shown(frame: Frame, phase: float = 0.75, kind: type[Scene] = Scene) -> Scene:
+    view = kind(PageState(frame.run.settings))
     _ = view.figure
     view.update(frame, Selection(phase), None)
     return view
@@ -175,3 +180,34 @@ def test_a_tap_selects_the_substructure_that_is_there() -> None:
     x, y = view.picture.layout.page(middle, 0.0)  # type: ignore[union-attr]
     view._select(SimpleNamespace(x=x, y=y))
     assert view.state.selection.substructure == 2
+
+
+def wall(**changes: object) -> Settings:
+    small_wall = {"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "instants": 21}
+    return default_settings("wall").replace(**small_wall, **changes)
+
+
+def test_lines_of_thrust_bring_what_presses_on_a_wall_to_the_ground() -> None:
+    settings = wall(displacement=0.0, unit_weight=0.0)
+    frame = frame_of(settings, extras=frozenset({"thrust"}), ends=True)
+    shown_lines = frame.extras["thrust"]
+    lines, forces = shown_lines["lines"][..., -1], shown_lines["forces"][:, -1]
+    on_ground = np.all(lines[:, 1] == lines[:, 2], axis=1)
+    assert on_ground.sum() == 3
+    assert forces[on_ground].sum() == pytest.approx(1e6 * 3 * 0.25, rel=0.01)
+    assert np.all(lines[on_ground, 0, 1] > lines[on_ground, 1, 1])
+    view = shown(frame, 1.0, Thrust)
+    widths = view.sources["thrust"].data["line_width"]
+    assert 3 < len(widths) <= len(forces)
+    assert max(widths) == pytest.approx(WIDEST, rel=1e-3)
+
+
+def test_a_wall_that_collapses_says_when_and_shows_by_which_mechanism() -> None:
+    frame = frame_of(wall(top="pulled", traction=2e6, unit_weight=0.0), ends=True)
+    assert frame.status is not None
+    assert "no equilibrium from" in frame.status.advice
+    assert 0.25 < frame.run.collapses_at < 1.0
+    assert frame.run.mechanism is not None
+    assert float(np.abs(frame.run.mechanism).max()) > 0.0
+    assert len(shown(frame, 1.0).sources["ghost"].data["x"]) > 10
+    assert not len(shown(frame, 0.1).sources["ghost"].data["x"])

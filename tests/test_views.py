@@ -37,6 +37,7 @@ SMALL = {
     "incline": {},
     "layers": {},
     "strand": {},
+    "wall": {"bricks": 3, "courses": 3},
 }
 MORE = {
     "bases": ("bar", {"elements": 60, "linear_stage": "pgd"}),
