@@ -157,7 +157,12 @@ def strand_cases() -> list[Case]:
         case("k_scale", "1000", {"k_scale": 1e3}, UNSOLVED),
         case("substructures", "1", {"substructures": 1}, UNSOLVED),
         case("substructures", "as many as elements", {"substructures": 24}, UNSOLVED),
-        case("friction law", "cohesion alone, soft", {**SOFT, "friction": 0.0, "cohesion": 2e3}),
+        case(
+            "friction law",
+            "cohesion alone, soft",
+            {**SOFT, "friction": 0.0, "cohesion": 2e3},
+            UNSOLVED,
+        ),
         case("instants", "1", {"instants": 1, **RAMP}),
     ]
 
