@@ -9,8 +9,10 @@ import pytest
 
 from solver.discrete.wall import Wall, bonded
 from solver.latin import Ending, Latin, iterations, solve
+from solver.laws import FrictionLaw, Strength
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.limit_analysis import collapse_of
 from solver.study.stability.outcome import kkt_residual
 
 TIMES = np.linspace(0.0, 1.0, 21)
@@ -110,6 +112,25 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
         found = reference_of(made.discretise())
         assert bool(found.converged[-1]) is stands
         assert found.converged[:5].all()
+
+
+@pytest.mark.parametrize(
+    ("law", "limit"),
+    [
+        (FrictionLaw(), 0.3),
+        (FrictionLaw(strength=Strength((0.0, 1e-6), (1.0, 1.5))), 0.45),
+        (FrictionLaw(cohesion=1e5), 0.4),
+        (FrictionLaw(cap=2e5), 0.2),
+    ],
+)
+def test_limit_analysis_finds_the_shear_that_no_contact_force_balances(law, limit):
+    """The load reaches its limit halfway; hardening that slip may bring is counted in."""
+    made = replace(column(2.0 * limit * 1e6, 1, friction=0.3), friction_law=law)
+    collapse = collapse_of(made.discretise())
+    assert collapse.time == pytest.approx(0.25 + 0.75 * 0.5, rel=1e-9)
+    assert np.abs(collapse.mechanism).max() == pytest.approx(1.0)
+    safe = replace(column(0.99 * limit * 1e6, 1, friction=0.3), friction_law=law)
+    assert collapse_of(safe.discretise()) is None
 
 
 def test_the_number_of_iterations_does_not_grow_with_the_bricks():

@@ -253,13 +253,9 @@ class Friction:
     @classmethod
     def concatenated(cls, laws: Sequence[Friction]) -> Friction:
         """Laws of one strength put one after the other, all on supports, or none."""
-        below = [law.component.below for law in laws if law.component.below is not None]
         return replace(
             laws[0],
-            component=Component(
-                np.concatenate([law.component.above for law in laws]),
-                np.concatenate(below) if below else None,
-            ),
+            component=Component.concatenated([law.component for law in laws]),
             bound=in_rows([law.bound for law in laws]),
             friction=np.concatenate([law.friction for law in laws]),
             cap=_joined([law.cap for law in laws], laws, np.inf),

@@ -26,6 +26,13 @@ class Component(NamedTuple):
     above: Indices
     below: Indices | None = None
 
+    @classmethod
+    def concatenated(cls, components: Sequence[Component]) -> Component:
+        """Rows put one after the other, all on supports, or none."""
+        below = [each.below for each in components if each.below is not None]
+        above = np.concatenate([each.above for each in components])
+        return cls(above, np.concatenate(below) if below else None)
+
     def jump(self, field: Array) -> Array:
         """A row field above minus that below, shape (n_pairs, ...)."""
         above: Array = field[self.above]

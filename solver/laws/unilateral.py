@@ -51,13 +51,9 @@ class Unilateral:
     @classmethod
     def concatenated(cls, laws: Sequence[Unilateral]) -> Unilateral:
         """Laws put one after the other, all on supports, or none; all with a spring, or none."""
-        below = [law.component.below for law in laws if law.component.below is not None]
         softness = [law.softness for law in laws if law.softness is not None]
         return cls(
-            component=Component(
-                np.concatenate([law.component.above for law in laws]),
-                np.concatenate(below) if below else None,
-            ),
+            component=Component.concatenated([law.component for law in laws]),
             gap=np.concatenate([law.gap for law in laws]),
             softness=np.concatenate(softness) if softness else None,
         )

@@ -16,7 +16,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reduction.basis import Reduction
 from solver.reduction.clips import Clips
-from solver.reduction.svd import Decomposition, InterfaceFields, singular_values
+from solver.reduction.svd import BoundaryFields, Decomposition, singular_values
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ def of_clips(clips: Clips) -> Sizes:
     return Sizes(clips.numbers + product * np.arange(len(clips.errors)), clips.errors)
 
 
-def in_pieces(fields: InterfaceFields) -> Sizes:
+def in_pieces(fields: BoundaryFields) -> Sizes:
     """Keep as many singular vectors of each substructure: the best that a PGD could find there."""
     pieces, time_weights = list(_pieces(fields)), _time_weights(fields.problem)
     values = [singular_values(field, weights, time_weights) for *_, field, weights in pieces]
@@ -61,7 +61,7 @@ def in_pieces(fields: InterfaceFields) -> Sizes:
     return Sizes(numbers, _relative(left))
 
 
-def of_bases(fields: InterfaceFields, reduction: Reduction) -> Sizes:
+def of_bases(fields: BoundaryFields, reduction: Reduction) -> Sizes:
     """Keep as many modes of each of a run's separated bases, the largest.
 
     Of their space modes the entries count that rub; those of a basis that several share, once.
@@ -87,7 +87,7 @@ def _relative(left: Array) -> Array:
     return np.sqrt(left / left[0]) if left[0] > 0.0 else np.zeros_like(left)
 
 
-def _pieces(fields: InterfaceFields) -> Iterator[tuple[int, Indices, Array, Array]]:
+def _pieces(fields: BoundaryFields) -> Iterator[tuple[int, Indices, Array, Array]]:
     """Yield the friction of every substructure on bodies above.
 
     Its number; places of the rows that rub, among its own; friction, N/m, shape

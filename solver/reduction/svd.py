@@ -21,7 +21,7 @@ ALIKE = 1e-9
 """Relative difference up to which two entries count as equally large when a sign is fixed."""
 
 
-class InterfaceFields(Protocol):
+class BoundaryFields(Protocol):
     """What is analysed: an iterate, or whatever else has fields on the boundary rows.
 
     Fields have the shape of those of `Iterate`, (n_rows, n_instants), scaled.
@@ -144,19 +144,19 @@ def singular_values(field: Array, space_weights: Array, time_weights: Array) -> 
     return np.asarray(np.linalg.svd(weighted, compute_uv=False))
 
 
-def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
+def decompositions(fields: BoundaryFields, name: InterfaceField) -> list[Decomposition]:
     """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
     return [decompose(*part) for part in _parts(fields, name)]
 
 
-def friction_spectra(fields: InterfaceFields) -> list[Array]:
+def friction_spectra(fields: BoundaryFields) -> list[Array]:
     """Singular values of the friction force in every substructure, N sqrt(s/m), as above."""
     parts = _parts(fields, InterfaceField.FRICTION_FORCE)
     return [singular_values(field, *weights) for field, *weights, _ in parts]
 
 
 def _parts(
-    fields: InterfaceFields, name: InterfaceField
+    fields: BoundaryFields, name: InterfaceField
 ) -> Iterator[tuple[Array, Array, Array, Array]]:
     """Yield a field of every substructure on its rows that rub, its weights and its positions."""
     problem, scales = fields.problem, fields.problem.scales

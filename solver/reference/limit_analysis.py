@@ -1,11 +1,11 @@
 """Whether any contact forces balance the loads, and where along the path none do any more.
 
 An equilibrium of the discrete problem, whatever its elasticity, is one of nodal contact forces with
-N >= 0 and |T| <= r + mu N that balance the loads on every body that contact alone holds. The
-largest share of a step of the loads for which there are such forces is a linear program (R. K.
-Livesley, Int. J. Numer. Meth. Eng. 12, 1978, for rigid blocks). It is a bound: Coulomb's friction
-is not associated with slip, so a structure may fail before; it never fails after. The program's
-dual is the mechanism, by which it collapses.
+N >= 0 and |T| <= r + mu N, times the strongest factor that slip may make, that balance the loads on
+every body that contact alone holds. The largest share of a step of the loads for which there are
+such forces is a linear program (R. K. Livesley, Int. J. Numer. Meth. Eng. 12, 1978, for rigid
+blocks). It is a bound: Coulomb's friction is not associated with slip, so a structure may fail
+before; it never fails after. The program's dual is the mechanism by which it collapses.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
 
-WHOLE = 1.0 - 1e-9
-"""Share of a step of the loads from which on it is all of it."""
+WHOLE = 1.0 - 1e-6
+"""Share of a step of the loads from which on it is all of it, but for what HiGHS leaves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,17 +69,19 @@ def collapse_of(problem: Problem) -> Collapse | None:
     rubs = np.flatnonzero(~rules.normal)
     rows, ones = np.arange(len(rubs)), np.ones(len(rubs))
     along = sparse.csr_array((ones, (rows, rubs)), shape=(len(rubs), size))
-    friction = rules.friction[rubs]
+    # Slip may harden: what friction can ever carry is a bound whatever has slipped.
+    strongest = np.array([max(one.factors) for one in rules.strengths])[rules.strength[rubs]]
+    friction = strongest * rules.friction[rubs]
     across = sparse.csr_array((friction, (rows, rules.partner[rubs])), shape=(len(rubs), size))
     caps = np.flatnonzero(np.isfinite(rules.cap[rubs]))
-    capped = np.tile(rules.cap[rubs][caps], 2) / unit
+    capped = np.tile((strongest * rules.cap[rubs])[caps], 2) / unit
     cone = sparse.vstack([along - across, -along - across, along[caps], -along[caps]])
     none = sparse.csr_array((cone.shape[0], 1))
     lows = np.where(rules.normal, 0.0, -np.inf)
     bounds = np.stack([np.append(lows, 0.0), np.append(np.full(size, np.inf), 1.0)], axis=1)
     before, times = np.zeros(len(loads)), problem.instants
     for instant, now in enumerate(loads.T / unit):
-        known = at_instant(rules.bound, instant)[rubs, 0] / unit
+        known = strongest * at_instant(rules.bound, instant)[rubs, 0] / unit
         step = sparse.csr_array((now - before)[:, None])
         if not step.nnz and instant:
             continue
