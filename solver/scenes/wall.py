@@ -239,13 +239,18 @@ class WallSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """The wall in a sentence."""
-        bond = "in running bond" if self.bond == "running" else "one above the other"
-        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}"
-        pressed = "pressed from above, only touch" if self.pressure else "only touch"
         way = "moved" if self.top == "moved" else "pulled"
-        driven = acting(self.path("top_load"), f"{way} to the right", f"{way} to the left")
+        ways = (f"{way} {where}" for where in ("to the right", "to the left", "to and fro"))
+        driven = acting(self.path("top_load"), *ways)
         ground = "a tilted ground" if np.any(self.path("slope_load")) else "the ground"
-        return f"{bricks}, {pressed}, and rub on each other and on {ground}; the top is {driven}."
+        pressed = ", pressed from above," if np.any(self.path("pressure_load")) else ""
+        if self.n_substructures == 1:
+            return f"One brick{pressed} stands on {ground}; its top is {driven}."
+        bond = "in running bond" if self.bond == "running" else "one above the other"
+        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}{pressed}"
+        rubs = bool(self.friction or self.law.cohesion)
+        touch = "and rub on" if rubs else "and slide freely on"
+        return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."
 
 
 WALL = Entry(
