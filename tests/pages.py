@@ -14,8 +14,11 @@ ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=20 a second"
 """In an address: a run that goes on."""
 ANSWER = "start=nested&finish=at-once"
 """In an address: a run whose answer is there at once."""
-IGNORED = re.compile("GL Driver Message|Failed to repull session")
-"""In the console: a hint on speed, and Bokeh's words on binary columns after a network broke."""
+IGNORED = re.compile(
+    "GL Driver Message|Failed to repull session"
+    "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not open websocket"
+)
+"""In the console: a hint on speed, and what is said of a network that is cut, and was."""
 POLL_MS = 50.0
 FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
