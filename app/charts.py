@@ -91,7 +91,7 @@ def in_units(chart: Chart) -> Chart:
         y_axis, y = _in_unit(chart.y, chart.y_values)
         scale, size = _in_unit(chart.scale, chart.z.ravel())
         more = {"x_values": chart.x_values / x, "y_values": chart.y_values / y}
-        more |= {"scale": scale, "z": chart.z / size, "level": chart.level and chart.level / size}
+        more |= {"scale": scale, "z": chart.z / size}
     else:
         drawn = [*chart.curves, *([] if runs is None else [runs])]
         x_axis, x = _in_unit(chart.x, *(each.x for each in drawn))
@@ -231,8 +231,6 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
     )
     paths, labels = contours(chart)
     yield hv.Contours(paths, ["x", "y"]).opts(color="#000", alpha=0.75, line_width=1.2)
-    if chart.level is not None:
-        labels = known.assign(text=[f"{value:.2g}" for value in known["value"]])
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
@@ -279,8 +277,7 @@ def contours(chart: Map) -> tuple[list[Array], list[tuple[float, float, str]]]:
         return [], []
     (x, x_back), (y, y_back), (z, _) = map(_even, (chart.x, chart.y, chart.scale))
     known = chart.z[np.isfinite(chart.z)]
-    several = levels(known, is_logarithmic=chart.scale.logarithmic)
-    at = several if chart.level is None else [chart.level]
+    at = levels(known, is_logarithmic=chart.scale.logarithmic)
     made = contour_generator(x(chart.x_values), y(chart.y_values), z(chart.z))
     lines = [(f"{level:.4g}", line.T) for level in at for line in made.lines(z(level))]
     paths = [np.stack([x_back(across), y_back(up)], 1) for _, (across, up) in lines]

@@ -124,8 +124,6 @@ class Map:
         Values, shape (len(y_values), len(x_values)); NaN where there is none.
     runs
         What they are of.
-    level
-        The one value whose line is drawn, where every cell says its own; None draws several lines.
     is_sampled
         Whether a few runs stand for all, and values between them are of facets.
     """
@@ -139,7 +137,6 @@ class Map:
     z: Array
     runs: Runs
     is_sampled: bool = False
-    level: float | None = None
 
 
 Chart = Panel | Map

@@ -48,7 +48,7 @@ PLAIN: dict[str, Any] = {
     "finish": "none",
 }
 """Settings that the forms of LATIN start from; all others are those of the run."""
-INCREMENTAL = "incremental solver"
+INCREMENTAL, FAST = "incremental solver", "LATIN fast"
 Clock = Callable[[], float]
 
 
@@ -155,7 +155,7 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
         name: auto,
         f"{name}, Anderson": anderson,
         f"{name}, Anderson, k updated": {**anderson, "k_update": "status"},
-        "LATIN fast": {**anderson, "finish": "at-once"},
+        FAST: {**anderson, "finish": "at-once"},
         "LATIN PGD": {"linear_stage": "pgd", **({} if is_nested else auto)},
     }
     return {method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()}
