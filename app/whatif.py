@@ -24,7 +24,7 @@ from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
-from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of, is_map, ordered
 from solver.study.sweep.report import counts

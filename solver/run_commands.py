@@ -32,7 +32,8 @@ from solver.study.mesh import (
     value_on,
     which_to_refine,
 )
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
 
 
 def add_checks(commands: Any) -> None:
@@ -80,7 +81,7 @@ def _mesh(chosen: argparse.Namespace) -> int:
         coarse, middle, fine = (values[size_of(run)] for run in runs)
         refinements.append(Refinement((coarse, middle, fine), own))
     elements, instants = refinements
-    unit = asked.quantity.unit
+    unit = asked.unit
     print(f"Elements: {answer(elements, unit)}")
     print(f"Instants: {answer(instants, unit, TIME_STEP)}")
     if which := which_to_refine(elements, instants):
@@ -88,14 +89,14 @@ def _mesh(chosen: argparse.Namespace) -> int:
     return 0 if which else 1
 
 
-def _value(settings: Settings, asked: Reading) -> float:
+def _value(settings: Settings, asked: Quantity) -> float:
     """Quantity of a run, printed; before it what that will take, if it is much."""
     most, size = settings.max_iterations, size_of(settings)
     cost = run_cost(discretise(settings), method_of(settings), most, with_reference=False)
     if cost.is_large:
         print(f"slipfront: {size} will take about {cost}", file=sys.stderr, flush=True)
     value = value_on(settings, asked)
-    print(f"{size:>32}  {value:.6g} {asked.quantity.unit}".rstrip(), flush=True)
+    print(f"{size:>32}  {value:.6g} {asked.unit}".rstrip(), flush=True)
     return value
 
 

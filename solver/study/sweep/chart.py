@@ -208,5 +208,5 @@ def _reading_axis(plan: Plan, place: int, values: Array) -> PanelAxis:
 
 def _measure(plan: Plan, place: int) -> tuple[float, str]:
     """Factor and unit of a reading: shares are in per cent."""
-    quantity = plan.readings[place].quantity
+    quantity = plan.readings[place]
     return (100.0, "%") if quantity.is_share else (1.0, quantity.unit)

@@ -23,7 +23,8 @@ from solver.definitions import (
 )
 from solver.latin import Ending
 from solver.settings import Settings
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
 
 MOST_POINTS = 20_000
 """Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
@@ -72,7 +73,7 @@ class Plan:
 
     settings: Settings
     axes: tuple[Varied, ...]
-    readings: tuple[Reading, ...]
+    readings: tuple[Quantity, ...]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -174,7 +175,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     vary
         One or two of `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`.
     of
-        Quantities of a run, as `solver.study.quantities.quantities.reading` takes them.
+        Quantities of a run, as `solver.study.quantities.reading` takes them.
 
     Raises
     ------

@@ -25,9 +25,9 @@ from solver.latin import Ending
 from solver.reference.solution import States
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
+from solver.study.quantities import reading
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.quantities.memory import settle
-from solver.study.quantities.quantities import reading
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
@@ -98,7 +98,7 @@ def run(common: Common, number: int, point: dict[str, object]) -> Row:
     if common.versions != versions():
         raise SettingError(WORKER, versions(), common.versions, "install these on all workers")
     readings = [reading(name) for name in common.readings]
-    if any(one.quantity.is_of_course for one in readings):
+    if any(one.is_of_course for one in readings):
         settle()
     if common.sweep not in _runs:
         _runs.clear()
@@ -112,8 +112,8 @@ def run(common: Common, number: int, point: dict[str, object]) -> Row:
         try:
             finished = finished_run(
                 CATALOGUE[common.scene].settings.checked({**common.fixed, **point}),
-                errors=any(one.quantity.reads == "errors" for one in readings),
-                indicators=any(one.quantity.reads == "indicators" for one in readings),
+                errors=any(one.reads == "errors" for one in readings),
+                indicators=any(one.reads == "indicators" for one in readings),
                 cancelled=lambda: time.perf_counter() > began + common.limit,
                 before=None if nearest is None else done.get(nearest),
             )
@@ -193,7 +193,7 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
     """
-    is_warm = warm and not any(one.quantity.is_of_course for one in plan.readings)
+    is_warm = warm and not any(one.is_of_course for one in plan.readings)
     common = Common(
         uuid.uuid4().hex,
         plan.settings.scene,

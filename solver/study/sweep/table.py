@@ -60,7 +60,7 @@ def head(plan: Plan) -> list[str]:
             + ", ".join(map(str, axis.values))
             for axis in plan.axes
         ),
-        *(column(one.name, one.title, one.quantity.unit) for one in plan.readings),
+        *(column(one.name, one.title, one.unit) for one in plan.readings),
         "settings of all runs:",
         *(line for line in dump(plan.settings).splitlines() if line.split(" ")[0] not in varied),
     ]
