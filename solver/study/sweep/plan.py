@@ -67,13 +67,18 @@ class Plan:
         What is fixed.
     axes
         One or two.
-    readings
-        What is taken of every run, at least one.
+    of
+        Names of what is taken of every run, at least one.
     """
 
     settings: Settings
     axes: tuple[Varied, ...]
-    readings: tuple[Quantity, ...]
+    of: tuple[str, ...]
+
+    @property
+    def readings(self) -> tuple[Quantity, ...]:
+        """What is taken of every run."""
+        return tuple(map(reading, self.of))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -189,7 +194,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     axes = tuple(axis_of(settings, text) for text in vary)
     if len({axis.name for axis in axes}) < len(axes):
         raise SettingError("--vary", list(vary), "two settings", "vary each of them once")
-    plan = Plan(settings, axes, tuple(dict.fromkeys(reading(name) for name in of)))
+    plan = Plan(settings, axes, tuple(dict.fromkeys(reading(name).name for name in of)))
     if plan.size > MOST_POINTS:
         few = f"at most {MOST_POINTS} runs"
         raise SettingError("--vary", list(vary), few, f"these are {plan.size}: take fewer values")
