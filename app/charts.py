@@ -34,7 +34,6 @@ LABEL = 34
 """Characters of a line beside an axis."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
-THIN = "points", "faint"
 STYLE = """<style>
 .panels { display: grid; gap: 0 1rem; grid-template-columns:
   repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
@@ -96,11 +95,10 @@ def in_units(chart: Chart) -> Chart:
         drawn = [*chart.curves, *([] if runs is None else [runs])]
         x_axis, x = _in_unit(chart.x, *(each.x for each in drawn))
         y_axis, y = _in_unit(chart.y, *(each.y for each in drawn))
-        size = y
         curves = [replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves]
         more = {"curves": tuple(curves)}
     if runs is not None:
-        runs = replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / size)
+        runs = replace(runs, x=runs.x / x, y=runs.y / y)
     return replace(chart, x=x_axis, y=y_axis, runs=runs, **more)
 
 
@@ -201,18 +199,17 @@ def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
     y = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
-    is_thin = curve.line in THIN
+    is_thin = curve.line == "points"
     looks: dict[str, Any] = {
         "color": COLORS[curve.hue],
         "line_dash": "solid" if is_thin else curve.line,
         "line_width": 1.0 if is_thin else 2.2,
-        "alpha": 0.35 if curve.line == "faint" else 1.0,
     }
     if panel.runs is None:
         told = [("", curve.label), (panel.x.label, "@x"), (panel.y.label, "@y")]
         looks |= {"tools": ["hover"], "hover_tooltips": told}
     yield hv.Curve((curve.x, y), "x", "y").opts(**looks)
-    if curve.line == "points":
+    if is_thin:
         yield hv.Points((curve.x, y), ["x", "y"]).opts(color=COLORS[curve.hue], size=6)
 
 

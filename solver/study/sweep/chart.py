@@ -27,7 +27,7 @@ Text = Callable[[float, str], str]
 
 def charts(plan: Plan, rows: Sequence[Row]) -> list[Chart]:
     """Charts of all readings, of runs to which no others are to come."""
-    made = [chart_of(plan, rows, place) for place in range(len(plan.readings))]
+    made = [chart_of(plan, rows, place) for place in range(len(plan.of))]
     return [_filled(one) if isinstance(one, Map) and _is_sampled(one.z) else one for one in made]
 
 
@@ -38,7 +38,25 @@ def plainly(value: float, unit: str) -> str:
 
 def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plainly) -> Chart:
     """Chart of the reading at a place, whatever has come of the plan so far, in SI."""
-    return (_map if is_map(plan) else _panel)(plan, rows, place, text)
+    across, *up = ordered(plan)
+    runs, title = _runs(plan, rows, place, text), plan.readings[place].title
+    if is_map(plan):
+        x, y = (np.array(axis.values, dtype=float) for axis in (across, up[0]))
+        z = _measure(plan, place)[0] * grid(plan, rows, place)
+        z = (z.T if plan.axes[0] is across else z)[np.argsort(y)][:, np.argsort(x)]
+        axes = _setting_axis(plan, across), _setting_axis(plan, up[0])
+        return Map(title, *axes, np.sort(x), np.sort(y), _reading_axis(plan, place, z), z, runs)
+    curves = []
+    for hue, label in enumerate(_texts(plan, up[0], text) if up else [""], start=1):
+        own = np.flatnonzero(runs.hues == hue)
+        # Nothing lies between names.
+        own = own[np.argsort(runs.x[own])] if across.is_numeric else own[:0]
+        y = np.where(runs.holds[own], runs.y[own], np.nan)
+        curves.append(PanelCurve(label, runs.x[own], y, hue))
+    x_axis, y_axis = _setting_axis(plan, across), _reading_axis(plan, place, runs.y)
+    x_axis = replace(x_axis, limits=_limits(_places(across), x_axis))
+    y_axis = replace(y_axis, limits=_limits(runs.y, y_axis))
+    return Panel(title, x_axis, y_axis, tuple(curves), runs)
 
 
 def ordered(plan: Plan) -> list[Varied]:
@@ -72,23 +90,6 @@ def is_wide(values: Array) -> bool:
     return bool(values.size and values.min() > 0.0 and values.max() > DECADES * values.min())
 
 
-def _map(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Map:
-    across, up = ordered(plan)
-    x, y = (np.array(axis.values, dtype=float) for axis in (across, up))
-    good = _measure(plan, place)[0] * grid(plan, rows, place)
-    good = (good.T if plan.axes[0] is across else good)[np.argsort(y)][:, np.argsort(x)]
-    return Map(
-        plan.readings[place].title,
-        _setting_axis(plan, across),
-        _setting_axis(plan, up),
-        np.sort(x),
-        np.sort(y),
-        _reading_axis(plan, place, good),
-        good,
-        _runs(plan, rows, place, text),
-    )
-
-
 def _is_sampled(good: Array) -> bool:
     """Whether runs are few and enclose the others; those of a stopped sweep do not."""
     known = np.isfinite(good)
@@ -105,30 +106,6 @@ def _filled(chart: Map) -> Map:
     facets = LinearNDInterpolator(places / shape, to(chart.z[tuple(places.T)]))
     filled = back(facets(np.moveaxis(np.indices(shape), 0, -1) / shape))
     return replace(chart, z=filled, is_sampled=True)
-
-
-def _panel(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Panel:
-    across, *up = ordered(plan)
-    runs = _runs(plan, rows, place, text)
-    curves = []
-    for hue, label in enumerate(_texts(plan, up[0], text) if up else [""], start=1):
-        own = np.flatnonzero(runs.hues == hue)
-        own = own[np.argsort(runs.x[own])]
-        if not across.is_numeric:  # nothing lies between names
-            own = own[:0]
-        x, y = runs.x[own], runs.y[own]
-        curves += [
-            PanelCurve("", x, y, hue, "faint"),
-            PanelCurve(label, x, np.where(runs.holds[own], y, np.nan), hue),
-        ]
-    x_axis, y_axis = _setting_axis(plan, across), _reading_axis(plan, place, runs.y)
-    return Panel(
-        plan.readings[place].title,
-        replace(x_axis, limits=_limits(_places(across), x_axis)),
-        replace(y_axis, limits=_limits(runs.y, y_axis)),
-        tuple(curves),
-        runs,
-    )
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
@@ -165,7 +142,6 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
         numbers,
         _places(axes[0])[levels[0]],
         _places(axes[1])[levels[1]] if is_map(plan) else values,
-        values,
         levels[1] + 1 if len(axes) > 1 else np.ones_like(numbers),
         np.array([row.holds for row in rows], dtype=bool) & np.isfinite(values),
         messages,

@@ -8,13 +8,15 @@ from collections.abc import Sequence
 from html import escape
 
 import numpy as np
+from scipy.special import stdtrit
 
-from solver.study.exponent import exponent_of
+from solver.arrays import Array
 from solver.study.page import PlotSection, Section, bullets, plain_table
 from solver.study.sweep.chart import charts, grid
 from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.table import cells, head, heads
 
+CONFIDENCE = 0.95
 CAPTION = (
     "Hollow points and hatched cells are of runs that have not converged, crosses of runs without "
     "a value."
@@ -44,12 +46,34 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
         if plan.axes[0] is along and names is not None:
             values = values.T
         for number, curve in enumerate(np.atleast_2d(values)):
-            law = exponent_of(along.values, curve)
-            if law is not None:
+            power, margin, count = exponent_of(along.values, curve)
+            if not math.isnan(power):
                 which = f", {names.name}={names.values[number]}" if names else ""
-                count = np.isfinite(curve).sum()
+                law = f"{power:.2f}" + (f" ± {margin:.2f}" if count > 2 else "")
                 lines.append(f"{reading.name}{which}: {along.name}^({law}), of {count} runs")
     return lines
+
+
+def exponent_of(x: Sequence[float], y: Sequence[float] | Array) -> tuple[float, float, int]:
+    """Power with which y grows with x, by least squares of the logarithms.
+
+    Points at which one of them is not a positive number are left out.
+
+    Returns
+    -------
+    The power, NaN below two points; the margin to both sides of it, with 95 % confidence if points
+    scatter at random about a power law, NaN for two points; the number of points.
+    """
+    points = np.array([x, y], dtype=float).T
+    points = points[np.isfinite(points).all(axis=1) & (points > 0.0).all(axis=1)]
+    if (count := len(points)) < 2:
+        return math.nan, math.nan, count
+    x, y = np.log(points).T
+    if count == 2:
+        return float(np.polyfit(x, y, 1)[0]), math.nan, count
+    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
+    quantile = stdtrit(count - 2, 0.5 + 0.5 * CONFIDENCE)
+    return float(slope), float(quantile * math.sqrt(covariance[0, 0])), count
 
 
 def title_of(plan: Plan) -> str:
