@@ -12,7 +12,8 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.remarks import print_tables
-from solver.study.figures import paper_figures, write_figures
+from solver.study.figures import paper_figures
+from solver.study.figures.figure import FILE, write_figures
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.case import rows_of
@@ -98,14 +99,14 @@ def writing(folder: Path, *files: str) -> Iterator[None]:
 
 
 def _figures(chosen: argparse.Namespace) -> int:
-    with writing(chosen.out):
+    with writing(chosen.out, FILE):
         figures = paper_figures()
-        files, notes = write_figures(figures, chosen.out)
+        note = write_figures(figures, chosen.out)
     for figure in figures:
         print(f"{figure.heading} ({figure.verdict})")
         for finding in figure.findings:
             print(f"  {'+' if finding.holds else '-'} {finding.text}")
-    print("\n".join([*notes, f"{len(files)} files in {chosen.out}"]))
+    print("\n".join([*filter(None, [note]), f"{FILE} in {chosen.out}"]))
     return 0
 
 
