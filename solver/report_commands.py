@@ -14,6 +14,7 @@ from solver.files import scene_settings, settings_from_command
 from solver.remarks import print_tables
 from solver.study.figures import paper_figures
 from solver.study.figures.figure import FILE, write_figures
+from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.case import rows_of
@@ -100,7 +101,7 @@ def writing(folder: Path, *files: str) -> Iterator[None]:
 
 def _figures(chosen: argparse.Namespace) -> int:
     with writing(chosen.out, FILE):
-        figures = paper_figures()
+        figures = paper_figures(paper_runs())
         note = write_figures(figures, chosen.out)
     for figure in figures:
         print(f"{figure.heading} ({figure.verdict})")
