@@ -16,6 +16,7 @@ from solver import report_commands
 from solver.cli import main
 from solver.latin import Ending
 from solver.reference.choice import reference_of
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
 from solver.study.stability.case import (
@@ -36,7 +37,6 @@ from solver.study.stability.outcome import (
     Outcome,
     judge,
     judged_runs,
-    kkt_residual,
 )
 from solver.study.stability.report import COLUMNS, cases_of, counts, last_lines
 

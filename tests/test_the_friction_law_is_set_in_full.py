@@ -14,10 +14,10 @@ from solver.latin import solve
 from solver.laws import FrictionLaw
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise, exact_of, features_of, law_of
 from solver.scenes.method import method_of
 from solver.study.quantities.cycle_measures import has_a_limit
-from solver.study.stability.outcome import kkt_residual
 
 GENERAL = {"friction_law": "general"}
 PLANE = ["block", "layers", "incline", "fault"]
