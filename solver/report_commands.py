@@ -25,7 +25,6 @@ from solver.study.speed.study_report import (
     notes,
     ratio_table,
     table,
-    winners,
     write_curves,
     write_study,
 )
@@ -123,8 +122,7 @@ def _study(chosen: argparse.Namespace) -> int:
         sizes = times_at_sizes(settings, large=chosen.large)
         more, note = write_study(curves, sizes, chosen.out)
     print("\n".join(conditions(curves)), end="\n\n")
-    print(aligned(table(curves)), end="\n\n")
-    print(aligned(winners(curves)))
+    print(aligned(table(curves)))
     print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
         print(note)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import astuple
 from itertools import groupby
@@ -17,7 +18,6 @@ from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
 from solver.study.speed.error_against_time import (
     GOAL,
-    INCREMENTAL,
     LEVELS,
     MOST_ITERATIONS,
     ErrorCurve,
@@ -26,9 +26,9 @@ from solver.study.speed.error_against_time import (
 from solver.study.speed.sizes import TimesAtSize
 
 Row = list[str]
-WINNERS_NOTE = (
-    "The last column is the time of the best form of LATIN over that of the incremental solver: "
-    "below 1, LATIN is quicker."
+TABLE_NOTE = (
+    "In brackets: iterations of LATIN; a star: the first. The last row is the time of LATIN's best "
+    "form over that of the incremental solver: below 1, LATIN is quicker."
 )
 CURVES = "Error against run time, set-up included"
 CAPTION = (
@@ -62,35 +62,30 @@ def conditions(study: Study) -> list[str]:
     ]
 
 
-def winners(study: Study) -> list[Row]:
-    """Which method is first at each level, and how the best form of LATIN compares."""
-    head = ["to an error of", "first", "ms", "best form of LATIN", "ms", f"LATIN / {INCREMENTAL}"]
-    rows = [head]
-    for name, level in LEVELS.items():
-        reached = {curve.method: curve.reached(level) for curve in study.curves}
-        times = {method: point[0] for method, point in reached.items() if point is not None}
-        first = min(times, key=times.__getitem__)
-        best = min(times.keys() - {INCREMENTAL}, key=times.__getitem__, default="")
-        cells = ["none gets there", "-", "-"]
-        if best:
-            cells = [best, _ms(times[best]), f"{times[best] / times[INCREMENTAL]:.2g}"]
-        rows.append([name, first, _ms(times[first]), *cells])
-    return rows
-
-
 def table(study: Study) -> list[Row]:
-    """Time to each level, with the iterations in brackets, and what an iteration costs."""
+    """Time to each level, with the iterations in brackets and a star at the first method.
+
+    The last row is of the best form of LATIN over the incremental solver.
+    """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
-    for curve in study.curves:
+    reached = {
+        curve.method: [curve.reached(level) or (math.inf, 0.0) for level in LEVELS.values()]
+        for curve in study.curves
+    }
+    times = np.array([[seconds for seconds, _ in own] for own in reached.values()])
+    for curve, is_first in zip(study.curves, times == times.min(axis=0), strict=True):
         cells = []
-        for level in LEVELS.values():
-            reached = curve.reached(level)
-            number = f" ({reached[1]:.0f})" if reached and curve.kind == "latin" else ""
-            cells.append(f"{_ms(reached[0])} ms{number}" if reached else "not reached")
+        for (seconds, step), star in zip(reached[curve.method], is_first, strict=True):
+            number = f" ({step:.0f})" if curve.kind == "latin" else ""
+            text = f"{1e3 * seconds:.3g} ms{number}{' *' * bool(star)}"
+            cells.append(text if math.isfinite(seconds) else "not reached")
         each = curve.seconds_per_iteration
         cost = f"{1e3 * each:.3f}" if each is not None else "-"
         rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
-    return rows
+    is_latin = np.array([curve.kind == "latin" for curve in study.curves])
+    ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
+    texts = (f"{ratio:.2g}" if math.isfinite(ratio) else "-" for ratio in ratios)
+    return [*rows, [f"best {TIMES}", *texts, "-", "-"]]
 
 
 def ratio_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
@@ -219,12 +214,10 @@ def write_study(
     """
     settings = study.settings
     sections: list[Section] = [
-        f"<h2>Who is first</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
-        f"<h2>{CURVES}</h2>",
+        f"<h2>Time to an error of the friction force</h2>\n{plain_table(table(study))}\n"
+        f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(study)),
-        f"<p>{CAPTION}</p>\n<h2>Time to an error of the friction force</h2>\n"
-        f"<p>In brackets: iterations of LATIN.</p>\n{plain_table(table(study))}",
-        f"<h2>{SIZES}</h2>",
+        f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
         PlotSection(SIZES, [ratio_panel(settings, measured)]),
         f"{plain_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
@@ -235,7 +228,3 @@ def write_study(
     setting = entry_of(settings).grows[0]
     rows = ((setting, *astuple(times)) for times in measured)
     return [write_csv(folder / "map.csv", head, rows), page], message
-
-
-def _ms(seconds: float) -> str:
-    return f"{1e3 * seconds:.3g}"
