@@ -273,7 +273,7 @@ def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, floa
     for i, axis in enumerate(axes):
         value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
         if axis.is_numeric:
-            place[i] = value / sizes_of(plan.unit(axis)).get(unit, 1.0)
+            place[i] = value / sizes_of(axis.unit).get(unit, 1.0)
         elif value in axis.values:
             place[i] = axis.values.index(value)
     return place[0], place[1]

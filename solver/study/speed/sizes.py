@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 from solver.definitions import SettingError
@@ -16,11 +17,10 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.speed.error_against_time import (
     FAST,
-    by_increments,
-    by_latin,
     forms_of,
     incremental,
     latin,
+    seconds_of,
 )
 
 FACTORS = (0.5, 1.0, 2.0)
@@ -99,8 +99,8 @@ def _measured(
     except NoReferenceError as refusal:
         return TimesAtSize(*at, message=str(refusal))
     ending = latin(form).status.ending
-    seconds = [(by_latin(form), by_increments(form))]
-    while len(seconds) < REPEATS and sum(seconds[0]) < SLOW:
-        seconds.append((by_latin(form), by_increments(form)))
+    seconds: list[tuple[float, ...]] = []
+    while not seconds or (len(seconds) < REPEATS and sum(seconds[0]) < SLOW):
+        seconds.append(tuple(seconds_of(partial(solve, form)) for solve in (latin, incremental)))
     mine, others = map(statistics.median, zip(*seconds, strict=True))
     return TimesAtSize(*at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}")

@@ -44,17 +44,17 @@ def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plain
         x, y = (np.array(axis.values, dtype=float) for axis in (across, up[0]))
         z = _measure(plan, place)[0] * grid(plan, rows, place)
         z = (z.T if plan.axes[0] is across else z)[np.argsort(y)][:, np.argsort(x)]
-        axes = _setting_axis(plan, across), _setting_axis(plan, up[0])
+        axes = _setting_axis(across), _setting_axis(up[0])
         return Map(title, *axes, np.sort(x), np.sort(y), _reading_axis(plan, place, z), z, runs)
     curves = []
-    for hue, label in enumerate(_texts(plan, up[0], text) if up else [""], start=1):
+    for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
         own = np.flatnonzero(runs.hues == hue)
         # Nothing lies between names.
         own = own[np.argsort(runs.x[own])] if across.is_numeric else own[:0]
         y = np.where(runs.holds[own], runs.y[own], np.nan)
         curves.append(PanelCurve(label, runs.x[own], y, hue))
-    x_axis, y_axis = _setting_axis(plan, across), _reading_axis(plan, place, runs.y)
-    x_axis = replace(x_axis, limits=_limits(_places(across), x_axis))
+    x_axis, y_axis = _setting_axis(across), _reading_axis(plan, place, runs.y)
+    x_axis = replace(x_axis, limits=_limits(across.places, x_axis))
     y_axis = replace(y_axis, limits=_limits(runs.y, y_axis))
     return Panel(title, x_axis, y_axis, tuple(curves), runs)
 
@@ -131,7 +131,7 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     levels = tuple(levels[plan.axes.index(axis)] for axis in axes)
     factor, unit = _measure(plan, place)
     values = factor * np.array([row.values[place] for row in rows], dtype=float)
-    texts = [_texts(plan, axis, text) for axis in axes]
+    texts = [_texts(axis, text) for axis in axes]
     messages = []
     for row, value, at in zip(rows, values, zip(*levels, strict=True), strict=True):
         point = ", ".join(of_axis[level] for of_axis, level in zip(texts, at, strict=True))
@@ -140,8 +140,8 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     values[~np.isfinite(values)] = np.nan
     return Runs(
         numbers,
-        _places(axes[0])[levels[0]],
-        _places(axes[1])[levels[1]] if is_map(plan) else values,
+        axes[0].places[levels[0]],
+        axes[1].places[levels[1]] if is_map(plan) else values,
         levels[1] + 1 if len(axes) > 1 else np.ones_like(numbers),
         np.array([row.holds for row in rows], dtype=bool) & np.isfinite(values),
         messages,
@@ -155,25 +155,14 @@ def _reason(row: Row, value: float) -> str:
     return NEVER if math.isinf(value) else NONE if math.isnan(value) else ""
 
 
-def _texts(plan: Plan, axis: Varied, text: Text) -> list[str]:
+def _texts(axis: Varied, text: Text) -> list[str]:
     """Title of a setting with each of its values."""
-    unit = plan.unit(axis)
-    values = [text(value, unit) for value in axis.values] if axis.is_numeric else _names(axis)
-    return [f"{plan.title(axis)} {value}" for value in values]
+    values = axis.names or [text(value, axis.unit) for value in axis.values]
+    return [f"{axis.title} {value}" for value in values]
 
 
-def _names(axis: Varied) -> list[str]:
-    return [{True: "on", False: "off"}.get(value, value) for value in axis.values]
-
-
-def _places(axis: Varied) -> Array:
-    """Where the values of a setting stand: names one after the other."""
-    return np.array(axis.values if axis.is_numeric else range(len(axis.values)), dtype=float)
-
-
-def _setting_axis(plan: Plan, axis: Varied) -> PanelAxis:
-    names = () if axis.is_numeric else tuple(_names(axis))
-    return PanelAxis(plan.title(axis), plan.unit(axis), axis.logarithmic, names=names)
+def _setting_axis(axis: Varied) -> PanelAxis:
+    return PanelAxis(axis.title, axis.unit, axis.logarithmic, names=axis.names)
 
 
 def _reading_axis(plan: Plan, place: int, values: Array) -> PanelAxis:

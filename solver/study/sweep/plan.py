@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import param
 
+from solver.arrays import Array
 from solver.definitions import (
     Parameter,
     SettingError,
@@ -39,8 +40,8 @@ class Varied:
 
     Attributes
     ----------
-    name
-        Of the setting.
+    name, title, unit
+        Of the setting; the unit in SI, empty for a pure number.
     values
         Plain, checked values, in the order of the chart.
     logarithmic
@@ -48,13 +49,26 @@ class Varied:
     """
 
     name: str
+    title: str
+    unit: str
     values: tuple[Any, ...]
-    logarithmic: bool = False
+    logarithmic: bool
 
     @property
     def is_numeric(self) -> bool:
         """Whether the values are numbers, which have a place on a scale."""
         return not isinstance(self.values[0], bool | str)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The values where they are no numbers, none otherwise."""
+        words = {True: "on", False: "off"}
+        return () if self.is_numeric else tuple(words.get(value, value) for value in self.values)
+
+    @property
+    def places(self) -> Array:
+        """Where the values stand on an axis: names one after the other."""
+        return np.array(self.values if self.is_numeric else range(len(self.values)), dtype=float)
 
 
 @dataclass(frozen=True)
@@ -94,14 +108,6 @@ class Plan:
     def fixed(self) -> dict[str, Any]:
         """Settings that differ from their defaults; a varied method brings the rest."""
         return self.settings.changed()
-
-    def title(self, axis: Varied) -> str:
-        """Title of a setting that varies."""
-        return about(self.settings.definitions()[axis.name]).title
-
-    def unit(self, axis: Varied) -> str:
-        """SI unit of a setting that varies, empty for a pure number."""
-        return about(self.settings.definitions()[axis.name]).unit
 
     def point(self, number: int) -> dict[str, Any]:
         """Values of what varies at a point, by the setting's name."""
@@ -223,7 +229,8 @@ def axis_of(settings: Settings, text: str) -> Varied:
         # What was typed is refused before what lies between.
         checked_value(definitions[name], name, end)
     checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
-    return Varied(name, tuple(checked), logarithmic)
+    kind = about(definitions[name])
+    return Varied(name, kind.title, kind.unit, tuple(checked), logarithmic)
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:

@@ -78,9 +78,11 @@ def exponent_of(x: Sequence[float], y: Sequence[float] | Array) -> tuple[float, 
 
 def title_of(plan: Plan) -> str:
     """What is asked for, over what."""
-    asked = ", ".join(one.title[0].lower() + one.title[1:] for one in plan.readings)
-    over = " and ".join(plan.title(axis)[0].lower() + plan.title(axis)[1:] for axis in plan.axes)
-    return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
+    asked, over = (
+        [one.title[0].lower() + one.title[1:] for one in several]
+        for several in (plan.readings, plan.axes)
+    )
+    return f"{plan.settings.scene.capitalize()}: {', '.join(asked)} over {' and '.join(over)}"
 
 
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:

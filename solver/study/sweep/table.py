@@ -56,8 +56,7 @@ def head(plan: Plan) -> list[str]:
     return [
         f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
         *(
-            f"{column(axis.name, plan.title(axis), plan.unit(axis))}: "
-            + ", ".join(map(str, axis.values))
+            f"{column(axis.name, axis.title, axis.unit)}: " + ", ".join(map(str, axis.values))
             for axis in plan.axes
         ),
         *(column(one.name, one.title, one.unit) for one in plan.readings),
