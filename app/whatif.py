@@ -27,8 +27,7 @@ from solver.study.mesh import decides
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of, is_map, ordered
-from solver.study.sweep.report import counts
-from solver.study.sweep.table import csv_of
+from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"
 NEAR = 0.04
