@@ -26,7 +26,7 @@ from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep import Plan
-from solver.study.sweep.chart import chart_of, is_map, ordered
+from solver.study.sweep.chart import chart_of, is_map
 from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"
@@ -268,7 +268,7 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
     """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
     place = [np.nan, np.nan]
-    axes = ordered(plan)[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
+    axes = plan.axes[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
     for i, axis in enumerate(axes):
         value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
         if axis.is_numeric:

@@ -38,14 +38,20 @@ def plainly(value: float, unit: str) -> str:
 
 def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plainly) -> Chart:
     """Chart of the reading at a place, whatever has come of the plan so far, in SI."""
-    across, *up = ordered(plan)
+    across, *up = plan.axes
     runs, title = _runs(plan, rows, place, text), plan.readings[place].title
     if is_map(plan):
-        x, y = (np.array(axis.values, dtype=float) for axis in (across, up[0]))
-        z = _measure(plan, place)[0] * grid(plan, rows, place)
-        z = (z.T if plan.axes[0] is across else z)[np.argsort(y)][:, np.argsort(x)]
-        axes = _setting_axis(across), _setting_axis(up[0])
-        return Map(title, *axes, np.sort(x), np.sort(y), _reading_axis(plan, place, z), z, runs)
+        z = _measure(plan, place)[0] * grid(plan, rows, place).T
+        return Map(
+            title,
+            _setting_axis(across),
+            _setting_axis(up[0]),
+            across.places,
+            up[0].places,
+            _reading_axis(plan, place, z),
+            z,
+            runs,
+        )
     curves = []
     for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
         own = np.flatnonzero(runs.hues == hue)
@@ -59,14 +65,9 @@ def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plain
     return Panel(title, x_axis, y_axis, tuple(curves), runs)
 
 
-def ordered(plan: Plan) -> list[Varied]:
-    """Axes, first the one that goes across: of a number and names, the number."""
-    return sorted(plan.axes, key=lambda axis: not axis.is_numeric)
-
-
 def is_map(plan: Plan) -> bool:
     """Whether a plan makes a map: two numbers, the second one of many values."""
-    across, *up = ordered(plan)
+    across, *up = plan.axes
     return across.is_numeric and any(one.is_numeric and len(one.values) > MOST_CURVES for one in up)
 
 
@@ -125,10 +126,9 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
 
 def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     """Where the runs stand on the chart of a reading, and what they came to."""
-    axes = ordered(plan)
+    axes = plan.axes
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
-    levels = tuple(levels[plan.axes.index(axis)] for axis in axes)
     factor, unit = _measure(plan, place)
     values = factor * np.array([row.values[place] for row in rows], dtype=float)
     texts = [_texts(axis, text) for axis in axes]

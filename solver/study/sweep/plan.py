@@ -43,7 +43,7 @@ class Varied:
     name, title, unit
         Of the setting; the unit in SI, empty for a pure number.
     values
-        Plain, checked values, in the order of the chart.
+        Plain, checked values; numbers ascend.
     logarithmic
         Whether they are spread evenly over decades.
     """
@@ -80,7 +80,7 @@ class Plan:
     settings
         What is fixed.
     axes
-        One or two.
+        One or two; of a number and names the number is the first.
     of
         Names of what is taken of every run, at least one.
     """
@@ -197,10 +197,11 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
         raise SettingError("--vary", list(vary), f"one or two of {FORM}", "vary one or two")
     if not of:
         raise SettingError("--of", list(of), "names of quantities", "name at least one")
-    axes = tuple(axis_of(settings, text) for text in vary)
+    axes = [axis_of(settings, text) for text in vary]
     if len({axis.name for axis in axes}) < len(axes):
         raise SettingError("--vary", list(vary), "two settings", "vary each of them once")
-    plan = Plan(settings, axes, tuple(dict.fromkeys(reading(name).name for name in of)))
+    axes.sort(key=lambda axis: not axis.is_numeric)
+    plan = Plan(settings, tuple(axes), tuple(dict.fromkeys(reading(name).name for name in of)))
     if plan.size > MOST_POINTS:
         few = f"at most {MOST_POINTS} runs"
         raise SettingError("--vary", list(vary), few, f"these are {plan.size}: take fewer values")
@@ -229,8 +230,9 @@ def axis_of(settings: Settings, text: str) -> Varied:
         # What was typed is refused before what lies between.
         checked_value(definitions[name], name, end)
     checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
+    ordered = sorted(checked) if isinstance(definitions[name], param.Number) else checked
     kind = about(definitions[name])
-    return Varied(name, kind.title, kind.unit, tuple(checked), logarithmic)
+    return Varied(name, kind.title, kind.unit, tuple(ordered), logarithmic)
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:

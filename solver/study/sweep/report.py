@@ -42,21 +42,17 @@ def counts(plan: Plan, rows: Sequence[Row]) -> str:
 
 def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
     """With which power of a setting over decades each reading grows, a line for every curve."""
-    numeric = [axis for axis in plan.axes if axis.is_numeric]
-    if len(numeric) != 1 or not numeric[0].logarithmic:
+    (along, *others), lines = plan.axes, []
+    if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
-    (along,), lines = numeric, []
-    names = next((axis for axis in plan.axes if axis is not along), None)
+    which = [f", {axis.name}={value}" for axis in others for value in axis.values] or [""]
     for place, reading in enumerate(plan.readings):
-        values = grid(plan, rows, place)
-        if plan.axes[0] is along and names is not None:
-            values = values.T
-        for number, curve in enumerate(np.atleast_2d(values)):
+        curves = grid(plan, rows, place).T.reshape(len(which), -1)
+        for words, curve in zip(which, curves, strict=True):
             power, margin, count = exponent_of(along.values, curve)
             if not math.isnan(power):
-                which = f", {names.name}={names.values[number]}" if names else ""
                 law = f"{power:.2f}" + (f" ± {margin:.2f}" if count > 2 else "")
-                lines.append(f"{reading.name}{which}: {along.name}^({law}), of {count} runs")
+                lines.append(f"{reading.name}{words}: {along.name}^({law}), of {count} runs")
     return lines
 
 
