@@ -427,6 +427,5 @@ BAR = Entry(
     ),
     settings=BarSettings,
     kind="rod",
-    sizes=shared.ROD_SIZES,
     grows=("elements",),
 )
