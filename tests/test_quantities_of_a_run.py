@@ -228,7 +228,6 @@ def of(slip: list[list[float]], net: list[list[float]] | None = None, **more: An
     slips = np.array(slip, dtype=float)
     values = {
         "ends": list(range(slips.shape[1] + 1)),
-        "energy": slips.sum(axis=0),
         "slip": slips,
         "net": np.zeros_like(slips) if net is None else np.array(net, dtype=float),
         "work": slips,

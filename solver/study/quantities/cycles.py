@@ -64,8 +64,6 @@ class LoadCycles:
     ----------
     ends
         Instants at which they begin, and the last one ends, n_cycles + 1 of them.
-    energy
-        What friction takes in each, shape (n_cycles,), J.
     slip
         That of every point in each, all to and fro added up while it is in contact, shape
         (n_points, n_cycles), m.
@@ -80,7 +78,6 @@ class LoadCycles:
     """
 
     ends: list[int]
-    energy: Array
     slip: Array
     net: Array
     work: Array
@@ -89,6 +86,11 @@ class LoadCycles:
 
     def __len__(self) -> int:
         return len(self.energy)
+
+    @property
+    def energy(self) -> Array:
+        """What friction takes in each, shape (n_cycles,), J."""
+        return np.asarray(self.work.sum(axis=0))
 
 
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
@@ -101,13 +103,11 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     slip, work = np.concatenate(slips), np.concatenate(works)
     rubbed = np.where(np.abs(iterate.status) == 1, np.abs(slip), 0.0)
     first = ends[0] if ends else iterate.problem.n_instants - 1
-    works_of_cycles = _summed(work, ends)
     return LoadCycles(
         ends=ends,
-        energy=works_of_cycles.sum(axis=0),
         slip=_summed(rubbed, ends),
         net=_summed(slip, ends),
-        work=works_of_cycles,
+        work=_summed(work, ends),
         before=rubbed[:, : first + 1].sum(axis=1),
         is_repeated=_is_repeated(settings, ends),
     )
