@@ -196,7 +196,7 @@ def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(scene: st
     """Also at iterates on the way, such as one at which nothing touches yet."""
     settings = CATALOGUE[scene].settings.checked({"method": "paper"})
     for iterate in islice(iterations(discretise(settings), method_of(settings)), 2):
-        run = FinishedRun(settings, Solution(iterate, [], CANCELLED), has_errors=False)
+        run = FinishedRun(settings, Solution(iterate, [], CANCELLED))
         for values in (run.displacement, run.force):
             sizes = np.abs(values[values != 0.0])
             assert sizes.min(initial=1e300) > 1e-12 * sizes.max(initial=0.0)
