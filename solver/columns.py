@@ -28,6 +28,7 @@ WORDS = {
     "angle": "angle winkel",
     "curvature": "curvature krümmung",
     "factor": "factor faktor",
+    "interface": "interface joint fuge grenzfläche",
     "strain": "strain dehnung",
     "velocity": "velocity speed geschwindigkeit",
     "temperature": "temperature temperatur",

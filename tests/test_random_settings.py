@@ -91,6 +91,12 @@ def paired(values, extent):
     )
 
 
+def of_each(count):
+    """Factors on mu of so many interfaces."""
+    factors = st.lists(sizes(1e-3, 1e3) | st.just(0.0), min_size=count, max_size=count)
+    return factors.map(lambda each: [[n, factor] for n, factor in enumerate(each, start=1)])
+
+
 def strengths(extent):
     """Points of any factors over slip, the first (0, 1)."""
     slips = st.lists(st.floats(1e-6, 1.0), min_size=1, max_size=5, unique=True).map(sorted)
@@ -108,6 +114,8 @@ def values_of(name, definition, extents):
         extent = extents[definition.abscissa]
         if name == "strength":
             return st.sampled_from(definition.presets) | strengths(extent)
+        if name == "friction_factors":
+            return st.sampled_from(definition.presets) | of_each(extent)
         is_section = name == "section_profile"
         points = paired(sizes(*SECTION), extent) if is_section else tables(definition, extent)
         return st.sampled_from(definition.presets) | points
@@ -132,6 +140,7 @@ def with_others(draw, definitions, chosen):
         "position": chosen.get("length", definitions["length"].default),
         "time": chosen.get("duration", definitions["duration"].default),
         "slip": 1e-3,
+        "interface": chosen.get("layers", 1) - ("construction" not in definitions),
     }
     for name in sorted(some - chosen.keys()):
         chosen[name] = draw(values_of(name, definitions[name], extents))

@@ -186,6 +186,26 @@ class CrossSection:
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 
+    def friction_bounds(self, tension: Array, friction: float, factors: Array | None) -> Array:
+        """Friction that the wires of every layer can take, from below and from above.
+
+        Parameters
+        ----------
+        tension
+            Of the strand, shape (n_instants,), N.
+        friction, factors
+            mu, and that of every layer on what it lies on over it, shape (n_layers,); None is 1.
+
+        Returns
+        -------
+        Shape (n_layers, n_instants), N per metre of wire.
+        """
+        below, above = self.line_pressures(tension)
+        if factors is not None:
+            below = factors[:, None] * below
+            above = np.append(factors[1:], 1.0)[:, None] * above
+        return friction * (below + above)
+
 
 def seven_wire() -> CrossSection:
     """Seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.

@@ -110,7 +110,8 @@ class Stack:
     stiffness
         Young's modulus of every body over `young`, shape (bodies,), where they differ.
     friction
-        Coefficient mu between the bodies, or that of the nodes along them, shape (nodes along,).
+        Coefficient mu between the bodies, that of the nodes along them, shape (nodes along,), or
+        that of each interface, shape (bodies - 1, 1) or (bodies - 1, nodes along).
     support
         Below the lowest body, or None.
     sides

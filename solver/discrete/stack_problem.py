@@ -119,7 +119,8 @@ def _contact(cut: CutStack, body: int) -> Contact:
         friction = law.at(along, areas, scales, known=known)
     else:
         mu = stack.friction if support is None else support.friction
-        mu = np.broadcast_to(mu, cut.nodes.shape[2])[node]
+        along_each = np.broadcast_to(mu, (max(stack.bodies - 1, 1), cut.nodes.shape[2]))
+        mu = along_each[max(body - 1, 0), node]
         friction = law.at(along, areas, scales, friction=mu)
         # Nothing is bonded across a gap.
         friction = replace(friction, bound=friction.bound * (gap <= 0.0)[:, None])

@@ -251,6 +251,11 @@ class SceneSettings(Settings):
         return Features()
 
     @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces of which each may have its own mu."""
+        return 1
+
+    @property
     def n_nodes(self) -> int:
         """Number of nodes of all bodies."""
         raise NotImplementedError
@@ -358,6 +363,8 @@ class SceneSettings(Settings):
             return (0.0, 1.0), (self.slip_length, last)
         if not isinstance(own, str):
             return own
+        if name == "friction_factors":
+            return tuple((float(number), 1.0) for number in range(1, self.n_interfaces + 1))
         if name.endswith("_profile"):
             return tuple((x * self.length, factor) for x, factor in self.PROFILES[own])
         even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)

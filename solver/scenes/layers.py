@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
@@ -108,6 +109,7 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Path of the bending",
     )
+    friction_factors = shared.friction_factors("between two layers, from the lowest on")
     layers = count(
         4,
         (2, 50),
@@ -139,10 +141,23 @@ class LayersSettings(PlaneSettings):
         return self.layers
 
     @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces between the layers."""
+        return self.layers - 1
+
+    @property
     def features(self) -> Features:
         """The loop of a moment is over a rotation."""
         is_over_displacement = self.bending != "moment"
         return super().features._replace(loop_is_over_displacement=is_over_displacement)
+
+    def _factors(self) -> Array | None:
+        return shared.factors_of(self, self.n_interfaces)
+
+    def check_together(self) -> None:
+        """Refuse factors on mu that are not one for each interface, too."""
+        super().check_together()
+        self._factors()
 
     def bends_by(self, kind: str) -> bool:
         """Whether the end is bent so, as far as a preset and not a table says."""
@@ -167,7 +182,8 @@ class LayersSettings(PlaneSettings):
 
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""
-        rest = np.zeros(self.n_instants)
+        rest, stack = np.zeros(self.n_instants), self.stack()
+        factors, friction = self._factors(), stack.friction
         held, free = Given(True, rest), Given(False, rest)
         pressing = self.path("pressure_load")
         pull = self.path("pull_load")
@@ -180,7 +196,8 @@ class LayersSettings(PlaneSettings):
             extreme = -6.0 * moment / (self.layers * self.thickness**2)
             right = Side(Given(False, pull, extreme, each_body=True), free)
         return replace(
-            self.stack(),
+            stack,
+            friction=friction if factors is None else factors[:, None] * friction,
             stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
             sides={
                 "left": Side(held, held),

@@ -132,6 +132,9 @@ class RopeSettings(SceneSettings):
     friction = shared.friction(
         "mu of the wires on what they lie on; those beside each other do not rub"
     )
+    friction_factors = shared.friction_factors(
+        "between a layer and what it lies on, from the core outwards"
+    )
     elements = count(
         60,
         (2, 20_000),
@@ -178,6 +181,14 @@ class RopeSettings(SceneSettings):
         return self.n_wires * int(self.substructures)
 
     @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces between layers, and of the first with the core."""
+        return len(self.section.layers)
+
+    def _factors(self) -> Array | None:
+        return shared.factors_of(self, self.n_interfaces)
+
+    @property
     def n_nodes(self) -> int:
         """Number of nodes of all wires."""
         return self.n_wires * int(self.elements + 1)
@@ -198,6 +209,7 @@ class RopeSettings(SceneSettings):
         """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
         super().check_together()
         shared.refuse_negative(self, "tension_load", "tension", " N")
+        self._factors()
         if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
             raise SettingError(
                 "fall_off",
@@ -220,8 +232,7 @@ class RopeSettings(SceneSettings):
         there is.
         """
         curvature, tension = self.path("load"), self.path("tension_load")
-        below, above = self.section.line_pressures(tension)
-        bounds = self.friction * (below + above)
+        bounds = self.section.friction_bounds(tension, self.friction, self._factors())
         if self.tension_load == "steady":
             bounds = bounds[:, :1]
         wires = [
@@ -282,9 +293,11 @@ class RopeSettings(SceneSettings):
         """Closed form of a strand that is bent alike all along, under a tension that stays."""
         tension = self.path("tension_load")
         is_known = not self.is_clamped and self.law == FrictionLaw()
-        if not is_known or np.ptp(tension) or not tension[0] or not self.friction:
+        factors = self._factors()
+        rubs = self.friction and (factors is None or factors.all())
+        if not is_known or np.ptp(tension) or not tension[0] or not rubs:
             return None
-        return BentStrand(self.section, self.friction, float(tension[0]))
+        return BentStrand(self.section, self.friction, float(tension[0]), factors)
 
     def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
         """Moment over the curvature, where a closed form is known."""

@@ -17,7 +17,7 @@ from numpy.random import Generator
 
 from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, points_of
 from solver.settings import Settings
 from solver.study.stability.case import NOT_WRONG, Case
 from solver.study.stability.random_loads import LOADS
@@ -49,6 +49,8 @@ AS_THEY_ARE = {"wall": {"pressure_load"}}
 """Those of a scene that stay at their defaults: bricks that are lifted hang on nothing."""
 INSTANTS_A_CYCLE = 4
 """At least, of what is drawn: more cycles take more instants than there is room for."""
+COUNTED = "layers", "wires", "construction"
+"""Settings that say how many interfaces there are."""
 NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
 CHANGED = 0.15
@@ -135,6 +137,10 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         often = _often(name, about(definition).group, mixed)
         if generator.random() < often:
             values[name] = _drawn(name, definition, generator)
+    if "friction_factors" in values:
+        some = {name: values[name] for name in COUNTED if name in values}
+        each = points_of(kind.checked(some), "friction_factors")
+        values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
     if "elements_up" in definitions:
         _stretch(kind.across, values, definitions, generator)
     defaults = {name: definition.default for name, definition in definitions.items()}

@@ -136,6 +136,7 @@ def layers_cases() -> list[Case]:
         case("contrast", "1e-6", {"contrast": 1e-6}, UNSOLVED),
         case("friction", "0", {"friction": 0.0}, UNSOLVED),
         case("friction", "10", {"friction": 10.0}, UNCLEAR),
+        case("friction", "none above 10", {"friction_factors": ((1.0, 33.0), (2.0, 0.0))}, UNCLEAR),
         case("thickness / length", "0.001", {"thickness": 5e-4}, UNSOLVED),
         case("number", "2", {"layers": 2}),
         case("number", "20", {"layers": 20, "elements": 12, "instants": 9}, UNSOLVED),

@@ -176,6 +176,12 @@ def rope_cases() -> list[Case]:
         case("friction", "0", {"friction": 0.0}),
         case("friction", "1e-9", {"friction": 1e-9}, UNSOLVED),
         case("friction", "1e6", {"friction": 1e6}),
+        case(
+            "friction",
+            "none on the core",
+            {"layers": 2, "friction_factors": ((1.0, 0.0), (2.0, 1.0))},
+            UNSOLVED,
+        ),
         case("tension", "0", {"tension": 0.0, "fall_off": 0.2}),
         case("tension", "1e12 N", {"tension": 1e12, "fall_off": 0.2}),
         case("tension", "shaken", {"tension_load": "shaken"}),
