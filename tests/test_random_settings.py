@@ -109,8 +109,19 @@ def strengths(extent):
     )
 
 
+def constructions():
+    """Rows of a strand of one's own, of any wires."""
+    layer = st.tuples(st.integers(1, 6), sizes(1e-6, 1.0), st.floats(-75.0, 75.0), sizes(1.0, 1e18))
+    core = st.tuples(st.just(1), sizes(1e-6, 1.0), st.just(0.0), sizes(1.0, 1e18))
+    return st.tuples(core, st.lists(layer, min_size=1, max_size=2)).map(
+        lambda rows: [rows[0], *rows[1]]
+    )
+
+
 def values_of(name, definition, extents):
     if isinstance(definition, CurveParameter):
+        if not definition.is_path:
+            return st.sampled_from(definition.presets) | constructions()
         extent = extents[definition.abscissa]
         if name == "strength":
             return st.sampled_from(definition.presets) | strengths(extent)

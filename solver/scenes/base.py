@@ -10,7 +10,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, about, choice, count, curve, quantity
+from solver.definitions import Pairs, Rows, SettingError, about, choice, count, curve, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
 from solver.laws import FrictionLaw, Strength
@@ -373,6 +373,10 @@ class SceneSettings(Settings):
         values = self._along(name, times)
         kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
         return as_points(times[kept], values[kept])
+
+    def rows(self, name: str) -> Rows:
+        """Rows of a table, or points of a curve, or those that stand for its preset."""
+        return self.points(name)
 
     def _along(self, name: str, instants: Array) -> Array:
         curve: str | Pairs = getattr(self, name)

@@ -168,7 +168,7 @@ class LayersSettings(PlaneSettings):
         own = {"right x": end, "right y": "deflection"}
         return {"top y": "pressure", "bottom y": "pressure", **own}
 
-    def curve_units(self, name: str) -> tuple[str, str]:
+    def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values."""
         if name != "bend_load":
             return super().curve_units(name)

@@ -215,6 +215,8 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
             return _strength(generator)
         if definition.abscissa == "position" and generator.random() < 0.4:
             return _profile(name, generator)
+        if not definition.is_path and generator.random() < 0.4:
+            return _construction(generator)
         return str(generator.choice(definition.presets))
     if isinstance(definition, param.Boolean):
         return bool(generator.random() < 0.5)
@@ -249,6 +251,20 @@ SPECIAL: dict[str, Callable[[Generator], float]] = {
     "accuracy": lambda generator: log_uniform(generator, 1e-5, 0.1),
     "tolerance": lambda generator: log_uniform(generator, 1e-12, 1.0),
 }
+
+
+def _construction(generator: Generator) -> list[list[float]]:
+    """A core, and a layer or two of wires around it with room to spare."""
+    rows = [[1, float(generator.uniform(2e-3, 8e-3)), 0.0, 2e11]]
+    around = rows[0][1]
+    for _ in range(int(generator.integers(1, 3))):
+        diameter, lay = generator.uniform(0.3, 1.0) * rows[-1][1], generator.uniform(5.0, 30.0)
+        room = np.pi * (around + diameter) * np.cos(np.radians(lay))
+        most = max(int(0.95 * room / diameter), 1)
+        wires, sign = int(generator.integers(1, most + 1)), generator.choice([-1.0, 1.0])
+        rows.append([wires, float(diameter), float(sign * lay), log_uniform(generator, 1e9, 1e12)])
+        around += 2.0 * diameter
+    return rows
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:

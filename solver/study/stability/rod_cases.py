@@ -14,6 +14,11 @@ ROPE = {
     **{"layers": 1, "length": 0.3, "tension": 5e4, "elements": 32, "substructures": 8},
     **{"instants": 31, "max_iterations": 1000},
 }
+OWN_ROPE = (
+    *((1.0, 2e-3, 0.0, 1e9), (5.0, 3e-3, 45.0, 2e11), (20.0, 1e-3, -10.0, 7e10)),
+    (1.0, 4e-3, 60.0, 1e12),
+)
+"""A soft core, layers with room beside their wires, and a wire that is wound about them."""
 ALIKE = {"bending": "uniform"}
 RAMP = {"load": "ramp"}
 GENERAL = {"friction_law": "general"}
@@ -193,6 +198,7 @@ def rope_cases() -> list[Case]:
         case(
             "construction", "aluminium on steel", {"construction": "conductor", **ALIKE}, UNSOLVED
         ),
+        case("construction", "of one's own", {"construction": OWN_ROPE}, UNSOLVED, quick=True),
         case("construction", "91 wires", {"layers": 5, "instants": 11}),
         case("substructures", "1", {"substructures": 1}, UNSOLVED),
         case("substructures", "as many as elements", {"substructures": 32}),
