@@ -29,6 +29,8 @@ WORDS = {
     "curvature": "curvature krümmung",
     "factor": "factor faktor",
     "interface": "interface joint fuge grenzfläche",
+    "layer": "layer leaf lage blatt schicht",
+    "share": "share anteil",
     "wires": "wires wire number drähte drahtzahl anzahl",
     "diameter": "diameter d durchmesser",
     "lay angle": "lay angle alpha α winkel schlagwinkel",

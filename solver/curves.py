@@ -16,7 +16,7 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import Table, read_table
 
-_BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment"}
+_BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment", "N/m": "force"}
 """Quantities of settings whose ordinate is called value."""
 _SETTINGS = {
     name

@@ -97,6 +97,14 @@ def of_each(count):
     return factors.map(lambda each: [[n, factor] for n, factor in enumerate(each, start=1)])
 
 
+def lengths(count):
+    """Shares of so many layers, one of them 1."""
+    shares = st.lists(st.floats(1e-3, 1.0), min_size=count - 1, max_size=count - 1)
+    return shares.flatmap(lambda own: st.permutations([1.0, *own])).map(
+        lambda each: [[n, share] for n, share in enumerate(each, start=1)]
+    )
+
+
 def strengths(extent):
     """Points of any factors over slip, the first (0, 1)."""
     slips = st.lists(st.floats(1e-6, 1.0), min_size=1, max_size=5, unique=True).map(sorted)
@@ -125,6 +133,8 @@ def values_of(name, definition, extents):
         extent = extents[definition.abscissa]
         if name == "strength":
             return st.sampled_from(definition.presets) | strengths(extent)
+        if name == "layer_lengths":
+            return st.sampled_from(definition.presets) | lengths(extent)
         if name == "friction_factors":
             return st.sampled_from(definition.presets) | of_each(extent)
         is_section = name == "section_profile"
@@ -151,6 +161,7 @@ def with_others(draw, definitions, chosen):
         "position": chosen.get("length", definitions["length"].default),
         "time": chosen.get("duration", definitions["duration"].default),
         "slip": 1e-3,
+        "layer": chosen.get("layers", 1),
         "interface": chosen.get("layers", 1) - ("construction" not in definitions),
     }
     for name in sorted(some - chosen.keys()):

@@ -180,19 +180,37 @@ def factors_of(settings: Settings, count: int) -> Array | None:
         For a table that lacks an interface, or has others, and for factors below zero.
     """
     name = "friction_factors"
-    table = getattr(settings, name)
-    if isinstance(table, str):
+    if isinstance(getattr(settings, name), str):
         return None
     refuse_negative(settings, name, "factor")
-    numbers, factors = np.array(table).T
+    return of_each(settings, name, count, "interface")
+
+
+def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
+    """Values of a table that has one for each of so many, shape (count,).
+
+    Parameters
+    ----------
+    settings, name
+        Whose, and which of its tables.
+    count, what
+        Their number, and what they are.
+
+    Raises
+    ------
+    SettingError
+        For a table that lacks one, or has others.
+    """
+    table = getattr(settings, name)
+    numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
         raise SettingError(
             name,
             table,
-            f"{count} pairs [[1, factor], ...], one for each of the {count} interfaces",
-            f"there are {len(table)}: number the interfaces from 1 to {count}",
+            f"{count} pairs, one for each {what}",
+            f"there are {len(table)}: number each {what} from 1 to {count}",
         )
-    return np.asarray(factors)
+    return np.asarray(values)
 
 
 def ever_coarser(structure: S | None) -> Iterator[S]:

@@ -141,6 +141,9 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         some = {name: values[name] for name in COUNTED if name in values}
         each = points_of(kind.checked(some), "friction_factors")
         values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
+    if "layer_lengths" in values and generator.random() < 0.5:
+        shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
+        values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
     if "elements_up" in definitions:
         _stretch(kind.across, values, definitions, generator)
     defaults = {name: definition.default for name, definition in definitions.items()}

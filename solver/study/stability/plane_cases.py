@@ -29,6 +29,9 @@ LAYERS = {
     "instants": 17,
     "max_iterations": 600,
 }
+FORCE = {"bending": "force", "force": 1e4}
+LEAVES = {**FORCE, "layer_lengths": "graduated"}
+STEPPED = ((1.0, 0.04), (2.0, 1.0), (3.0, 0.5))
 PRESSED = {
     "gap": "flat",
     "top": "traction",
@@ -141,6 +144,10 @@ def layers_cases() -> list[Case]:
         case("number", "2", {"layers": 2}),
         case("number", "20", {"layers": 20, "elements": 12, "instants": 9}, UNSOLVED),
         case("load", "moment", moment, UNSOLVED),
+        case("load", "force at the end", FORCE, UNSOLVED),
+        case("lengths", "leaves that are pressed", LEAVES, UNSOLVED, quick=True),
+        case("lengths", "leaves that come apart", {**LEAVES, "pressure": 0.0}, UNSOLVED),
+        case("lengths", "one element beside all", {**FORCE, "layer_lengths": STEPPED}, UNSOLVED),
         case("load", "no pressure", {"pressure": 0.0}, UNSOLVED),
         case("young", "1", {"young": 1.0, "pressure": 1e-5}, UNSOLVED),
         case("young", "1e18", {"young": 1e18, "pressure": 1e13}, UNSOLVED),

@@ -89,8 +89,9 @@ def layers_loads(values: Values, generator: Generator) -> Sizes:
         "pressure_load": pressure,
         "deflection": bent * _share(generator),
         "moment": moment * _share(generator),
+        "force": carried * height / 1.5 * _share(generator),
     }
-    loads["bend_load"] = loads["deflection" if values["bending"] == "deflection" else "moment"]
+    loads["bend_load"] = loads[values["bending"]]
     if generator.random() < 0.3:
         loads["pull"] = carried * length / height * _share(generator)
     return loads

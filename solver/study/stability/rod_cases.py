@@ -15,7 +15,7 @@ ROPE = {
     **{"instants": 31, "max_iterations": 1000},
 }
 OWN_ROPE = (
-    *((1.0, 2e-3, 0.0, 1e9), (5.0, 3e-3, 45.0, 2e11), (20.0, 1e-3, -10.0, 7e10)),
+    *((1.0, 2e-3, 0.0, 1e9), (3.0, 3e-3, 45.0, 2e11), (20.0, 1e-3, -10.0, 7e10)),
     (1.0, 4e-3, 60.0, 1e12),
 )
 """A soft core, layers with room beside their wires, and a wire that is wound about them."""
