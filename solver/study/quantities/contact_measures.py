@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
+from solver.discrete.probes import AxialForce
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.scenes import features_of, kind_of, law_of
@@ -49,10 +50,29 @@ def _over_a_displacement(settings: Settings) -> bool:
 @quantity("Largest displacement", "m")
 def peak_displacement(run: FinishedRun) -> float:
     """Largest displacement of any node at any instant, m."""
-    inside, moved = run.problem.inside, run.iterate.displacement
+    inside, moved = run.problem.inside, run.problem.at_rest(run.iterate.displacement)
     if inside is None:
         return float(np.abs(moved).max())
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
+
+
+def axial_force_at(run: FinishedRun, instant: int) -> float:
+    """Axial force in the element where it is largest at an instant, pull positive, N."""
+    some = slice(instant, instant + 1)
+    force = AxialForce(run.problem, some)(run.iterate.displacement[:, some])
+    return float(force[np.abs(force).argmax(), 0])
+
+
+@quantity(
+    "Largest axial force",
+    "N",
+    applies=lambda settings: kind_of(settings) in ("rod", "wires"),
+    at_instant=axial_force_at,
+)
+def axial_force(run: FinishedRun) -> float:
+    """Largest axial force in any element at any instant, N, pull positive."""
+    force = AxialForce(run.problem)(run.iterate.displacement)
+    return float(force.flat[np.abs(force).argmax()])
 
 
 @quantity("Largest slip", "m")

@@ -212,8 +212,8 @@ def recovery_length_at(run: FinishedRun, instant: int) -> float:
     if described.broken is None or not run.force[instant]:
         return math.nan
     wire, place = described.broken
-    axial = AxialForce(run.problem)
-    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire]
+    axial = AxialForce(run.problem, slice(instant, instant + 1))
+    force = axial(run.iterate.displacement[:, instant : instant + 1])[axial.wires == wire, 0]
     share = force / run.force[instant]
     size = described.length / len(share)
     node = round(place / size)

@@ -178,7 +178,9 @@ def _often(name: str, group: str, mixed: bool) -> float:
         return 0.5  # taken back where the law is not the general one
     if group == "Method":
         return 2.0 * CHANGED if mixed else 0.0
-    return 2.0 * CHANGED if name in ("load", "gap") or name.endswith("_profile") else CHANGED
+    return (
+        2.0 * CHANGED if name in ("load", "gap") or name.endswith(("_profile", "_end")) else CHANGED
+    )
 
 
 def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:

@@ -28,6 +28,8 @@ BOND = {
     "tangential_stiffness": 1e8,
     "strength": ((0.0, 1.0), (1e-4, 1.3), (1e-3, 0.6)),
 }
+FREE = {"left_end": "free", "right_end": "free"}
+MOVED = {"left_end": "free", "right_end": "spring", "right_displacement": 0.01}
 JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
 PLATEAUS: Pairs = (
     *((0.0, 0.0), (0.2, 800.0), (0.4, 800.0)),
@@ -115,6 +117,24 @@ def bar_cases() -> list[Case]:
         case("load", "plateaus", {"load": PLATEAUS}),
         case("load", "moved support", {"support_displacement": 1e-3}),
         case("load", "body force", {"body_force": 1000.0}),
+        *(
+            case(
+                "ends",
+                f"{stiffness:g} N/m on the left",
+                {"left_end": "spring", "left_spring": stiffness, "peak": 2000.0},
+                UNSOLVED,
+                quick=stiffness == 1e-3,
+            )
+            for stiffness in (1e-3, 1e3, 1e9, 5e14)
+        ),
+        case("ends", "1e18 N/m", {"left_end": "spring", "left_spring": 1e18}, MUST_REFUSE),
+        case("ends", "left one free", {"left_end": "free"}, quick=True),
+        case("ends", "left one free, almost pulled out", {"left_end": "free", "peak": 1499.0}),
+        case("ends", "right one on a spring that is moved", MOVED, quick=True),
+        case("heat", "alone, between clamps", {"right_end": "held", "temperature": 40.0}),
+        case("heat", "alone, both ends free", {**FREE, "temperature": 40.0}, quick=True),
+        case("settlement", "alone, both ends free", {**FREE, "settlement": 1e-3}, quick=True),
+        case("settlement", "1e6 m", {"settlement": 1e6}, UNSOLVED),
         *(
             case("substructures", f"{parts} of 50 elements", {"substructures": parts}, UNSOLVED)
             for parts in (1, 2, 5, 25, 50)
