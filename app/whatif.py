@@ -24,13 +24,13 @@ from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
-from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep import Plan
-from solver.study.sweep.chart import chart_of, is_map, ordered
-from solver.study.sweep.report import counts
-from solver.study.sweep.table import csv_of
+from solver.study.sweep.chart import chart_of, is_map
+from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"
+SCALES = {"automatic": None, "linear": False, "logarithmic": True}
 NEAR = 0.04
 """Share of the axes up to which a tap hits a point."""
 
@@ -55,7 +55,7 @@ class WhatIf:
         self.view = pn.Column(
             pn.FlexBox(*self._ready.values(), self._help),
             *(span.view for span in self.spans),
-            pn.FlexBox(self._of, self._at, self._start, self._cancel),
+            pn.FlexBox(self._of, self._at, self._scale, self._start, self._cancel),
             self.message,
             self._keys,
             self._chart,
@@ -76,6 +76,10 @@ class WhatIf:
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")
+        self._scale = pmui.Select(
+            label="on a scale", options=list(SCALES), value=next(iter(SCALES)), width=150, **FIELD
+        )
+        self._scale.param.watch(lambda event: self.sweep and self._draw(), "value")
         self._start = button("Draw", self.start, icon="play_arrow", **FIELD)
         look = {"variant": "outlined", **FIELD}
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
@@ -131,7 +135,9 @@ class WhatIf:
     def chart(self) -> Chart:
         """What has come so far, in the units that are read."""
         plan, rows = self.sweep.plan, list(self.sweep.rows)
-        return in_units(chart_of(plan, rows, 0, lambda v, unit: unit_for(abs(v), unit)(v, 4)))
+        text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
+        scale = SCALES[self._scale.value]
+        return in_units(chart_of(plan, rows, 0, text, logarithmic=scale))
 
     # Fields
 
@@ -269,11 +275,11 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
     """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
     place = [np.nan, np.nan]
-    axes = ordered(plan)[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
+    axes = plan.axes[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
     for i, axis in enumerate(axes):
         value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
         if axis.is_numeric:
-            place[i] = value / sizes_of(plan.unit(axis)).get(unit, 1.0)
+            place[i] = value / sizes_of(axis.unit).get(unit, 1.0)
         elif value in axis.values:
             place[i] = axis.values.index(value)
     return place[0], place[1]

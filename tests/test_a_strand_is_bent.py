@@ -25,8 +25,8 @@ from solver.reference.incremental import IncrementalRod
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
+from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.quantities.quantities import reading
 
 CLAMPED: dict[str, Any] = {"bending": "clamp", "layers": 2, "elements": 24, "instants": 31}
 CHANGING: dict[str, Any] = {**CLAMPED, "tension_load": "shaken"}

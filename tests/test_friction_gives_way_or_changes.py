@@ -19,9 +19,9 @@ from solver.laws import Contact, FrictionLaw, Strength
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.pulled_bar import pulled_compliant_bar
 from solver.reference.distance import distance_to
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.stability.outcome import kkt_residual
 
 LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import nullcontext
 from typing import Any
 
-import numpy as np
 import pytest
 from sweeps import TINY, Here
 
@@ -48,7 +47,7 @@ def asked(question: Question, opened: list[Settings] | None = None) -> WhatIf:
 def test_the_tab_opens_with_its_first_chart_drawn() -> None:
     made = asked(LOADS)
     chart = made.chart()
-    assert np.isfinite(chart.runs.values).sum() == 6
+    assert chart.runs.holds.sum() == 6
     assert "6 of 6 runs: 6 converged" in made.message.object
     rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "r")]
     assert len(rows) == 6
@@ -118,11 +117,20 @@ def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
     assert not made.mesh.visible
 
 
-def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_the_bathtub() -> None:
+def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
     settings = tiny()
     assert question_of(str(LOADS), settings) == LOADS
+    energy = Question(("peak=240:2400:13:log",), "dissipation")
     for text in ("", "friction=0:1:3", "no=1,2 dissipation", "friction=0.1 none", "friction=a of"):
-        assert question_of(text, settings) == iterations_over_k(settings)
+        assert question_of(text, settings) == energy
+
+
+@pytest.mark.usefixtures("here")
+def test_the_scale_of_the_values_is_linear_or_logarithmic_as_one_likes() -> None:
+    made = asked(LOADS)
+    for scale, is_logarithmic in (("logarithmic", True), ("linear", False)):
+        made._scale.value = scale
+        assert made.chart().y.logarithmic is is_logarithmic
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)

@@ -6,7 +6,7 @@ from app.views.bases import ClipErrors, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
 from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
-from app.views.rope import StressRanges, Unrolled, AxialForces, WireSection
+from app.views.rope import AxialForces, StressRanges, Unrolled, WireSection
 from app.views.scene import Stress
 from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap

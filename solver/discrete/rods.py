@@ -282,7 +282,7 @@ class Rods:
     def _drive(self) -> tuple[str, str, Array] | None:
         """What drives rods whose ends are left alone: title, unit, and values over time."""
         drives = (
-            ("Strain without force", "1", self.strain),
+            ("Strain without force", "", self.strain),
             ("Settlement", "m", self.settlement),
             ("Body force", "N/m", self.body_force),
         )
@@ -323,7 +323,7 @@ class Rods:
             yield Act("body", "b", places, right, right, values, "N/m")
         if self.strain is not None:
             values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
-            yield Act("strain", "ε", np.zeros((0, 2)), right, right, values, "1")
+            yield Act("body strain", "ε₀", np.zeros((0, 2)), right, right, values, "")
         if self.settlement is not None:
             places = np.stack([SHOWN, np.zeros_like(SHOWN)], axis=1)
             values = self._shown(self.settlement)

@@ -15,7 +15,7 @@ from solver.disk import read_text, why
 from solver.files import scene_settings
 from solver.lessons.lesson import SUBJECTS, Claim, EndingClaim, Expected, Lesson
 from solver.settings import Settings
-from solver.study.quantities.quantities import reading
+from solver.study.quantities import reading
 
 KEYS = {
     "title": str,

@@ -237,6 +237,12 @@ class BarSettings(SceneSettings):
         title="S along the bar",
     )
 
+    @classmethod
+    def chief(cls) -> tuple[str, ...]:
+        """Settings that the bar is about: what is done to its right end first."""
+        ends = cls.PATH, "seed", "peak", "right_displacement"
+        return (*ends, "friction", "substructures", "k_scale")
+
     @property
     def n_nodes(self) -> int:
         """Number of nodes."""
@@ -412,7 +418,7 @@ class BarSettings(SceneSettings):
 
 
 BAR = Entry(
-    title="Clamped bar on a rough support",
+    title="Bar on a rough support",
     source="paper, section 3, Table 1",
     emblem=Emblem(
         ground="M5 9V28M5 23H46M12 23l-3 4M19 23l-3 4M26 23l-3 4M33 23l-3 4M40 23l-3 4",
@@ -421,6 +427,5 @@ BAR = Entry(
     ),
     settings=BarSettings,
     kind="rod",
-    sizes=shared.ROD_SIZES,
     grows=("elements",),
 )

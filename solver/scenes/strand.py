@@ -247,6 +247,5 @@ STRAND = Entry(
     ),
     settings=StrandSettings,
     kind="wires",
-    sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     grows=("wires",),
 )

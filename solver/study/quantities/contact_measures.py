@@ -14,7 +14,7 @@ from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.scenes import features_of, kind_of, law_of
 from solver.settings import Settings
-from solver.study.quantities.cycles import ends_of
+from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import CYCLE, Parameter, quantity
 
@@ -37,10 +37,6 @@ def _rubs_by_mu(settings: Settings) -> bool:
 
 def _in_the_plane(settings: Settings) -> bool:
     return kind_of(settings) == "plane"
-
-
-def _with_a_spring(settings: Settings) -> bool:
-    return features_of(settings).has_spring
 
 
 def _over_a_displacement(settings: Settings) -> bool:
@@ -250,12 +246,8 @@ def stiffness(run: FinishedRun) -> float:
 @quantity("Energy dissipated", "J", parameter=CYCLE)
 def dissipation(run: FinishedRun, at: float | None) -> float:
     """Energy that friction takes, J: of the whole run, or of a cycle; NaN if there are fewer."""
-    if at is None:
-        return float(run.dissipated.sum())
-    ends, number = ends_of(run.settings), int(at)
-    if len(ends) <= number:
-        return math.nan
-    return float(run.dissipated[ends[number - 1] + 1 : ends[number] + 1].sum())
+    some = instants_of(run.settings, at)
+    return math.nan if some is None else float(run.dissipated[some].sum())
 
 
 @quantity("Share of the points that slip", is_share=True)

@@ -78,7 +78,6 @@ def random_case(settings: Settings, seed: int, row: int) -> Case:
     own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
     method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
     return Case(
-        "random",
         f"row {row} of seed {seed}",
         settings.changed(),
         NOT_WRONG,
