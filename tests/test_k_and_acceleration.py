@@ -11,8 +11,8 @@ from bars import measured
 from solver.latin import Ending, directions, iterations
 from solver.latin.directions import CALM, TRIAL, sliding_share
 from solver.loads import PRESETS
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

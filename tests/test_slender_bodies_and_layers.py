@@ -11,9 +11,9 @@ from plane import lengths, reaction, solved, whole_force_error
 
 from solver.latin import iterations, solve
 from solver.latin.directions import LOOK
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.elastic_bodies import cantilever
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 

@@ -10,8 +10,8 @@ import pytest
 from solver.discrete.wall import Wall, bonded
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import FrictionLaw, Strength
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
 from solver.study.stability.outcome import kkt_residual
 

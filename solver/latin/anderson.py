@@ -9,8 +9,8 @@ from scipy.linalg.lapack import dposv
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks, at_once, in_a_row
-from solver.latin.linear_stage import LinearStage
+from solver.latin.blocks import Blocks, in_a_row
+from solver.latin.linear_stage import Group, LinearStage
 from solver.refusal import check_range
 
 MEMORY = 15
@@ -72,21 +72,13 @@ class Anderson:
         blocks
             Of instants, in which states are mixed.
         """
-        weights = [group.weights(problem.time_weights) for group in stage.groups]
-        mixable = [part for part in weights if part is not None]
-        if len(mixable) < len(weights):
+        if not stage.is_full:
             return None
         growth = 1.0
         if problem.opens:
             is_held = any(law.is_on_support for law in problem.rubbing.values())
             growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-        free = None
-        if motion is not None:
-            free = [
-                np.broadcast_to(motion[group.rows][:, :, None], group.target.shape)
-                for group in stage.groups
-            ]
-        return AndersonState(mixable, self.memory, growth, blocks, free)
+        return AndersonState(problem, stage.groups, self.memory, growth, motion, blocks)
 
 
 class AndersonState:
@@ -96,18 +88,19 @@ class AndersonState:
 
     Parameters
     ----------
-    weights
-        Squared weights of the inner product, one array for each part of the state, of its shape.
+    problem, groups
+        What is solved, and the parts of the linear stage whose states are mixed, in the inner
+        product of k over boundary and time.
     memory
         Differences that are remembered.
     growth
         Of the residual over the smallest so far, from which the memory is given up. Where the bound
         of friction is known 1 is best (twice as much takes up to a third more iterations to 1e-6).
+    motion
+        Of the rows, shape (n_rows,), which the local stage chooses anew whatever the state is: at
+        every instant a residual counts for nothing along it. None where there is none.
     blocks
-        Of instants, the last axis of the parts, in which images are kept and mixed.
-    free
-        A motion, of the shapes of the weights, that the local stage chooses anew whatever the state
-        is: at every instant a residual counts for nothing along it. None where there is none.
+        Of instants, in which images are kept and mixed.
 
     Attributes
     ----------
@@ -117,21 +110,25 @@ class AndersonState:
 
     def __init__(
         self,
-        weights: list[Array],
+        problem: Problem,
+        groups: list[Group],
         memory: int,
-        growth: float = 1.0,
-        blocks: Blocks | None = None,
-        free: list[Array] | None = None,
+        growth: float,
+        motion: Array | None,
+        blocks: Blocks,
     ) -> None:
-        self._growth = growth
-        self._blocks = blocks or at_once(weights[0].shape[-1])
-        sizes = [part.size for part in weights]
+        self._groups, self._growth, self._blocks = groups, growth, blocks
+        sizes = [group.target.size for group in groups]
         self._places = in_a_row(sizes)
         self._chosen = _sample(sizes)
-        sampled = [_flat(part)[chosen] for part, chosen in zip(weights, self._chosen, strict=True)]
+        weights = [group.k[:, None, None] * problem.time_weights for group in groups]
+        sampled = self._sampled(weights)
         self._samples = in_a_row([len(part) for part in sampled])
         self._root = np.sqrt(np.concatenate(sampled))
-        self._free = free and _Motion(free, self._chosen, self._root)
+        self._free = None
+        if motion is not None:
+            ways = self._sampled([motion[group.rows][:, :, None] for group in groups])
+            self._free = _Motion(groups, self._chosen, self._root * np.concatenate(ways))
         self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
         # Memory that nothing was written to costs nothing yet.
         self._images = np.zeros((self._memory + 1, sum(sizes)))
@@ -155,19 +152,14 @@ class AndersonState:
         """States whose images shape what comes next."""
         return min(self.seen, self._memory + 1)
 
-    def start(self, state: list[Array]) -> None:
+    def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
-        self._take(state, self._start)
+        self._take(self._start)
 
-    def __call__(self, state: list[Array]) -> None:
-        """Replace g(y) by the mixture, in place."""
-        if self.observe(state) and self.seen > 1:
-            self._mix(state)
-
-    def observe(self, state: list[Array]) -> bool:
+    def observe(self) -> bool:
         """Read g(y); return whether to mix."""
         residual = self._residual
-        self._take(state, residual)
+        self._take(residual)
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
         if self._free:
@@ -183,13 +175,14 @@ class AndersonState:
         image = self._images[self._place_of(self.count)]
 
         def keep(instants: slice) -> None:
-            for part, place in zip(state, self._places, strict=True):
+            for group, place in zip(self._groups, self._places, strict=True):
+                part = group.state
                 image[_within(place, part, instants)] = _flat(part[..., instants])
 
         self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
         self.seen += 1
-        return True
+        return self.seen > 1
 
     def _remember(self) -> None:
         place = self.count % self._memory
@@ -204,7 +197,8 @@ class AndersonState:
         self._wanted[:used] += row
         self._wanted[place] = newest @ self._residual
 
-    def _mix(self, state: list[Array]) -> None:
+    def mix(self) -> None:
+        """Replace g(y) by the mixture, in place."""
         used = min(self.count, self._memory)
         gram = self._products[:used, :used]
         scale = 1.0 / np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
@@ -216,7 +210,8 @@ class AndersonState:
         shares = self._shares(scale * gamma)
 
         def mix(instants: slice) -> None:
-            for part, place in zip(state, self._places, strict=True):
+            for group, place in zip(self._groups, self._places, strict=True):
+                part = group.state
                 images = self._images[: used + 1, _within(place, part, instants)]
                 np.matmul(shares, images, out=_flat(part[..., instants]))
 
@@ -235,22 +230,31 @@ class AndersonState:
     def _place_of(self, number: int) -> int:
         return number % (self._memory + 1)
 
-    def _take(self, state: list[Array], out: Array) -> None:
-        parts = zip(state, self._chosen, self._samples, strict=True)
-        for part, chosen, place in parts:
-            out[place] = _flat(part)[chosen]
+    def _take(self, out: Array) -> None:
+        for group, chosen, place in zip(self._groups, self._chosen, self._samples, strict=True):
+            out[place] = _flat(group.state)[chosen]
+
+    def _sampled(self, fields: list[Array]) -> list[Array]:
+        """Fields of the groups at the places of the sample."""
+        return [
+            _flat(np.broadcast_to(field, group.target.shape))[chosen]
+            for field, group, chosen in zip(fields, self._groups, self._chosen, strict=True)
+        ]
 
 
 class _Motion:
-    """A motion that residuals are blind to, at the places of a sample."""
+    """A motion that residuals are blind to, weighted, at the places of a sample."""
 
-    def __init__(self, free: list[Array], chosen: list[slice | Indices], root: Array) -> None:
-        places = [np.arange(part.size)[places] for part, places in zip(free, chosen, strict=True)]
-        pairs = list(zip(free, places, strict=True))
-        self._way = root * np.concatenate([_flat(part)[place] for part, place in pairs])
-        instants = np.concatenate([place * part.shape[-1] // part.size for part, place in pairs])
-        size = np.bincount(instants, self._way**2)
-        self._dual = self._way / np.where(size > 0.0, size, 1.0)[instants]
+    def __init__(self, groups: list[Group], chosen: list[slice | Indices], way: Array) -> None:
+        sizes, count = [group.target.size for group in groups], groups[0].target.shape[-1]
+        instants = np.concatenate(
+            [
+                np.arange(size)[places] * count // size
+                for size, places in zip(sizes, chosen, strict=True)
+            ]
+        )
+        self._way, size = way, np.bincount(instants, way**2)
+        self._dual = way / np.where(size > 0.0, size, 1.0)[instants]
         # In order of memory an instant is a run of places, in every part.
         self._first = np.flatnonzero(np.diff(instants, prepend=-1))
         self._lengths = np.diff(self._first, append=len(instants))

@@ -41,10 +41,10 @@ def finished(
     searched
         The separated bases of the search, if it had any, which the solution goes beyond.
     """
-    scales = problem.scales
-    deformation = certificate.deformation / scales.displacement
-    force = row_forces(problem, deformation, certificate.contact_force / scales.force)
-    moved = (certificate.displacement / scales.displacement)[problem.row_dofs]
+    scales, solution = problem.scales, certificate.solution
+    deformation = solution.deformation / scales.displacement
+    force = row_forces(problem, deformation, solution.contact_force / scales.force)
+    moved = (solution.displacement / scales.displacement)[problem.row_dofs]
     stretched = force / k[:, None]
     fields = moved + stretched, moved - stretched, moved, force
     outgoing, incoming, local, force = (read_only(np.asfortranarray(field)) for field in fields)

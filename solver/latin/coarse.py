@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
@@ -30,7 +30,7 @@ class CoarseProblem:
     """
 
     def __init__(
-        self, problem: Problem, groups: Sequence[Group[Any]], blocks: Blocks | None = None
+        self, problem: Problem, groups: Sequence[Group], blocks: Blocks | None = None
     ) -> None:
         basis, load = problem.macro
         self._blocks = blocks or at_once(problem.n_instants)
@@ -81,7 +81,7 @@ class _Member:
         Macro forces of a target, shape (n_local, n_boundary).
     """
 
-    def __init__(self, group: Group[Any], rows: Indices, local: Array, forces: Array) -> None:
+    def __init__(self, group: Group, rows: Indices, local: Array, forces: Array) -> None:
         self._group, self._local, self._forces = group, local, forces
         self.size = local.shape[1] * group.rows.shape[1]
         # Where they follow each other, adding to them copies nothing.

@@ -9,8 +9,8 @@ from solver.latin.force_changes import ForceChanges
 from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate, states_of, status_step
 from solver.latin.step_cost import Costs, costs_of, moving_share
-from solver.reference.choice import Incremental, incremental_solver
 from solver.reference.condensation import NoReferenceError
+from solver.reference.incremental import Incremental, incremental_solver
 from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Interrupted
 
@@ -157,7 +157,7 @@ class ErrorEstimate:
         systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
             self._solver = self._solver or incremental_solver(problem)
-            certificate, self.jumps, self.collapse = status_step(
+            solution, certificate = status_step(
                 self._solver, problem, states, systems, lambda: time.perf_counter() > self.deadline
             )
         except NoReferenceError:
@@ -165,6 +165,10 @@ class ErrorEstimate:
             return False
         except Interrupted:
             return False
+        self.jumps, self.collapse = (
+            solution.jumps_at is not None and solution.is_lost,
+            solution.collapse,
+        )
         if certificate is None or certificate.residual > self._accuracy:
             return False
         self.certificate = certificate

@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator
 from itertools import count
 from math import inf
-from typing import Any
 
 from numpy.linalg import LinAlgError
 
@@ -72,8 +71,6 @@ class Iteration:
     ----------
     k
         Search direction of the rows, shape (n_rows,), scaled, read-only.
-    state
-        Of the linear stage, group by group; changed in place.
     incoming
         W - F/k of the linear stage, shape (n_rows, n_instants); read-only, and new after every
         linear stage.
@@ -121,12 +118,12 @@ class Iteration:
 
     def _go_to(self, start: Checkpoint | None) -> None:
         """Go to the state of a checkpoint, or to that in which all is zero."""
-        self.state: list[Any] = self.linear.start(start)
+        self.linear.go_to(start)
         self._show()
 
     def _show(self) -> None:
-        self.incoming = read_only(self.linear.incoming(self.state))
-        self.outgoing = read_only(self.linear.outgoing(self.state))
+        self.incoming = read_only(self.linear.incoming())
+        self.outgoing = read_only(self.linear.outgoing())
 
     def _recall(self, start: Checkpoint) -> None:
         """Restore what an acceleration remembers, from a checkpoint of the same run."""
@@ -170,12 +167,10 @@ class Iteration:
         """Solve elasticity along E- (paper, problem 2.2), relax, accelerate unless told not to."""
         mix, self._before = self._mixture, self.outgoing
         if mix is not None:
-            mix.start(self.state)
-        self.linear.advance(self.state, float(self._latin.relaxation))
-        if mix is not None and mixes:
-            mix(self.state)
-        elif mix is not None:
-            mix.observe(self.state)
+            mix.start()
+        self.linear.advance(float(self._latin.relaxation))
+        if mix is not None and mix.observe() and mixes:
+            mix.mix()
         self._show()
 
     def snapshot(self, number: int, seconds: float, *, resumable: bool = True) -> Iterate:
@@ -193,7 +188,7 @@ class Iteration:
             incoming=self.incoming,
             local_displacement=read_only(self.local.displacement),
             local_incoming=self._read,
-            reduction=self.linear.reduction(self.state),
+            reduction=self.linear.reduction(),
             history=tuple(self._history) if resumable and remembered else (),
             memory=mix.memory if mix else None,
             course=self._course,

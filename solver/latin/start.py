@@ -17,8 +17,8 @@ from solver.discrete.substructure import Substructure
 from solver.latin.certified import known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
-from solver.reference.choice import incremental_solver
 from solver.reference.condensation import NoReferenceError
+from solver.reference.incremental import incremental_solver
 from solver.reference.solution import Interrupted, Reference
 
 

@@ -122,9 +122,9 @@ def certified(
 
 def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:
     """Status that also says when the certified solution jumps, if it does."""
-    if certificate is None or certificate.jumps_at is None:
+    if certificate is None or certificate.solution.jumps_at is None:
         return status
-    message = _JUMPED.format(problem.instants[certificate.jumps_at])
+    message = _JUMPED.format(problem.instants[certificate.solution.jumps_at])
     return replace(status, advice=status.advice + message)
 
 

@@ -15,7 +15,8 @@ from solver.discrete.problem import Problem
 from solver.latin.directions import sliding_share
 from solver.reference.contact import jumps_in
 from solver.reference.incremental import rubs_on_supports
-from solver.reference.states import HELD, States
+from solver.reference.solution import States
+from solver.reference.states import HELD
 
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""

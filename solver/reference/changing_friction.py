@@ -22,7 +22,8 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import CONVERGED, NEWTON_LIMIT, Marched, Newton
 from solver.reference.rules import Rules
-from solver.reference.states import HELD, Increment, Sides, States
+from solver.reference.solution import States
+from solver.reference.states import HELD, Increment, Sides
 from solver.reference.unloading import unload
 
 SETTLED = 1e-12

@@ -33,9 +33,9 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.dense import blocks, symmetrise
-from solver.reference.glued import base_of, from_jumps, jumps, self_stresses
+from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of
 
 LOOSE = 1e-14

@@ -11,8 +11,8 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness
-from solver.reference.glued import jumps, self_stresses
+from solver.reference.assembly import assembled_stiffness, jumps
+from solver.reference.glued import self_stresses
 from solver.reference.rules import rules_of
 
 VANISHING = 1e-8

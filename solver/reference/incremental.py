@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -23,7 +24,7 @@ from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
 from solver.reference.band import Band
 from solver.reference.changing_bound import bounds_of, least_with_changing_bound
-from solver.reference.condensation import LEFT_INSIDE
+from solver.reference.condensation import LEFT_INSIDE, NoReferenceError
 from solver.reference.contact import IncrementalContact
 from solver.reference.search import Minimum, Search
 from solver.reference.solution import Interrupted, Reference, States
@@ -102,7 +103,7 @@ class IncrementalRod:
         Raises
         ------
         Interrupted
-            As soon as `stop` gives True.
+            As soon as `stop` returns True.
         TooLargeError
             If friction softens so fast that the general solver is needed, and there are too many
             points for it.
@@ -177,9 +178,11 @@ class IncrementalRod:
             increments[instant], pulls[instant] = least.increment, least.pull
         moved = np.cumsum(increments, axis=0).T
         inside = self._band.largest_row * float(np.abs(moved).max(initial=0.0))
+        displacement = moved * problem.scales.displacement
         return Reference(
             problem=problem,
-            displacement=moved * problem.scales.displacement,
+            displacement=displacement,
+            deformation=displacement,
             contact_force=0.0 - pulls.T[dofs] * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
             residual=max([0.0, *(least.residual for least in minima)]),
@@ -190,3 +193,34 @@ class IncrementalRod:
             steps=steps,
             seconds=seconds,
         )
+
+
+Incremental = IncrementalRod | IncrementalContact
+
+
+def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
+    """Solve a problem instant by instant, by the solver that its interfaces call for.
+
+    Parameters
+    ----------
+    problem
+        A structure with at least one interface with friction.
+    stop
+        Called once per instant; `Interrupted` is raised as soon as it returns True.
+    """
+    start = time.perf_counter()
+    solution = incremental_solver(problem).march(stop=stop)
+    return replace(solution, seconds=time.perf_counter() - start)
+
+
+def incremental_solver(problem: Problem) -> Incremental:
+    """Prepare the solver that the interfaces of a problem call for.
+
+    Raises
+    ------
+    NoReferenceError
+        If there is none, or the problem goes on from where another ends.
+    """
+    if any(law.tangential.start is not None for law in problem.rubbing.values()):
+        raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
+    return IncrementalRod(problem) if rubs_on_supports(problem) else IncrementalContact(problem)

@@ -20,7 +20,8 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.response import Response
 from solver.reference.rules import Rules
-from solver.reference.states import HELD, Increment, Sides, Starts, States, states_at
+from solver.reference.solution import States
+from solver.reference.states import HELD, Increment, Sides, Starts, states_at
 from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30

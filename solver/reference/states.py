@@ -11,15 +11,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.laws import OPEN
-from solver.laws.play import follow, play
-from solver.reference.condensation import Condensation
 from solver.reference.rules import Rules
+from solver.reference.solution import States
 
-States = NDArray[np.int8]
 HELD = 0
 EXPECTED = 2.5
 """Systems that an instant takes from the states of the one before, until it is known: the most on
@@ -95,32 +92,3 @@ def states_at(jumps: Array, rules: Rules) -> States:
     slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
     slip[rules.normal] = HELD
     return np.where(closed, slip, OPEN).astype(np.int8)
-
-
-def all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:
-    """Add the friction at jumps that follow from prescribed displacements, all instants."""
-    forces = np.zeros_like(jumps)
-    forces[condensed.moving] = force
-    given = ~rules.normal
-    given[condensed.moving] = False
-    slip = np.diff(jumps, axis=1, prepend=0.0)
-    bound = rules.bounds(forces, slip)
-    forces[given] = (-bound * np.sign(slip))[given]
-    for number, strength in enumerate(rules.strengths):
-        springy = given & (rules.compliance > 0.0) & (rules.strength == number)
-        if not springy.any():
-            continue
-        soft, jump = rules.compliance[springy, None], jumps[springy]
-        reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[springy]
-        slider = play(jump, reach) if number == 0 else follow(jump, reach, strength)
-        forces[springy] = (slider - jump) / soft
-    return forces
-
-
-def status_of(rules: Rules, slip: Array, forces: Array) -> NDArray[np.int8]:
-    """Status of every point, stacked interface by interface, (n_points, n_instants)."""
-    tangential = ~rules.normal
-    status = np.sign(slip).astype(np.int8)
-    with_normal = rules.normal[rules.partner][:, None]
-    status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN
-    return np.asarray(status[tangential])

@@ -19,7 +19,8 @@ from solver.arrays import Array
 from solver.laws import OPEN
 from solver.reference.response import Response
 from solver.reference.rules import Rules
-from solver.reference.states import HELD, Sides, States
+from solver.reference.solution import States
+from solver.reference.states import HELD, Sides
 
 CHANGES = 30
 """Changes of state for each jump, at most; 11 are the most seen, with mu = 10."""

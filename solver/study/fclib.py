@@ -31,9 +31,8 @@ from solver.arrays import Array, Indices
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.latin import Iterate
-from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.condensation import NotHeldError, factored
-from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
 from solver.refusal import RefusedError
 

@@ -25,8 +25,8 @@ from solver.executors import ONE_THREAD, machine
 from solver.latin import Iterate, iterations
 from solver.latin.iteration import Iteration
 from solver.latin.slabs import Slab, first_slab, next_slab
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of

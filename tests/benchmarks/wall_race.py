@@ -26,8 +26,8 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

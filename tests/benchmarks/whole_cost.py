@@ -10,7 +10,7 @@ from typing import Any
 
 from solver.executors import machine
 from solver.latin.run_cost import run_cost
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings

@@ -18,9 +18,9 @@ from solver.latin.certified import finished
 from solver.latin.status import certified
 from solver.latin.status_step import states_of, status_step
 from solver.latin.step_cost import costs_of, moving_share
-from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.solution import States
 from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
@@ -167,7 +167,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
         return None
     try:
         solver, most = incremental_solver(problem), costs.systems(ALONE)
-        certificate = status_step(solver, problem, states, most).certificate
+        _, certificate = status_step(solver, problem, states, most)
     except NoReferenceError:
         return None
     if certificate is None or certificate.residual > settings.accuracy:

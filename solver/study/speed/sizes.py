@@ -19,9 +19,9 @@ from solver.arrays import Array
 from solver.definitions import SettingError, about
 from solver.latin import Ending, solve
 from solver.latin.run_cost import run_cost
-from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of

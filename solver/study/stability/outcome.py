@@ -14,11 +14,10 @@ from solver.arrays import Array
 from solver.discrete import Problem
 from solver.latin import Ending, Solution, solve
 from solver.latin.indicators import behaviour_indicator, latin_indicator
-from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.choice import reference_of
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Fields, determinate_forces, distance_to
-from solver.reference.glued import jumps
+from solver.reference.incremental import reference_of
 from solver.reference.rules import rules_of
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
