@@ -27,7 +27,7 @@ from solver.files import (
     summary,
 )
 from solver.latin import Ending, Solution, solve, solve_in_slabs
-from solver.latin.run_cost import RunCost, run_cost
+from solver.latin.cost import RunCost, run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
 from solver.reference.incremental import reference_of

@@ -135,7 +135,7 @@ def course_of(values, n):
     """Error of the contact force, iteration by iteration."""
     problem = discretise(values)
     distance = distance_to(reference_of(problem), problem)
-    found = islice(iterations(problem, method_of(values), resumable=False), n)
+    found = islice(iterations(problem, method_of(values)), n)
     return np.array([distance.of_friction_force(one) for one in found])
 
 

@@ -143,13 +143,7 @@ class CrossSection:
         return self.slipping_bending + float(sum(together))
 
     def helix(self, layer: int, wire: int = 0) -> HelicalWire:
-        """A wire; the first of each layer begins at the outermost fibre.
-
-        Parameters
-        ----------
-        layer, wire
-            Numbers from 0 on, inside out, and the way that theta grows.
-        """
+        """A wire by numbers from 0 on, inside out and as theta grows; the first is outermost."""
         one = self.layers[layer]
         start = 2.0 * np.pi * wire / one.wires
         return HelicalWire(one.stiffness, self.radii[layer], one.lay, start)

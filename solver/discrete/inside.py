@@ -64,15 +64,7 @@ class Inside:
         self.components: Indices = skeleton % 2
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
-        """Displacement of all nodes, shape (n_nodes, 2, n), m.
-
-        Parameters
-        ----------
-        skeleton
-            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
-        instants
-            Which of them.
-        """
+        """Displacement of all nodes, (n_nodes, 2, n), m, by that of the degrees of freedom, m."""
         chosen = skeleton[:, instants] / self._length
         whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
         for part, dofs in zip(self._parts, self._dofs, strict=True):

@@ -18,21 +18,18 @@ MEMORY = 15
 number of iterations but for two on bar, strand, block and layers, and 1e-4 from 55 to 63 on layers,
 39 to 45 on strands (measured)."""
 GROWTH_ON_SUPPORT = 2.0
-"""Growth of the residual from which the memory is given up, in contact with a rigid support. A
-block that tilts until it lifts off needs 1.2 or more: with 1 its rocking takes thousands of
-iterations, not 50."""
+"""Growth of the residual from which the memory is given up, in contact with a rigid support: with 1
+the rocking of a block that tilts until it lifts off takes thousands of iterations, not 50."""
 GROWTH_BETWEEN_BODIES = 1.1
 """The same in contact between two bodies. Layers 200 times as long as thick: 1e-6 of the contact
-force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1; layers 1000 times as long
-wander for hundreds with 2 before they come within 1 % (25 with 1.1; measured)."""
+force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1 (measured)."""
 MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
-A block of 768 x 384 elements and 51 instants keeps 8 differences and stays below 2 GB; on 384 x 192
-1e-4 of the contact force takes 38 iterations with 15 differences, 39 with 8, 41 with 5."""
+On 384 x 192 elements 1e-4 takes 38 iterations with 15 differences, 39 with 8, 41 with 5
+(measured)."""
 SAMPLE = 300_000
 """Values of a residual that the weights of the mixture are found from; all, if it has no more. On
-384 x 192 elements, a fourth of all: 38 iterations to 1e-4 of the contact force, and 67 with
-tractions on top; 38 and 73 with all; 38 and 74 with 100 000, 40 and 79 with 20 000 (measured)."""
+384 x 192 elements 1e-4 takes 38 iterations with that and with all, 40 with 20 000 (measured)."""
 REGULAR = 1e-10
 """Added to the diagonal of the small normal equations, whose own diagonal is scaled to 1."""
 
@@ -58,66 +55,42 @@ class Anderson:
     def __post_init__(self) -> None:
         check_range(self, "memory", 1, 1000)
 
-    def begin(
-        self, problem: Problem, stage: LinearStage, motion: Array | None, blocks: Blocks
-    ) -> AndersonState | None:
-        """Prepare what a run remembers; None where the states of its linear stage are not mixed.
-
-        Parameters
-        ----------
-        problem, stage
-            What is solved, and the linear stage whose states are mixed.
-        motion
-            Of the rows, shape (n_rows,), which the local stage chooses anew whatever the state is.
-        blocks
-            Of instants, in which states are mixed.
-        """
-        if not stage.is_full:
-            return None
-        growth = 1.0
-        if problem.opens:
-            is_held = any(law.is_on_support for law in problem.rubbing.values())
-            growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-        return AndersonState(problem, stage.groups, self.memory, growth, motion, blocks)
-
 
 class AndersonState:
-    """What a run remembers of its states, and the mixture of them.
+    """What a run remembers of its states, which are in full, and the mixture of them.
 
-    The images g are kept whole; of large residuals no more than a sample is, drawn once.
+    The images g are kept whole; of large residuals no more than a sample is, drawn once. Residuals
+    are measured by k over boundary and time.
 
     Parameters
     ----------
-    problem, groups
-        What is solved, and the parts of the linear stage whose states are mixed, in the inner
-        product of k over boundary and time.
+    problem, stage
+        What is solved, and the linear stage whose states are mixed.
     memory
         Differences that are remembered.
-    growth
-        Of the residual over the smallest so far, from which the memory is given up. Where the bound
-        of friction is known 1 is best (twice as much takes up to a third more iterations to 1e-6).
     motion
         Of the rows, shape (n_rows,), which the local stage chooses anew whatever the state is: at
         every instant a residual counts for nothing along it. None where there is none.
     blocks
         Of instants, in which images are kept and mixed.
-
-    Attributes
-    ----------
-    seen, count, smallest
-        States and differences since the memory was last given up, and the smallest residual.
     """
 
     def __init__(
         self,
         problem: Problem,
-        groups: list[Group],
+        stage: LinearStage,
         memory: int,
-        growth: float,
         motion: Array | None,
         blocks: Blocks,
     ) -> None:
-        self._groups, self._growth, self._blocks = groups, growth, blocks
+        # Where the bound of friction is known 1 is best; twice as much takes up to a third more
+        # iterations to 1e-6.
+        self._growth = 1.0
+        if problem.opens:
+            is_held = any(law.is_on_support for law in problem.rubbing.values())
+            self._growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
+        groups = self._groups = stage.groups
+        self._blocks = blocks
         sizes = [group.target.size for group in groups]
         self._places = in_a_row(sizes)
         self._chosen = _sample(sizes)
@@ -136,28 +109,22 @@ class AndersonState:
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
         self._start, self._residual, self._residual_before = np.zeros((3, len(self._root)))
-        self.restore((0, 0, np.inf))
+        self._forget()
 
-    @property
-    def memory(self) -> tuple[int, int, float]:
-        """What it counts: `seen`, `count` and `smallest`."""
-        return self.seen, self.count, self.smallest
-
-    def restore(self, memory: tuple[int, int, float]) -> None:
-        """Count on from there."""
-        self.seen, self.count, self.smallest = memory
-
-    @property
-    def remembered(self) -> int:
-        """States whose images shape what comes next."""
-        return min(self.seen, self._memory + 1)
+    def _forget(self) -> None:
+        self._seen, self._count, self._smallest = 0, 0, np.inf
 
     def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
         self._take(self._start)
 
-    def observe(self) -> bool:
-        """Read g(y); return whether to mix."""
+    def mix(self) -> None:
+        """Replace g(y) by the mixture, in place, once there is one."""
+        if self._observe() and self._seen > 1:
+            self._mix()
+
+    def _observe(self) -> bool:
+        """Read g(y); whether it is of use."""
         residual = self._residual
         self._take(residual)
         np.subtract(residual, self._start, out=residual)
@@ -167,12 +134,12 @@ class AndersonState:
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
             return False
-        if size > self._growth * self.smallest:
-            self.restore((0, 0, np.inf))
-        self.smallest = min(self.smallest, size)
-        if self.seen:
+        if size > self._growth * self._smallest:
+            self._forget()
+        self._smallest = min(self._smallest, size)
+        if self._seen:
             self._remember()
-        image = self._images[self._place_of(self.count)]
+        image = self._images[self._place_of(self._count)]
 
         def keep(instants: slice) -> None:
             for group, place in zip(self._groups, self._places, strict=True):
@@ -181,15 +148,15 @@ class AndersonState:
 
         self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
-        self.seen += 1
-        return self.seen > 1
+        self._seen += 1
+        return True
 
     def _remember(self) -> None:
-        place = self.count % self._memory
+        place = self._count % self._memory
         newest = self._residuals[place]
         np.subtract(self._residual, self._residual_before, out=newest)
-        self.count += 1
-        used = min(self.count, self._memory)
+        self._count += 1
+        used = min(self._count, self._memory)
         row = self._residuals[:used] @ newest
         self._products[place, :used] = row
         self._products[:used, place] = row
@@ -197,9 +164,8 @@ class AndersonState:
         self._wanted[:used] += row
         self._wanted[place] = newest @ self._residual
 
-    def mix(self) -> None:
-        """Replace g(y) by the mixture, in place."""
-        used = min(self.count, self._memory)
+    def _mix(self) -> None:
+        used = min(self._count, self._memory)
         gram = self._products[:used, :used]
         scale = 1.0 / np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
         scaled = gram * scale * scale[:, None]
@@ -220,8 +186,8 @@ class AndersonState:
     def _shares(self, gamma: Array) -> Array:
         """The weights of the images, which add up to one, from those of their differences."""
         shares = np.zeros(len(gamma) + 1)
-        shares[self._place_of(self.count)] = 1.0
-        for number in range(self.count - len(gamma), self.count):
+        shares[self._place_of(self._count)] = 1.0
+        for number in range(self._count - len(gamma), self._count):
             share = gamma[number % self._memory]
             shares[self._place_of(number + 1)] -= share
             shares[self._place_of(number)] += share

@@ -71,14 +71,8 @@ class CoarseProblem:
 class _Member:
     """A group, and the part of the macro basis that its substructures see.
 
-    Parameters
-    ----------
-    group, rows
-        The group, and the places of its rows that carry macro quantities, ascending.
-    local
-        The basis on these, shape (n_carrying, n_local).
-    forces
-        Macro forces of a target, shape (n_local, n_boundary).
+    Its rows that carry macro quantities, ascending; the basis `local` on them, (n_carrying,
+    n_local); and `forces`, the macro forces of a target, (n_local, n_boundary).
     """
 
     def __init__(self, group: Group, rows: Indices, local: Array, forces: Array) -> None:
@@ -115,12 +109,9 @@ class _Member:
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:
     """Part of the macro basis that all members of a group see alike.
 
-    Returns
-    -------
-    Places of the rows that carry macro quantities, shape (n_carrying,); the basis on them, shape
-    (n_carrying, n_local); and what adds up the members' macro forces, (n_macro, n_members n_local).
-    Where members do not see the same, or a row has but one macro quantity, the local basis is the
-    identity.
+    Places of the rows that carry macro quantities, the basis on them, (n_carrying, n_local), and
+    what adds up the members' macro forces, (n_macro, n_members n_local). Where members do not see
+    the same, or a row has but one macro quantity, the local basis is the identity.
     """
     counts = np.diff(basis.indptr)[rows]
     carrying = np.flatnonzero(counts.any(axis=1))
@@ -147,10 +138,7 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
 
 
 def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
-    """Columns that some rows have entries in, shape (n,), and the basis there, dense.
-
-    In the order in which the rows meet them, which members of a group share if anything.
-    """
+    """Columns in which rows have entries, in the order of these, and the basis there."""
     starts = basis.indptr[rows.start : rows.stop + 1]
     entries = slice(starts[0], starts[-1])
     row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from itertools import count
-from math import inf
 
 from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.anderson import AndersonState
 from solver.latin.blocks import Blocks, one_blas_thread
 from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.linear_stage import LinearStage
@@ -26,8 +26,6 @@ def iterations(
     problem: Problem,
     latin: Latin,
     start: Checkpoint | None = None,
-    *,
-    resumable: bool = True,
 ) -> Iterator[Iterate]:
     """Iterate between the local and the linear stage, without end.
 
@@ -38,9 +36,6 @@ def iterations(
     start
         Where to go on from; without one the method says where to start, and a body that contact
         alone holds where it comes to rest.
-    resumable
-        Whether iterates shall have checkpoints: what an acceleration remembers is kept for them,
-        as much again as it holds itself.
 
     Yields
     ------
@@ -55,7 +50,7 @@ def iterations(
             iteration.local_stage()
             iteration.linear_stage()
         seconds += time.perf_counter() - began
-        yield iteration.snapshot(number, seconds, resumable=resumable)
+        yield iteration.snapshot(number, seconds)
         began = time.perf_counter()
 
 
@@ -85,20 +80,10 @@ class Iteration:
         if start is None:
             start = _first_state(problem, latin, self.k)
         self._go_to(start)
-        if start is not None:
-            self._recall(start)
-        self._history = list(start.history) if start else []
-        self._before = self.outgoing
         self._read = self.incoming
 
     def _assemble(self) -> None:
-        """Assemble the parts for one search direction; the linear stage is factored.
-
-        Raises
-        ------
-        RefusedError
-            If k is so far from the stiffness that a factor breaks down.
-        """
+        """Assemble the parts for one search direction; the linear stage is factored."""
         problem, latin, self.k = self._problem, self._latin, self._course.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         try:
@@ -113,8 +98,10 @@ class Iteration:
                 "bring the factors on k nearer to 1, or the sides of the elements to each other",
             ) from None
         self.local = LocalStage(problem, self.k, blocks)
-        mix = latin.acceleration
-        self._mixture = mix.begin(problem, self.linear, self.local.motion, blocks) if mix else None
+        self._mixture: AndersonState | None = None
+        if latin.acceleration is not None and self.linear.is_full:
+            memory, motion = latin.acceleration.memory, self.local.motion
+            self._mixture = AndersonState(problem, self.linear, memory, motion, blocks)
 
     def _go_to(self, start: Checkpoint | None) -> None:
         """Go to the state of a checkpoint, or to that in which all is zero."""
@@ -125,35 +112,19 @@ class Iteration:
         self.incoming = read_only(self.linear.incoming())
         self.outgoing = read_only(self.linear.outgoing())
 
-    def _recall(self, start: Checkpoint) -> None:
-        """Restore what an acceleration remembers, from a checkpoint of the same run."""
-        mix = self._mixture
-        if start.memory is None or mix is None:
-            return
-        _, differences, _ = start.memory
-        mix.restore((0, max(differences - len(start.history) + 1, 0), inf))
-        for outgoing in start.history:
-            self._go_to(Checkpoint(0, 0.0, outgoing))
-            self.linear.read(self.local(self.incoming))
-            self.linear_stage(mixes=False)
-        mix.restore(start.memory)
-        self._go_to(start)
-
     def choose_direction(self) -> None:
         """Change k if it is time to; W and F stay, or go back to earlier ones."""
-        direction = self._latin.direction
-        if not direction.is_due(self._course):
+        if not self._course.is_due:
             return
         displacement = 0.5 * (self.outgoing + self.incoming)
         force = self.k[:, None] * (self.outgoing - displacement)
         fields = displacement, force
-        self._course, kept = direction.update(self._problem, self._course, fields)
+        self._course, kept = self._latin.direction.update(self._problem, self._course, fields)
         if kept is None:
             return
         self._assemble()
         displacement, force = kept
         self._go_to(Checkpoint(0, 0.0, displacement + force / self.k[:, None]))
-        self._history = []
 
     def local_stage(self) -> None:
         """Obey the laws along E+ (paper, problem 2.1)."""
@@ -163,22 +134,18 @@ class Iteration:
             self._problem, self._course, self.local.displacement, self._read
         )
 
-    def linear_stage(self, *, mixes: bool = True) -> None:
-        """Solve elasticity along E- (paper, problem 2.2), relax, accelerate unless told not to."""
-        mix, self._before = self._mixture, self.outgoing
+    def linear_stage(self) -> None:
+        """Solve elasticity along E- (paper, problem 2.2), relax, accelerate."""
+        mix = self._mixture
         if mix is not None:
             mix.start()
         self.linear.advance(float(self._latin.relaxation))
-        if mix is not None and mix.observe() and mixes:
+        if mix is not None:
             mix.mix()
         self._show()
 
-    def snapshot(self, number: int, seconds: float, *, resumable: bool = True) -> Iterate:
+    def snapshot(self, number: int, seconds: float) -> Iterate:
         """The iterate of this number, after so many seconds."""
-        mix = self._mixture
-        remembered = mix.remembered if mix else 0
-        if resumable and remembered:
-            self._history = [*self._history, self._before][-remembered:]
         return Iterate(
             number=number,
             seconds=seconds,
@@ -189,8 +156,6 @@ class Iteration:
             local_displacement=read_only(self.local.displacement),
             local_incoming=self._read,
             reduction=self.linear.reduction(),
-            history=tuple(self._history) if resumable and remembered else (),
-            memory=mix.memory if mix else None,
             course=self._course,
         )
 

@@ -107,15 +107,7 @@ def _at(start: Nested, instants: slice) -> Iterator[Problem]:
 
 
 def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Slab | None:
-    """The slab that follows; None after the last.
-
-    Parameters
-    ----------
-    problem, length
-        As for `first_slab`.
-    slab, solved
-        The slab before, and its solution.
-    """
+    """The slab that follows one, and its solution; None after the last."""
     first = slab.instants.stop
     if first == problem.n_instants:
         return None

@@ -108,14 +108,8 @@ class Slide:
     def _shifts(self, targets: Array, reach: Array, ends: Array) -> Array:
         """The shift of every instant, shape (n_instants,), scaled.
 
-        Parameters
-        ----------
-        targets
-            Where the points would be without friction or shift, shape (n_instants, n_points).
-        reach
-            How far a point can be behind before it slips, same shape.
-        ends
-            Shift up to which the spring pulls, shape (n_instants,).
+        Of points at `targets` without friction or shift, which can be behind by `reach` before they
+        slip, (n_instants, n_points) both; the spring pulls up to the shifts `ends`.
         """
         enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
         # Points are seen from the body, where the digits of how far they are behind stay.
@@ -139,10 +133,7 @@ class Slide:
         load: float,
         enough: float,
     ) -> tuple[float, Array] | None:
-        """Follow straight lines to the step at which all balances, None where that fails.
-
-        With it, how far the points are behind then.
-        """
+        """Step at which all balances, by straight lines, and how far points are behind then."""
         # The nearer the iteration is to its end, the less is left to shift.
         pulled, wanted, step = self._stiffness.dot, behind, 0.0
         for trial in range(TRIALS):

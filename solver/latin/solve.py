@@ -68,16 +68,9 @@ class Solution:
 def record(
     iterate: Iterate, verdict: Decision, distance: Distance | None, *, watch: bool = True
 ) -> Record:
-    """Gather the scalars of an iterate; what the rules did not need is off the run's clock.
+    """The scalars of an iterate; what the rules did not need is off the run's clock.
 
-    Parameters
-    ----------
-    iterate, verdict
-        Of one iteration.
-    distance
-        To a reference, or None.
-    watch
-        Whether anybody wants indicators and estimate of every iteration.
+    `watch` says whether anybody wants indicators and estimate of every iteration.
     """
     indicator, behaviour = verdict.indicator, verdict.behaviour
     estimated = verdict.estimated_error
@@ -106,25 +99,23 @@ def judged(
     latin: Latin,
     start: Checkpoint | None = None,
     spent: float = 0.0,
-    *,
-    resumable: bool = True,
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
     Parameters
     ----------
-    problem, latin, start, resumable
+    problem, latin, start
         As for `iterations`, which goes on though a verdict says that the run ends.
     spent
         Seconds that the run took before, to make the problem.
     """
     rules = StopState(latin, spent)
-    for iterate in iterations(problem, latin, start, resumable=resumable):
+    for iterate in iterations(problem, latin, start):
         with one_blas_thread():
             verdict = rules.judge(iterate)
         yield iterate, verdict
         if verdict.finished is not None:
-            yield verdict.finished, rules.close(verdict.finished)
+            yield verdict.finished
             return
 
 
@@ -134,7 +125,6 @@ def solve(
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,
-    resumable: bool = False,
     watch: bool = True,
     spent: float = 0.0,
     cancelled: Callable[[], bool] = lambda: False,
@@ -143,7 +133,7 @@ def solve(
 
     Parameters
     ----------
-    problem, start, resumable
+    problem, start
         As for `iterations`.
     latin
         The method; its defaults are the fast one, from zero.
@@ -158,7 +148,7 @@ def solve(
     """
     records: list[Record] = []
     last = None
-    for iterate, verdict in judged(problem, latin, start, spent, resumable=resumable):
+    for iterate, verdict in judged(problem, latin, start, spent):
         status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)

@@ -26,9 +26,9 @@ STILL = 1e-3
 """Share of the largest slip of an interface below which a point counts as stuck, at most."""
 FRONT = 2.0
 """The same over the square of a point's share of the length, as slip grows behind a front. To call
-a point stuck that slips is the dearer mistake: mending frees one point at a time, and stops many
-at once. On 800 elements and 101 instants a step takes 480 systems with `STILL` alone, 180 with
-this, and 190 with 1e-9 (measured)."""
+a point stuck that slips is the dearer mistake, as mending frees one at a time: on 800 elements and
+101 instants a step takes 480 systems with `STILL` alone, 180 with this, 190 with 1e-9
+(measured)."""
 CERTIFIED = 1e-7
 """KKT residual of a certified solution at most, relative to the contact force. Its statuses agree
 with it exactly; on four wires of 320 elements the linear systems leave 1e-8 (measured)."""

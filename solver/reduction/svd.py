@@ -115,15 +115,7 @@ class Decomposition:
 def decompose(
     field: Array, space_weights: Array, time_weights: Array, positions: Array
 ) -> Decomposition:
-    """Decomposition of a space-time field in weighted inner products.
-
-    Parameters
-    ----------
-    field
-        Shape (n_points, n_instants).
-    space_weights, time_weights, positions
-        As in `Decomposition`.
-    """
+    """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
     space_root, time_root = np.sqrt(space_weights)[:, None], np.sqrt(time_weights)
     left, values, right = np.linalg.svd(space_root * field * time_root, full_matrices=False)
     space_modes, time_modes = left / space_root, right / time_root

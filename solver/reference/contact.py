@@ -28,9 +28,9 @@ from solver.reference.rules import Rules, rules_of
 from solver.reference.solution import Interrupted, Reference, States
 
 MOST_JUMPS = 13_000
-"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB, and its
-time grows with the square to the cube of their number. 12 935 of 200 wires, of which few slip at a
-time, take 18 s and 1.5 GB; 3700 of 20 layers, of which a third does, 30 s (measured)."""
+"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB. 12 935 of
+200 wires, of which few slip at a time, take 18 s; 3700 of 20 layers, of which a third does, 30
+s."""
 
 
 class IncrementalContact:

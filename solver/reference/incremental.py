@@ -136,12 +136,7 @@ class IncrementalRod:
     def _minimise(self, instant: int, force: Array, status: Array, gone: Array) -> Minimum | None:
         """Minimise phi over one instant, from a guess of the statuses; None where it has none.
 
-        Parameters
-        ----------
-        instant
-            Its number.
-        force, status, gone
-            Load, guess, and accumulated slip before, shape (n_dofs,).
+        `gone` is the slip accumulated before; all have shape (n_dofs,).
         """
         move = self._moves[instant]
         given = np.zeros(len(force))

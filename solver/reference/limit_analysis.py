@@ -48,11 +48,6 @@ class Collapse:
 def collapse_of(problem: Problem) -> Collapse | None:
     """Where a structure collapses on the path of its loads; None if it never does.
 
-    Parameters
-    ----------
-    problem
-        What is loaded.
-
     Raises
     ------
     NoReferenceError

@@ -191,8 +191,7 @@ class Newton:
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
         """Force that rounding may make anywhere; and of a jump that is not held, (n,) or (1,).
 
-        Where a jump is held, the deformation is what it comes to less the rigid motion; and what
-        rounding leaves of that difference makes forces at all jumps.
+        A held jump is the deformation less the rigid motion: rounding of that makes forces at all.
         """
         inside = self.response.inside(self._strained + step.strained[:, 0])
         slack = ROUNDING * (inside + self._largest)

@@ -29,10 +29,7 @@ class Minimum:
 
 
 class _Guess(NamedTuple):
-    """Statuses that were sought, with increment and pull if they are those of the minimum.
-
-    Else with the rods on which they still change.
-    """
+    """Statuses, with increment and pull where they are the minimum's, else the rods that change."""
 
     status: Array
     solved: tuple[Array, Array] | None
@@ -72,10 +69,6 @@ class Search:
         settled[rods] = parts._mended(force[rods], status[rods])
         self._band.solutions += -(-parts._band.solutions * len(parts._bound) // len(force))
         return self._of(force, settled)
-
-    def released(self, force: Array, status: Array) -> Minimum:
-        """Minimum, sought from statuses by releasing or stopping one point after the other."""
-        return self._of(force, self._descend(force, status))
 
     def _of(self, force: Array, status: Array) -> Minimum:
         """Minimum whose statuses these are."""
@@ -131,10 +124,7 @@ class Search:
 
     @cached_property
     def _coarser(self) -> tuple[Search, Indices]:
-        """The same structure with successive degrees of freedom of a rod tied in pairs.
-
-        With it the number of the pair of each.
-        """
+        """The same structure with degrees of freedom of a rod tied in pairs; the pair of each."""
         places = np.arange(len(self._rod)) - self._starts[self._rod]
         begins = places % 2 == 0
         group = np.cumsum(begins) - 1
@@ -154,9 +144,8 @@ class Search:
     def _descend(self, force: Array, status: Array) -> Array:
         """Minimise phi by an active-set method, every step of which lowers phi.
 
-        A step of a rod ends where a first point stops, which then sticks; at a minimum over the
-        slipping points, the point pulled most beyond its bound is released, and moves the way it is
-        pulled. So no set of statuses has its minimum reached twice.
+        A step ends where a first point stops, which then sticks; at a minimum over the slipping
+        points that pulled most beyond its bound is released, and moves the way it is pulled.
         """
         rod = self._rod
         largest = np.abs(force).max()
@@ -184,10 +173,7 @@ class Search:
     def _release(
         self, force: Array, increment: Array, status: Array, largest: float, rods: Flags
     ) -> Flags:
-        """Release the point of each of some rods that is pulled most beyond its bound.
-
-        It is written into the statuses; gives the rods that have one.
-        """
+        """Release the point of each rod that is pulled most beyond its bound; which have one."""
         pull = force - self._band.product(increment)
         excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
         most = np.maximum.reduceat(excess, self._starts)

@@ -96,10 +96,7 @@ class _PathFollower:
         return False
 
     def _room(self, jump: Array, force: Array) -> tuple[Array, Array]:
-        """Give what has to stay positive at lambda = 0, and its slope; shape (n, 2), forces.
-
-        A held tangential jump has two bounds; all others have their first column alone.
-        """
+        """What has to stay positive at lambda = 0, and its slope, (n, 2): a held point has two."""
         rules, states = self._rules, self.states
         room = np.full((2, len(states), 2), np.inf)
         room[1] = 0.0

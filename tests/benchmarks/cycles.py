@@ -147,7 +147,7 @@ def _course(
         fields = (reference.displacement, reference.contact_force)
         part = AtInstants(*(field[:, slab.instants] for field in fields))
         distance = distance_to(part, slab.problem)
-        way_there = iterations(slab.problem, slab.latin, slab.start, resumable=False)
+        way_there = iterations(slab.problem, slab.latin, slab.start)
         for iterate in islice(way_there, MOST):
             if distance.of_friction_force(iterate) <= goal:
                 break
@@ -180,7 +180,7 @@ def _run(
                 iteration.local_stage()
                 local += time.process_time() - began
                 iteration.linear_stage()
-            iterate = iteration.snapshot(count, 0.0, resumable=False)
+            iterate = iteration.snapshot(count, 0.0)
             slab = next_slab(problem, slab, iterate, length)
 
     seconds = seconds_of(work)
