@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver.discrete.wall import Wall, bonded
+from solver.discrete.bricks import bonded
+from solver.discrete.wall import Wall
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import FrictionLaw, Strength
 from solver.reference.distance import distance_to

@@ -157,16 +157,8 @@ class CrossSection:
         """What presses the wires of every layer on what is below, and on it from above.
 
         A wire presses with N sin^2(alpha) / R per length. What a layer and all outside it press is
-        spread over the wires below; each layer passes it on.
-
-        Parameters
-        ----------
-        tension
-            Of the strand, shape (n_instants,), N.
-
-        Returns
-        -------
-        Inner and outer faces, shape (n_layers, n_instants) each, N per metre of wire.
+        spread over the wires below; each layer passes it on. Inner and outer faces, shape
+        (n_layers, n_instants) each, N per metre of wire, under the tension, (n_instants,), N.
         """
         below, above = [], []
         passed = np.zeros_like(tension)

@@ -25,8 +25,6 @@ class CutStack:
 
     Attributes
     ----------
-    stack
-        The bodies.
     nodes
         Number of every node, shape (bodies, nodes up, nodes along).
     positions

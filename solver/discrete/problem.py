@@ -319,10 +319,9 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         part if part.body_force is None else replace(part, body_force=part.body_force[:, some])
         for part in problem.substructures
     )
-    interfaces = {
-        name: _begun(law.during(some), start.get(name) if start else None)
-        for name, law in problem.interfaces.items()
-    }
+    interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
+    for name, before in (start or {}).items():
+        interfaces[name] = problem.rubbing[name].during(some).begun(before)
     return replace(
         problem,
         substructures=parts,
@@ -330,7 +329,3 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         instants=problem.instants[some],
         rest=None if problem.rest is None else problem.rest[:, some],
     )
-
-
-def _begun(law: Interface, start: Array | None) -> Interface:
-    return law.begun(start) if isinstance(law, Contact) and start is not None else law

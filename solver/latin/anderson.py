@@ -60,19 +60,8 @@ class AndersonState:
     """What a run remembers of its states, which are in full, and the mixture of them.
 
     The images g are kept whole; of large residuals no more than a sample is, drawn once. Residuals
-    are measured by k over boundary and time.
-
-    Parameters
-    ----------
-    problem, stage
-        What is solved, and the linear stage whose states are mixed.
-    memory
-        Differences that are remembered.
-    motion
-        Of the rows, shape (n_rows,), which the local stage chooses anew whatever the state is: at
-        every instant a residual counts for nothing along it. None where there is none.
-    blocks
-        Of instants, in which images are kept and mixed.
+    are measured by k over boundary and time. They count for nothing along a motion of the rows,
+    (n_rows,), which the local stage chooses anew at every instant, whatever the state is.
     """
 
     def __init__(
@@ -112,7 +101,7 @@ class AndersonState:
         self._forget()
 
     def _forget(self) -> None:
-        self._seen, self._count, self._smallest = 0, 0, np.inf
+        self._count, self._smallest = 0, np.inf
 
     def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
@@ -120,7 +109,7 @@ class AndersonState:
 
     def mix(self) -> None:
         """Replace g(y) by the mixture, in place, once there is one."""
-        if self._observe() and self._seen > 1:
+        if self._observe() and self._count:
             self._mix()
 
     def _observe(self) -> bool:
@@ -136,9 +125,9 @@ class AndersonState:
             return False
         if size > self._growth * self._smallest:
             self._forget()
-        self._smallest = min(self._smallest, size)
-        if self._seen:
+        if np.isfinite(self._smallest):  # there is an image before
             self._remember()
+        self._smallest = min(self._smallest, size)
         image = self._images[self._place_of(self._count)]
 
         def keep(instants: slice) -> None:
@@ -148,7 +137,6 @@ class AndersonState:
 
         self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
-        self._seen += 1
         return True
 
     def _remember(self) -> None:

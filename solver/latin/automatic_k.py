@@ -6,6 +6,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.laws import Bodies
 
 SOFTENING = 2.0
 """k at least, over the slope by which a friction of known bound falls with slip: below once the
@@ -36,7 +37,7 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     parts = several / sliding_share(problem)
     for law in laws:
         law.around.choose(law, k, parts)
-        if sticks:
+        if sticks and isinstance(law.around, Bodies):
             law.around.stick(law, k)
         if law.tangential.softens:
             for rows in law.tangent.sides:

@@ -62,10 +62,8 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
 
     Parameters
     ----------
-    problem
-        Of which displacement and contact forces are the solution.
-    displacement
-        But for rigid motions, shape (n_dofs, n_instants), scaled.
+    problem, displacement
+        What is solved, and how it deforms, shape (n_dofs, n_instants), scaled.
     contact_force
         Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), scaled.
 

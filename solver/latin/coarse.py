@@ -58,22 +58,19 @@ class CoarseProblem:
 
     def add_multiplier(self) -> None:
         """Add W~ to the targets of all groups."""
-        self._blocks.each(self._add_multiplier)
 
-    def _add_multiplier(self, instants: slice) -> None:
-        forces = [member.macro_forces(instants) for member in self._members]
-        stacked = np.concatenate(forces) if len(forces) > 1 else forces[0]
-        multiplier = self._solve(stacked, instants)
-        for member, place in zip(self._members, self._places, strict=True):
-            member.add(multiplier[place], instants)
+        def work(instants: slice) -> None:
+            forces = [member.macro_forces(instants) for member in self._members]
+            stacked = np.concatenate(forces) if len(forces) > 1 else forces[0]
+            multiplier = self._solve(stacked, instants)
+            for member, place in zip(self._members, self._places, strict=True):
+                member.add(multiplier[place], instants)
+
+        self._blocks.each(work)
 
 
 class _Member:
-    """A group, and the part of the macro basis that its substructures see.
-
-    Its rows that carry macro quantities, ascending; the basis `local` on them, (n_carrying,
-    n_local); and `forces`, the macro forces of a target, (n_local, n_boundary).
-    """
+    """A group, and the part of the macro basis that its substructures see, as `_local_basis`."""
 
     def __init__(self, group: Group, rows: Indices, local: Array, forces: Array) -> None:
         self._group, self._local, self._forces = group, local, forces
@@ -153,17 +150,11 @@ def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
 
 def _diagonal(blocks: list[Array]) -> sparse.csr_array:
     """Set square blocks, stacked by size, shape (n, size, size), along a diagonal."""
-    columns, ends, first = [], [np.zeros(1, dtype=np.intp)], 0
-    for stack in blocks:
-        n, size, _ = stack.shape
-        starts = first + size * np.arange(n)
-        columns.append((starts[:, None, None] + np.arange(size)).repeat(size, axis=1).ravel())
-        ends.append(ends[-1][-1] + size * np.arange(1, n * size + 1))
-        first += n * size
-    entries = np.concatenate([stack.ravel() for stack in blocks])
-    return sparse.csr_array(
-        (entries, np.concatenate(columns), np.concatenate(ends)), shape=(first, first)
+    along = (
+        sparse.bsr_array((np.array(stack), np.arange(len(stack)), np.arange(len(stack) + 1)))
+        for stack in blocks
     )
+    return sparse.csr_array(sparse.block_diag(list(along)))
 
 
 def _solver(

@@ -17,8 +17,7 @@ from solver.latin.anderson import MEMORY, MOST_VALUES
 from solver.latin.automatic_k import sliding_share
 from solver.reference.contact import MOST_JUMPS, jumps_in
 from solver.reference.incremental import rubs_on_supports
-from solver.reference.solution import States
-from solver.reference.states import HELD
+from solver.reference.rules import HELD, States
 
 if TYPE_CHECKING:
     from solver.latin.method import Latin

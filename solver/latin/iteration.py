@@ -8,7 +8,6 @@ from itertools import count
 
 from numpy.linalg import LinAlgError
 
-from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
 from solver.latin.blocks import Blocks, one_blas_thread
@@ -57,28 +56,23 @@ def iterations(
 class Iteration:
     """Both stages of the method on a problem, in turn, and what passes between them.
 
-    Parameters
-    ----------
-    problem, latin, start
-        As for `iterations`.
-
     Attributes
     ----------
     k
         Search direction of the rows, shape (n_rows,), scaled, read-only.
-    incoming
-        W - F/k of the linear stage, shape (n_rows, n_instants); read-only, and new after every
-        linear stage.
-    outgoing
-        W + F/k of the linear stage, likewise.
+    incoming, outgoing
+        W - F/k and W + F/k of the linear stage, shape (n_rows, n_instants); read-only, and new
+        after every linear stage.
     """
 
     def __init__(self, problem: Problem, latin: Latin, start: Checkpoint | None = None) -> None:
         self._problem, self._latin = problem, latin
         self._course = latin.direction.begin(problem, start)
         self._assemble()
-        if start is None:
-            start = _first_state(problem, latin, self.k)
+        if start is None and problem.rest is not None:
+            start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
+        elif start is None and latin.start is not None:
+            start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
         self._go_to(start)
         self._read = self.incoming
 
@@ -158,10 +152,3 @@ class Iteration:
             reduction=self.linear.reduction(),
             course=self._course,
         )
-
-
-def _first_state(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
-    """The start of the method's own choice; None is zero fields."""
-    if problem.rest is not None:
-        return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
-    return latin.start.of(problem, k, STARTING * latin.stop.seconds) if latin.start else None

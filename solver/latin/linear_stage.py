@@ -46,23 +46,12 @@ class Full:
 
 
 class LinearStage:
-    """Elasticity along the search direction E-, factored for one problem and one k.
+    """Elasticity along the search direction E-, factored for one problem and one k, (n_rows,).
 
     With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
     comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
     relaxation mixes, and everything else follows from it. How y is held is the groups' business:
-    in full, or on separated bases.
-
-    Parameters
-    ----------
-    problem, k
-        What to solve; k has shape (n_rows,).
-    multiscale
-        Whether the coarse problem is part of it.
-    form
-        How fields are held.
-    blocks
-        Of instants, in which it works; None for all at once, as separated bases do in any case.
+    in full, block by block of instants, or on separated bases.
 
     Attributes
     ----------

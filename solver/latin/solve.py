@@ -102,12 +102,8 @@ def judged(
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
-    Parameters
-    ----------
-    problem, latin, start
-        As for `iterations`, which goes on though a verdict says that the run ends.
-    spent
-        Seconds that the run took before, to make the problem.
+    It goes on though a verdict says that the run ends. The run took `spent` seconds before, to make
+    the problem.
     """
     rules = StopState(latin, spent)
     for iterate in iterations(problem, latin, start):
@@ -133,16 +129,12 @@ def solve(
 
     Parameters
     ----------
-    problem, start
-        As for `iterations`.
-    latin
-        The method; its defaults are the fast one, from zero.
+    problem, latin, start, spent
+        As for `judged`; the method is the fast one by default, from zero.
     distance
         To a reference, for the errors in the records.
     watch
         Whether the records shall hold the indicators of every iteration.
-    spent
-        As for `judged`.
     cancelled
         Asked after every iteration.
     """

@@ -20,7 +20,8 @@ from solver.laws import OPEN
 from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Incremental
-from solver.reference.solution import Reference, States
+from solver.reference.rules import States
+from solver.reference.solution import Reference
 
 STILL = 1e-3
 """Share of the largest slip of an interface below which a point counts as stuck, at most."""

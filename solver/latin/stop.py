@@ -121,24 +121,15 @@ class StopState:
 
     A run has converged when accuracy and tolerance hold, or when a status step ends it with a
     certified solution: at once, or once the iterates themselves are that near to it. It also ends
-    when the LATIN indicator has stopped falling, or numbers to be finite.
-
-    Most numbers cost as much as an iteration, so they are computed when they may be low enough, and
-    at the first and the last iteration.
-
-    Parameters
-    ----------
-    latin
-        The method.
-    spent
-        Seconds that the run took before its iterations, to make the problem.
+    when the LATIN indicator has stopped falling, or numbers to be finite. Most numbers cost as much
+    as an iteration: they are computed when they may be low enough, and at the first and the last.
 
     Attributes
     ----------
     estimate
         Of the error of the contact force.
     seconds
-        Time that the run took so far beside its iterations.
+        Time that the run took so far beside its iterations, with those before, to make the problem.
     """
 
     def __init__(self, latin: Latin, spent: float = 0.0) -> None:

@@ -73,16 +73,9 @@ class Rod:
     16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface.
+        """Write the k of an interface into that of all rows, (n_rows,), scaled.
 
-        Parameters
-        ----------
-        law
-            The interface.
-        k
-            Of all rows, scaled, shape (n_rows,), in which that of the interface is written.
-        parts
-            Over the share of one interface that slides, the number of interfaces.
+        `parts` is the number of interfaces over the share of one that slides.
         """
         length = law.weights.sum()
         spacing = length / max(len(law.positions) - 1, 1)
@@ -91,9 +84,6 @@ class Rod:
             k[rows] = stiffness * law.weights / spacing
             if self.modulus is not None:
                 k[rows] *= self.modulus
-
-    def stick(self, law: Contact, k: Array) -> None:
-        """Where it nowhere slips k stays as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,9 +175,6 @@ class PointOfBody:
         for component in law.components:
             for rows in component.sides:
                 k[rows] = AT_A_POINT * self.modulus
-
-    def stick(self, law: Contact, k: Array) -> None:
-        """Where it nowhere slips k stays as it is."""
 
 
 Around = Rod | Bodies | PointOfBody

@@ -155,13 +155,7 @@ def clips_of(
 
 
 def monotone(load: Array) -> Iterator[slice]:
-    """Yield the branches of a load, each as far as it goes one way; it starts from zero.
-
-    Parameters
-    ----------
-    load
-        Shape (n_instants,). Where it stands still, the branch goes on.
-    """
+    """Yield the branches of a load, from zero: as far as it goes one way, or stands still."""
     ways = np.sign(np.diff(load, prepend=0.0))
     moving = np.flatnonzero(ways)
     turns = moving[1:][ways[moving[1:]] != ways[moving[:-1]]]

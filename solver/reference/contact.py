@@ -24,8 +24,8 @@ from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
-from solver.reference.rules import Rules, rules_of
-from solver.reference.solution import Interrupted, Reference, States
+from solver.reference.rules import Rules, States, rules_of
+from solver.reference.solution import Interrupted, Reference
 
 MOST_JUMPS = 13_000
 """Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB. 12 935 of
@@ -43,11 +43,6 @@ class IncrementalContact:
     Where the normal jump is prescribed, contact shares its force with the support in any way: it
     is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
     its motion; at rest it is taken as zero.
-
-    Parameters
-    ----------
-    problem
-        A structure with any number of interfaces with friction.
 
     Raises
     ------

@@ -23,12 +23,11 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
 from solver.reference.band import Band
-from solver.reference.changing_bound import bounds_of, least_with_changing_bound
 from solver.reference.condensation import LEFT_INSIDE, NoReferenceError
 from solver.reference.contact import IncrementalContact
-from solver.reference.search import Minimum, Search
-from solver.reference.solution import Interrupted, Reference, States
-from solver.reference.states import Starts
+from solver.reference.rules import Starts, States
+from solver.reference.search import Minimum, Search, bounds_of, least_with_changing_bound
+from solver.reference.solution import Interrupted, Reference
 
 DEARER = 30
 """Points that make a system of the general solver cost one more of the band's (measured)."""
@@ -87,18 +86,7 @@ class IncrementalRod:
         most: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
-        """Solve instant by instant.
-
-        Parameters
-        ----------
-        guess
-            Statuses from which an instant starts, shape (n_points, n_instants), unless those of the
-            instant before turn out to be better.
-        most
-            Linear systems to solve; the instants that are not reached then do not move, and are
-            not `converged`.
-        stop
-            Called once per instant.
+        """Solve instant by instant, as `IncrementalContact.march`; a guess is one of statuses.
 
         Raises
         ------
@@ -125,7 +113,8 @@ class IncrementalRod:
                 begin = guessed
             least = self._minimise(instant, self._load_steps[instant] + balance, begin, gone)
             if least is None:
-                return self._general.march(guess, most and most // self._dearer, stop)
+                dearer = 1 + len(self._dofs) // DEARER
+                return self._general.march(guess, most and most // dearer, stop)
             minima.append(least)
             starts.took(band.solutions - done, from_guess=from_guess)
             balance, status = least.pull, least.status
@@ -160,11 +149,6 @@ class IncrementalRod:
     def _search_within(self, bound: Array) -> Search:
         return Search(self._band, bound * self._movable, self._movable)
 
-    @property
-    def _dearer(self) -> int:
-        """How many of these systems one of the general solver takes as long as."""
-        return 1 + len(self._dofs) // DEARER
-
     def _gathered(self, minima: list[Minimum], steps: int, seconds: float) -> Reference:
         """Solution of the first instants' minima, after which nothing moves."""
         problem, dofs = self._problem, self._dofs
@@ -196,12 +180,7 @@ Incremental = IncrementalRod | IncrementalContact
 def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
     """Solve a problem instant by instant, by the solver that its interfaces call for.
 
-    Parameters
-    ----------
-    problem
-        A structure with at least one interface with friction.
-    stop
-        Called once per instant; `Interrupted` is raised as soon as it returns True.
+    `stop` is called once per instant; `Interrupted` is raised as soon as it returns True.
     """
     start = time.perf_counter()
     solution = incremental_solver(problem).march(stop=stop)

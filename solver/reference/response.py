@@ -12,9 +12,7 @@ import numpy as np
 from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.reference.condensation import Condensation
 from solver.reference.dense import Factors
-from solver.reference.rules import Rules
-from solver.reference.solution import States
-from solver.reference.states import HELD, Increment, Sides
+from solver.reference.rules import HELD, Increment, Rules, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is free."""

@@ -208,20 +208,9 @@ def _elastic(condensed: Condensation) -> Array:
 def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     """How much a load may swing about its mean until no slip could stay, or a contact opens.
 
-    Parameters
-    ----------
-    space
-        The planes.
-    cycle
-        The instants of whole cycles, equally far apart.
-
-    Returns
-    -------
-    factor
-        On the load's distance from its mean over the time of the cycles; infinite where it stands
-        still.
-    slip
-        One that stays under it, with all contacts closed, shape (n_points,), m.
+    The factor on the load's distance from its mean over the instants of whole cycles, equally far
+    apart, infinite where it stands still; and a slip that stays under it, with all contacts closed,
+    shape (n_points,), m.
 
     Raises
     ------

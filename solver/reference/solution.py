@@ -14,9 +14,7 @@ from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.limit_analysis import Collapse
-from solver.reference.rules import rules_of
-
-States = NDArray[np.int8]
+from solver.reference.rules import States, rules_of
 
 
 class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
@@ -72,7 +70,7 @@ class Reference:
     displacement: Array
     deformation: Array
     contact_force: Array
-    status: NDArray[np.int8]
+    status: States
     residual: float
     unbalanced: float
     converged: NDArray[np.bool_]
@@ -92,9 +90,7 @@ class Reference:
     def contact(self, name: str) -> ContactFields:
         """Forces, status and motion of an interface with friction."""
         problem = self.problem
-        sizes = [len(law.positions) for law in problem.rubbing.values()]
-        first = sum(sizes[: list(problem.rubbing).index(name)])
-        status = self.status[first : first + len(problem.rubbing[name].positions)]
+        status = self.status[problem.contact_points[name]]
         rows = self.displacement[problem.row_dofs] / problem.scales.displacement
         return contact_fields(problem, name, self.contact_force, rows, status)
 

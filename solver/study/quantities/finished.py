@@ -21,7 +21,7 @@ from solver.latin.status_step import states_of, status_step
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
-from solver.reference.solution import States
+from solver.reference.rules import States
 from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
