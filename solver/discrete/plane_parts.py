@@ -32,7 +32,7 @@ class Trace:
     first, last
         Nodes of the side that have rows, as a slice.
     has_macro
-        Whether macro forces are to balance there.
+        Whether macro forces are to balance there; parts that differ in it share no operator.
     """
 
     side: str

@@ -20,7 +20,7 @@ from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis, nearest_mode
+from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -73,18 +73,10 @@ class PGD:
 
 @dataclass
 class Family:
-    """One basis and the substructures of a group that use it.
+    """One basis, and the substructures that use it by their places in a group.
 
-    Attributes
-    ----------
-    members
-        Places of the substructures in their group.
-    basis
-        Of y = W + F/k; columns run through the members, then through the instants.
-    incoming_modes
-        W - F/k of every mode, shape (n_boundary, n_modes).
-    record
-        What the last iteration did.
+    The basis is of y = W + F/k; its columns run through the members, then through the instants.
+    Beside it W - F/k of every mode, (n_boundary, n_modes), and what the last iteration did.
     """
 
     members: list[int]
@@ -103,6 +95,10 @@ class Family:
         else:
             field = np.asfortranarray(field[:, members])
         return field.reshape(len(field), -1, order="F")
+
+    def put(self, field: Array, columns: Array) -> None:
+        """Write such a matrix into a group field."""
+        field[:, self.members] = columns.reshape(len(field), len(self.members), -1, order="F")
 
 
 class PGDGroup(Group):
@@ -131,21 +127,23 @@ class PGDGroup(Group):
         self.iterations = checkpoint.number if checkpoint else 0
         places = range(self.rows.shape[1])
         if checkpoint is None:
-            self.families = [self._family([place], self._empty(1)) for place in places]
+            bases = [SeparatedBasis.empty(self.k, self._weights) for _ in places]
         elif checkpoint.reduction is None:
             self.gather(checkpoint.outgoing)
-            nearest = [self._basis_of(self.target[:, place], 1) for place in places]
-            self.families = [self._family([place], nearest[place]) for place in places]
+            bases = [self._basis_of(self.target[:, place], 1) for place in places]
         else:
-            modes, records = checkpoint.reduction.modes, checkpoint.reduction.records
-            numbers = self._numbers
-            self.families = self._shown([modes[n] for n in numbers], [records[n] for n in numbers])
+            self.families = list(self._shown(checkpoint.reduction))
+            return
+        self.families = [
+            Family([place], basis, self._incoming(basis), ReductionRecord.idle(basis.n_modes))
+            for place, basis in enumerate(bases)
+        ]
 
     def outgoing(self) -> Array:
         """W + F/k, rebuilt."""
         rebuilt = self.field()
         for family in self.families:
-            self._put(rebuilt, family.members, family.basis.field())
+            family.put(rebuilt, family.basis.field())
         return rebuilt
 
     def relax(self, relaxation: float, instants: slice = ALL) -> None:
@@ -162,7 +160,7 @@ class PGDGroup(Group):
             columns = family.columns(self._reflected)
             np.matmul(family.incoming_modes, family.basis.time_functions, out=columns)
             if len(family.members) > 1:
-                self._put(self._reflected, family.members, columns)
+                family.put(self._reflected, columns)
         if self.body is not None:
             self._reflected += 2.0 * self.body
         return self._reflected
@@ -181,22 +179,19 @@ class PGDGroup(Group):
                 )
                 yield self._numbers[member], modes, family.record
 
-    def _shown(self, modes: list[Modes], records: list[ReductionRecord]) -> list[Family]:
-        """Families that were shown, bit by bit; one entry per substructure."""
+    def _shown(self, reduction: Reduction) -> Iterator[Family]:
+        """Families that were shown, bit by bit."""
         places: dict[int, list[int]] = {}
-        for place, shown in enumerate(modes):
-            places.setdefault(shown.stored, []).append(place)
-        families = []
+        for place, number in enumerate(self._numbers):
+            places.setdefault(reduction.modes[number].stored, []).append(place)
         for members in places.values():
-            basis = self._empty(len(members))
-            basis.modes = np.asfortranarray(modes[members[0]].outgoing)
-            basis.time_functions = np.stack(
-                [modes[place].time_functions for place in members], axis=2
-            ).reshape(basis.n_modes, -1)
-            family = self._family(members, basis)
-            family.record = records[members[0]]
-            families.append(family)
-        return families
+            numbers = [self._numbers[place] for place in members]
+            modes = np.asfortranarray(reduction.modes[numbers[0]].outgoing)
+            time_functions = [reduction.modes[number].time_functions for number in numbers]
+            joined = np.stack(time_functions, axis=2).reshape(modes.shape[1], -1)
+            weights = np.repeat(self._weights, len(members))
+            basis = SeparatedBasis(modes, joined, self.k, weights)
+            yield Family(members, basis, self._incoming(basis), reduction.records[numbers[0]])
 
     def _advance(self, family: Family, relaxation: float) -> None:
         basis, pgd = family.basis, self._pgd
@@ -251,27 +246,17 @@ class PGDGroup(Group):
     def _join(self, family: Family, other: Family) -> None:
         target = self.field()
         for part in (family, other):
-            self._put(target, part.members, part.basis.field())
+            part.put(target, part.basis.field())
         family.members = sorted(family.members + other.members)
         family.basis = self._basis_of(family.columns(target), len(family.members))
         family.incoming_modes = self._incoming(family.basis)
 
-    def _family(self, members: list[int], basis: SeparatedBasis) -> Family:
-        record = ReductionRecord.idle(basis.n_modes)
-        return Family(members, basis, self._incoming(basis), record)
-
     def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
         weights, pgd = np.repeat(self._weights, n_members), self._pgd
         return SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
-
-    def _empty(self, n_members: int) -> SeparatedBasis:
-        return SeparatedBasis.empty(self.k, np.repeat(self._weights, n_members))
 
     def _incoming(self, basis: SeparatedBasis) -> Array:
         incoming = np.empty(basis.modes.shape, order="F")
         if basis.n_modes:
             self.response.reflect(basis.modes, incoming)
         return incoming
-
-    def _put(self, field: Array, members: list[int], columns: Array) -> None:
-        field[:, members] = columns.reshape(len(field), len(members), -1, order="F")
