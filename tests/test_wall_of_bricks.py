@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.discrete.wall import Wall, bonded, with_opening
+from solver.discrete.bricks import bonded, with_opening
+from solver.discrete.wall import Wall
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import FrictionLaw, Strength
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
 from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE

@@ -18,9 +18,8 @@ from scipy.optimize import linprog
 
 from solver.arrays import Array, at_instant
 from solver.discrete.problem import Problem
-from solver.reference.assembly import external_force
+from solver.reference.assembly import external_force, jumps
 from solver.reference.condensation import NoReferenceError
-from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
 
 WHOLE = 1.0 - 1e-6
@@ -48,11 +47,6 @@ class Collapse:
 
 def collapse_of(problem: Problem) -> Collapse | None:
     """Where a structure collapses on the path of its loads; None if it never does.
-
-    Parameters
-    ----------
-    problem
-        What is loaded.
 
     Raises
     ------
