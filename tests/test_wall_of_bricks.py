@@ -149,6 +149,8 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
         found = reference_of(made.discretise())
         assert bool(found.converged[-1]) is stands
         assert found.converged[:5].all()
+    collapse = collapse_of(made.discretise())
+    assert collapse.tips is (limit < friction)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate
+from solver.reference.limit_analysis import Collapse
 
 if TYPE_CHECKING:
     from solver.latin.method import Latin
@@ -80,12 +81,15 @@ _ON_BASES = " The modes are those of that iterate."
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
 
-def collapses(time: float) -> Status:
-    """Status of a run whose loads no contact forces can balance from a time on, s."""
+def collapses(collapse: Collapse) -> Status:
+    """Status of a run whose loads no contact forces can balance from a time on."""
+    way, remedy = "slides away", "Lower the load, or raise friction or pressure."
+    if collapse.tips:
+        way, remedy = "tips over", "Lower the load, or make it wider, or press it more."
     return Status(
         Ending.STALLED,
-        f"There is no equilibrium from {time:.4g} s on: no contact forces within friction balance "
-        "the loads, and the structure collapses. Lower the load, or raise friction or pressure.",
+        f"There is no equilibrium from {collapse.time:.4g} s on: no contact forces within friction "
+        f"balance the loads, and the structure {way}. {remedy}",
     )
 
 

@@ -214,7 +214,7 @@ class StopState:
                 # Whatever it costs, where a run that may end with it would give up.
                 self.estimate.try_step(iterate, LAST)
         if self.estimate.collapse is not None:
-            return collapses(self.estimate.collapse.time)
+            return collapses(self.estimate.collapse)
         if self.estimate.jumps:
             return JUMPS
         if is_exhausted:
