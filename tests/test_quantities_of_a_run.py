@@ -100,6 +100,22 @@ def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
     assert found == pytest.approx(exact, rel=1e-9, nan_ok=True)
 
 
+@pytest.mark.parametrize(
+    ("scene", "changes", "most"),
+    [
+        ("bar", {"peak": 900.0}, 1500.0),
+        ("bar", {"peak": 900.0, "friction": 0.0}, 0.0),
+        ("incline", {"slope": 20.0, "friction": 0.5, "weight": 2e3}, 940.0),
+    ],
+)
+def test_what_friction_could_hold_is_mu_times_all_that_presses(
+    scene: str, changes: dict[str, Any], most: float
+) -> None:
+    """mu p L along the bar, mu W cos(slope) on the incline."""
+    sizes = SMALL if scene == "bar" else {"elements": 12, "elements_up": 4, "instants": 11}
+    assert taken("holding_force", ran(scene, **changes, **sizes)) == pytest.approx(most, rel=1e-3)
+
+
 def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     run = ran(
         "bar", errors=True, method="paper", max_iterations=40, **{**SMALL, "substructures": 5}

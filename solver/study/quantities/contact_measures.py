@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -208,27 +209,51 @@ def holding_friction(run: FinishedRun) -> float:
     All its friction over all that presses, at the worst instant; where mu varies, by its factors.
     NaN where one slides: the run then cannot tell how much more it would take.
     """
-    needed, friction = 0.0, run.settings.friction
-    if not friction:
+    if not run.settings.friction:
         return math.nan
     # A point that a clamp holds, too, never slips.
     determinate = determinate_forces(run.problem)
-    for name, law in run.problem.rubbing.items():
-        contact = run.iterate.contact(name)
+    for name in run.problem.rubbing:
+        status = run.iterate.contact(name).status
         *_, tangential = run.problem.contact_places[name]
-        is_free = (contact.status == OPEN) | ~determinate[tangential]
-        ways = [(contact.status == way) | is_free for way in (-1, 1)]
+        is_free = (status == OPEN) | ~determinate[tangential]
+        ways = [(status == way) | is_free for way in (-1, 1)]
         if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
             return math.nan
+    needed = max((float((held / pressing).max()) for pressing, held in _carried(run)), default=0.0)
+    return needed if needed > RESIDUE else 0.0
+
+
+@quantity("Force that friction could hold", "N", applies=_rubs_by_mu)
+def holding_force(run: FinishedRun) -> float:
+    """Largest force that friction could hold at an interface, N, where and when it is nearest to.
+
+    That is mu times all that presses; beyond it the interface slides as a whole.
+    """
+    if not run.settings.friction:
+        return 0.0
+    nearest, most = -1.0, 0.0
+    for pressing, held in _carried(run):
+        instant = int((held / pressing).argmax())
+        if held[instant] / pressing[instant] > nearest:
+            nearest, most = held[instant] / pressing[instant], pressing[instant]
+    return float(run.settings.friction * most)
+
+
+def _carried(run: FinishedRun) -> Iterator[tuple[Array, Array]]:
+    """All that presses an interface, and all its friction, at instants at which any does, N."""
+    friction = run.settings.friction
+    for name, law in run.problem.rubbing.items():
+        contact = run.iterate.contact(name)
         if contact.normal_force is None:
             bound = law.tangential.bound.sum(axis=0) * run.problem.scales.force
             pressing = np.broadcast_to(bound / friction, run.problem.n_instants)
         else:
             share = law.mean_by_point(law.tangential.friction) / friction
             pressing = share @ contact.normal_force
-        held = np.abs(contact.tangential_force.sum(axis=0))[pressing > 0.0]
-        needed = max(needed, float((held / pressing[pressing > 0.0]).max(initial=0.0)))
-    return needed if needed > RESIDUE else 0.0
+        held = np.abs(contact.tangential_force.sum(axis=0))
+        if np.any(pressing > 0.0):
+            yield pressing[pressing > 0.0], held[pressing > 0.0]
 
 
 def largest_load(run: FinishedRun) -> int:
