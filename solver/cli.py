@@ -26,6 +26,7 @@ from solver.files import (
     settings_from_command,
     summary,
 )
+from solver.fit_command import add_fit
 from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.reference.choice import reference_of
@@ -121,6 +122,7 @@ def _parser() -> argparse.ArgumentParser:
     add_reports(commands)
     add_sweep(commands)
     add_checks(commands)
+    add_fit(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             further.load()(commands)
