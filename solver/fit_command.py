@@ -56,12 +56,14 @@ def _fit(chosen: argparse.Namespace) -> int:
     warn(*remarks_before(settings, chosen.changes))
     with writing(chosen.out, *FILES):
         found = fit(settings, measured, names, _Progress(settings, names, chosen.out))
+        write_loop(found.nearest, chosen.out)
+        if chosen.json:
+            print(json.dumps({**as_json(found, measured), "tables": tables}), flush=True)
+        else:
+            print("\n".join(lines(found, measured)), flush=True)
         note = write_fit(found, measured, chosen.out)
-    if chosen.json:
-        print(json.dumps({**as_json(found, measured), "tables": tables}))
-    else:
-        print("\n".join([*lines(found, measured), *filter(None, [note])]))
-        print(f"{', '.join(FILES)} in {chosen.out}")
+    if not chosen.json:
+        print("\n".join([*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}"]))
     return 0 if found.nearest.is_certified else 1
 
 
