@@ -120,7 +120,7 @@ class ColumnsDialog:
         """Have another table; whether there are columns to choose."""
         if any(column.quantities[0] & {"position"} for column in table.columns):
             return False
-        self._table, self._source = numbered(table), source
+        self._given, self._table, self._source = table, numbered(table), source
         self._axes, settings = axes_on(self._state), self._state.settings
         names = [column.name or f"column {column.place + 1}" for column in table.columns]
         cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
@@ -150,7 +150,9 @@ class ColumnsDialog:
         return LOOP
 
     def show(self) -> None:
-        """Open it."""
+        """Open it, for the scene as it is now."""
+        if paths_of(self._state.settings).keys() != self._paths.keys():
+            self.load(self._given, self._source)
         self._message.object = self._refused() or ""
         self.view.open = True
 

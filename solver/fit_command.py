@@ -12,9 +12,9 @@ from typing import Any
 from solver.definitions import SettingError, about
 from solver.disk import read_bytes, why
 from solver.files import settings_from_command
-from solver.remarks import print_tables, remarks_before, warn
+from solver.remarks import prepared, print_tables
 from solver.report_commands import writing
-from solver.scenes import discretise, loop_of
+from solver.scenes import loop_of
 from solver.settings import Settings
 from solver.study.fit import MOST, ComparedRun, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
@@ -49,11 +49,11 @@ def _fit(chosen: argparse.Namespace) -> int:
         data = read_bytes(chosen.file)
     except (OSError, ValueError) as trouble:
         raise SettingError("--with", str(chosen.file), CAN, why(trouble)) from None
-    measured = read_loop(data, chosen.file.name, axes_of(loop_of(settings, discretise(settings))))
-    names = [name.strip() for name in chosen.vary.split(",")]
+    problem = prepared(settings, chosen.changes, tables)
+    measured = read_loop(data, chosen.file.name, axes_of(loop_of(settings, problem)))
+    print_tables({measured.source: measured.message})
     tables = {**tables, measured.source: measured.message}
-    print_tables(tables)
-    warn(*remarks_before(settings, chosen.changes))
+    names = [name.strip() for name in chosen.vary.split(",")]
     with writing(chosen.out, *FILES):
         found = fit(settings, measured, names, _Progress(settings, names, chosen.out))
         write_loop(found.nearest, chosen.out)

@@ -23,14 +23,8 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
 from solver.study.fclib import can_write, contacts_of, instant_at, local_problem, write_fclib
-from solver.study.measured_loop import (
-    ALIKE,
-    LoopComparison,
-    axes_of,
-    is_a_loop,
-    read_loop,
-    rms,
-)
+from solver.study.loop_comparison import ALIKE, LoopComparison, rms
+from solver.study.measured_loop import axes_of, is_a_loop, read_loop
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,
@@ -154,12 +148,12 @@ def _compare(chosen: argparse.Namespace) -> int:
 def _compare_loop(
     chosen: argparse.Namespace, settings: Settings, tables: Mapping[str, str], data: bytes
 ) -> int:
-    problem = discretise(settings)
+    problem = prepared(settings, chosen.changes, tables)
     loop = loop_of(settings, problem)
     measured = read_loop(data, chosen.file.name, axes_of(loop))
-    beside = LoopComparison(measured, loop, problem)
+    print_tables({measured.source: measured.message})
     tables = {**tables, measured.source: measured.message}
-    prepared(settings, chosen.changes, tables)
+    beside = LoopComparison(measured, loop, problem)
     solution = solve(problem, method_of(settings))
     differences, drive = beside.differences(*beside.both(solution.iterate))
     rows, counted = len(measured.force), len(differences)

@@ -2,7 +2,7 @@
 
     fitted = fit(settings, measured, ["friction", "contact_stiffness"])
 
-The differences of `solver.study.measured_loop` are minimised in the sum of their squares, over z:
+The differences of `solver.study.loop_comparison` are minimised in the sum of their squares, over z:
 the logarithm of a setting over its start, where it is positive and spans decades, else its change
 over its size. From the best of some values of each setting alone a trust-region method (SciPy's
 `least_squares`) goes on within their bounds; every run starts from what stuck and slipped in the
@@ -33,25 +33,29 @@ from solver.refusal import RefusedError
 from solver.scenes import loop_of
 from solver.settings import Settings
 from solver.study.fittable import fittable, scale_of
-from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
+from solver.study.loop_comparison import LoopComparison, rms
+from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.finished import finished_run
 
 MOST = 4
 """Settings that are fitted at once."""
 COARSE, FAR = math.log(3.0), math.log(1e3)
 """Steps from the start by which each setting is tried alone, and how far they go."""
-STEP, WIDE = 1e-4, 0.1
-"""Of differences, in z: where the next step of the method goes, and what the loop can tell. Over
-a small one the nodes that a front has just reached count for more than the loop (young and friction
-of a bar, of which only the product is known: singular values 4.5 and 0.12, instead of 0.006)."""
+SAME = 1e-6
+"""Share of the misfit up to which two are the same."""
+STEP, NARROW, WIDE = 1e-4, 1e-5, 0.1
+"""Of differences, in z: where the next step of the method goes, and both for what the loop tells.
+Over a narrow one the nodes that a front has just reached count for more than the loop (friction and
+young of a bar, of which only the product is known: singular values 4.5 and 0.12, instead of 0.006);
+over a wide one a combination that is no product seems to be known."""
 LOOSE = 1e-4
 """Pull towards the start at first, so that what is not determined does not drift."""
 UNSURE = 0.2
 """Standard error of a direction, in z, from which on it is not determined."""
-FLAT, EXACT, BLIND = 0.02, 1e-6, 1e-6
-"""Singular values below which a direction is not determined: over the largest one, unless the run
-is as near as `EXACT`, since meshes tell no more; and at all."""
-SHARE = 0.05
+FLAT, RIGID, EXACT, BLIND = 0.02, 1e-4, 1e-6, 1e-6
+"""Singular values below which a direction is not determined: over the largest one, since meshes
+tell no more, or, where the run is as near as `EXACT`, since differences do not; and at all."""
+SHARE = 0.1
 """Part in a direction that is not determined from which on a setting is not known alone."""
 ACCURACY = 1e-4
 """Of runs that are not certified."""
@@ -200,7 +204,7 @@ class _Runs:
     def jacobian(self, z: Array, step: float = STEP) -> Array:
         """Derivatives of the differences, shape (n_rows, p), by steps both ways or where they go.
 
-        A small step is taken one way only, towards where there is more room.
+        The smallest step is taken one way only.
         """
         columns = []
         for way, (low, high), at in zip(np.eye(len(z)), self.bounds.T, z, strict=True):
@@ -215,19 +219,25 @@ class _Runs:
         return np.array(columns).T
 
     def coarse(self) -> Array:
-        """Place to begin at: by large steps in one setting after the other, while they help."""
+        """Place to begin at: by large steps in one setting after the other, while they help.
+
+        They go on where nothing changes, as where a start lets nothing slip.
+        """
         best = np.zeros(len(self.names))
         for place, (low, high) in enumerate(self.bounds.T):
             middle = best
             for way in (-COARSE, COARSE):
-                while True:
-                    moved = best.copy()
-                    moved[place] = np.clip(best[place] + way, low, high)
-                    if abs(moved[place]) > FAR or not self._misfit(moved) < self._misfit(best):
+                moved = middle
+                while best is middle or moved is best:
+                    at = moved[place] + way
+                    if abs(at) > FAR or not low <= at <= high:
                         break
-                    best = moved
-                if best is not middle:
-                    break
+                    moved = np.where(np.arange(len(best)) == place, at, moved)
+                    misfit, least = self._misfit(moved), self._misfit(best)
+                    if misfit < (1.0 - SAME) * least:
+                        best = moved
+                    elif not misfit <= (1.0 + SAME) * least:
+                        break
         return best
 
     def _misfit(self, z: Array) -> float:
@@ -286,8 +296,10 @@ def fit(
         z = runs.solve(z, pull)
         left = float(np.linalg.norm(runs.differences(z)))
         noise = left / math.sqrt(rows - count + blind)
-        _, sizes, ways = np.linalg.svd(runs.jacobian(z, WIDE))
-        least = max(noise / UNSURE, BLIND, FLAT * float(sizes[0]) * (noise > EXACT))
+        tried = [np.linalg.svd(runs.jacobian(z, step)) for step in (NARROW, WIDE)]
+        _, sizes, ways = min(tried, key=lambda found: float(found.S[-1]))
+        flat = FLAT if noise > EXACT else RIGID
+        least = max(noise / UNSURE, BLIND, flat * float(sizes[0]))
         is_known = sizes > least
         is_done, blind = blind == (~is_known).sum(), int((~is_known).sum())
         if is_done:
@@ -335,7 +347,7 @@ def _known_together(
 
 
 def echelon(rows: Array) -> Array:
-    """The same space by rows that begin with 1, where no other has anything; to two digits."""
+    """The same space by rows that begin with 1, where no other has anything; to a digit."""
     rows, done = rows.copy(), 0
     for column in range(rows.shape[1]):
         pivot = done + int(np.abs(rows[done:, column]).argmax()) if done < len(rows) else 0
@@ -345,4 +357,4 @@ def echelon(rows: Array) -> Array:
             others = np.arange(len(rows)) != done
             rows[others] -= np.outer(rows[others, column], rows[done])
             done += 1
-    return np.where(np.abs(rows) < SHARE, 0.0, np.round(rows, 2))
+    return np.where(np.abs(rows) < SHARE, 0.0, np.round(rows, 1))

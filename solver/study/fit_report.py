@@ -15,7 +15,8 @@ from solver.disk import write
 from solver.scenes.words import listed
 from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.fit import ComparedRun, Fit
-from solver.study.measured_loop import ALIKE, MeasuredLoop, rms, table_of
+from solver.study.loop_comparison import ALIKE, rms
+from solver.study.measured_loop import MeasuredLoop, table_of
 from solver.study.page import (
     PlotSection,
     Section,
