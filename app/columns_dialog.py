@@ -60,9 +60,9 @@ class TableOpener:
         if not self.file.value:
             return
         source, data, state = self.file.filename, self.file.value, self._state
-        self._columns.visible = not source.lower().endswith(".toml")
+        self._columns.visible = False
         try:
-            if self._columns.visible:
+            if not source.lower().endswith(".toml"):
                 self._columns.visible = self.dialog.load(table_of(data, source), source)
             content, self.message.object = opened(source, data, state.settings, axes_on(state))
         except RefusedError as refused:
@@ -122,7 +122,7 @@ class ColumnsDialog:
             return False
         self._given, self._table, self._source = table, numbered(table), source
         self._axes, settings = axes_on(self._state), self._state.settings
-        names = [column.name or f"column {column.place + 1}" for column in table.columns]
+        names = names_of(table)
         cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
         self._preview.object = pd.DataFrame([row[: len(names)] for row in cells], columns=names)
         self._paths = paths_of(settings)
@@ -137,9 +137,7 @@ class ColumnsDialog:
         except SettingError:
             used = self._guessed_path(table, settings)
         self._is_updating = True
-        self.use.param.update(
-            options={k[0].upper() + k[1:]: v for k, v in kinds.items()}, value=used
-        )
+        self.use.param.update(options=kinds, value=used)
         self._fit()
         self._is_updating = False
         return True
@@ -151,7 +149,8 @@ class ColumnsDialog:
 
     def show(self) -> None:
         """Open it, for the scene as it is now."""
-        if paths_of(self._state.settings).keys() != self._paths.keys():
+        now = axes_on(self._state), paths_of(self._state.settings).keys()
+        if now != (self._axes, self._paths.keys()):
             self.load(self._given, self._source)
         self._message.object = self._refused() or ""
         self.view.open = True
@@ -176,8 +175,8 @@ class ColumnsDialog:
     def _fit(self) -> None:
         """Have the fields that the use needs, with what the head says."""
         columns, roles = self._table.columns, self._roles
-        known = {column.name or f"column {column.place + 1}": column.place for column in columns}
-        row, free = known.pop(ROW), list(columns[:-1])
+        known = {name: place for place, name in enumerate(names_of(self._given))}
+        row, free = len(known), list(columns[:-1])
         for place, (column, unit) in enumerate(zip(self.columns, self.units, strict=True)):
             self._rows[place].visible = place < len(roles)
             if place >= len(roles):
@@ -267,6 +266,15 @@ class ColumnsDialog:
         """The table with the columns of a path alone, named as it wants them."""
         named = [replace(c, name=n) for c, n in zip(columns, ("time", name), strict=True)]
         return replace(self._table, columns=named)
+
+
+def names_of(table: Table) -> list[str]:
+    """Names of the columns, with their numbers where they have none, or others have the same."""
+    names = [column.name for column in table.columns]
+    return [
+        name if name and names.count(name) == 1 else f"{name} ({place})".strip()
+        for place, name in enumerate(names, start=1)
+    ]
 
 
 def numbered(table: Table) -> Table:

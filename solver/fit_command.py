@@ -16,7 +16,8 @@ from solver.remarks import prepared, print_tables
 from solver.report_commands import writing
 from solver.scenes import loop_of
 from solver.settings import Settings
-from solver.study.fit import MOST, ComparedRun, fit
+from solver.study.compared_runs import ComparedRun
+from solver.study.fit import MOST, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
 from solver.study.measured_loop import CAN, axes_of, read_loop
 

@@ -14,7 +14,8 @@ from solver.definitions import about
 from solver.disk import write
 from solver.scenes.words import listed
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.fit import ComparedRun, Fit
+from solver.study.compared_runs import ComparedRun
+from solver.study.fit import Fit
 from solver.study.loop_comparison import ALIKE, rms
 from solver.study.measured_loop import MeasuredLoop, table_of
 from solver.study.page import (
