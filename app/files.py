@@ -1,4 +1,4 @@
-"""Files of a user: settings, load paths and their points, and results of another program."""
+"""Files of a user: settings that are saved and opened, and the points of paths."""
 
 from __future__ import annotations
 
@@ -12,96 +12,20 @@ import panel_material_ui as pmui
 from bokeh.models import ColumnDataSource, PointDrawTool
 from bokeh.plotting import figure
 
+from app.columns_dialog import TableOpener
 from app.refusals import message_of
 from app.state import PageState, default_settings
+from app.tables import TABLES, table_of, with_path
 from app.units import units_of_points
 from app.views.colors import LATIN
 from app.widgets import button, dialog, download
 from solver.checked import dump
-from solver.curves import curve_of
-from solver.definitions import CurveParameter, SettingError, about
-from solver.files import settings_from_toml
+from solver.definitions import about
 from solver.refusal import RefusedError
-from solver.remarks import ends_of_tables
 from solver.scenes import points_of
-from solver.settings import Settings
-from solver.study.comparison import OtherResults, read_results
-from solver.tables import Table, read_table
 
-TABLES = ".csv,.txt,.dat,.tsv"
-
-HELP = (
-    "Settings (.toml) that were saved here; or a table (.csv): of time and load, or of x, t and "
-    "friction force or displacement, as another program found them, which is drawn beside the run."
-)
 MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""
-
-
-def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | OtherResults, str]:
-    """Read a file: settings (.toml), else results if it has places, else a load path.
-
-    Returns
-    -------
-    What it was read as, and what was understood.
-
-    Raises
-    ------
-    SettingError
-        For what is none of these, or is refused.
-    """
-    if source.lower().endswith(".toml"):
-        read = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
-        return read, f"{source}: settings of the scene {read.scene}."
-    table = _table(data, source)
-    if {"x", "position"} & {column.key for column in table.columns}:
-        brought = read_results(data, source, settings)
-        return brought, f"{source}: {brought.message}."
-    return with_path(settings, _path_of(table, source, settings), table)
-
-
-def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
-    """Settings with a table for a path, and what was understood.
-
-    A run then lasts until the last of its tables ends.
-    """
-    definition = settings.definitions()[name]
-    curve = curve_of(table, definition, name, settings.curve_units(name))
-    changed = settings.replace(**{name: curve.points})
-    message = f"{about(definition).title}: {curve.message}."
-    if definition.abscissa == "time":
-        ends = max(ends_of_tables(changed).values(), default=0.0)
-        changed = changed.replace(duration=ends) if ends > 0.0 else changed
-        message += f" The run lasts {changed.duration:g} s."
-    return changed, message
-
-
-def _table(data: bytes | str, source: str) -> Table:
-    def refuse(remedy: str) -> SettingError:
-        return SettingError("the table", source, "a table of time and value", remedy)
-
-    return read_table(data, refuse)
-
-
-def _path_of(table: Table, source: str, settings: Settings) -> str:
-    """The path over time that the head of a table names, or the only one, or that of the load."""
-    paths = {
-        name: definition
-        for name, definition in settings.definitions().items()
-        if isinstance(definition, CurveParameter)
-        and definition.abscissa == "time"
-        and settings.applies(name)
-    }
-    named = paths.keys() & {column.key for column in table.columns}
-    loads = [name for name, definition in paths.items() if about(definition).group == "Load"]
-    chosen = list(named or (paths if len(paths) == 1 else loads))
-    if len(chosen) == 1:
-        return chosen[0]
-    if not paths:
-        remedy = "have a side displaced or loaded first"
-        raise SettingError("the table", source, "a load path, of which none applies", remedy)
-    remedy = f"name the one in its first line, as in time,{next(iter(paths))}"
-    raise SettingError("the table", source, f"a table of one of {', '.join(paths)}", remedy)
 
 
 class FilesPanel:
@@ -114,56 +38,23 @@ class FilesPanel:
         self._state, self._copy = state, copy
         look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
         outlined = {**look, "variant": "outlined"}
-        self.file = pmui.FileInput(
-            label="Open settings or a table", accept=f".toml,{TABLES}", description=HELP, **outlined
-        )
-        self.file.param.watch(lambda event: self._open(), "value")
-        self.message = pmui.Typography("", variant="body2", width=width, margin=0)
-        self._remove = button("", self._forget, icon="close", **outlined)
+        self._opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
+        self.file, self.message = self._opener.file, self._opener.message
         self.view = pn.Column(
             button("Copy link", self._copy_link, icon="link", **outlined),
             download(
                 "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
             ),
-            self.file,
-            self.message,
-            self._remove,
+            self._opener.view,
             button("All settings to default", self._reset, icon="restart_alt", **outlined),
             margin=0,
         )
-        state.param.watch(lambda event: self._show(), "brought")
-        self._show()
 
     def _copy_link(self) -> None:
         self.message.object = f"The link to what is shown is copied. {self._copy()}"
 
     def _reset(self) -> None:
         self._state.adopt(default_settings(self._state.settings.scene))
-
-    def _open(self) -> None:
-        state = self._state
-        if not self.file.value:
-            return
-        try:
-            content, self.message.object = opened(
-                self.file.filename, self.file.value, state.settings
-            )
-        except RefusedError as refused:
-            state.refusal = self.message.object = message_of(refused, state.settings)
-            return
-        if isinstance(content, OtherResults):
-            state.brought = content
-        else:
-            state.adopt(content)
-
-    def _forget(self) -> None:
-        self.message.object = ""
-        self._state.brought = None
-
-    def _show(self) -> None:
-        brought = self._state.brought
-        self._remove.visible = brought is not None
-        self._remove.label = f"Remove {brought.source}" if brought is not None else "Remove"
 
 
 class CurveDialog:
@@ -263,7 +154,7 @@ class CurveDialog:
             return
         settings = self._state.settings
         try:
-            changed, message = with_path(settings, self._name, _table(table, source))
+            changed, message = with_path(settings, self._name, table_of(table, source))
         except RefusedError as refused:
             self._state.refusal = text = message_of(refused, settings, self._name)
             self.text.param.update(error_state=True, helper_text=text)

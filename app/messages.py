@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from app.frame import Frame
 from solver.settings import Settings
 from solver.study.comparison import OtherResults
+from solver.study.measured_loop import MeasuredLoop
 
 WHOLE = -1.0
 """Pace at which the whole search takes three seconds."""
@@ -49,7 +50,7 @@ class Needs:
     substructure: int | None = None
     place: float | None = None
     readings: tuple[str, ...] = ()
-    brought: OtherResults | None = None
+    brought: OtherResults | MeasuredLoop | None = None
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from app.browser import listen
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.export import TakeAway
+from app.fit import FitTab
 from app.glossary import glossary
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show
@@ -138,7 +139,10 @@ class Page:
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
-            made = WhatIf(self.state, self._open_run) if tab == TABS[1] else Reports(self.state)
+            if tab == "Reports":
+                made = Reports(self.state)
+            else:
+                made = {"What if": WhatIf, "Fit": FitTab}[tab](self.state, self._open_run)
             self._tabs[tab] = made.view
         self._place()
         self._live.look()

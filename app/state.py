@@ -19,6 +19,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.comparison import OtherResults
+from solver.study.measured_loop import MeasuredLoop
 
 LIMIT = 24_000_000
 """Bytes that the frames of a run may take; beyond, every other one is dropped."""
@@ -35,7 +36,7 @@ PACES = {
     "20 a second": 20.0,
     "fastest": math.inf,
 }
-TABS = ["Live", "What if", "Reports"]
+TABS = ["Live", "What if", "Fit", "Reports"]
 VIEWS = ["page", "present", "embed"]
 """With controls, for a projector, for a frame in another page."""
 
@@ -117,7 +118,7 @@ class PageState(param.Parameterized):
     plots = param.String(doc="Names of the views on top of their cards, between commas.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(
-        class_=OtherResults, default=None, doc="Another program's results."
+        class_=(OtherResults, MeasuredLoop), default=None, doc="Results, or a measured loop."
     )
     refusal = param.String(doc="What was refused and why.")
     message = param.String(doc="What the page says of itself: a loss, a cost, a fault.")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from html import escape
 
-import numpy as np
-
-from app.frame import OPEN, Frame, Selection
+from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import number, percent, unit_for
 from solver.latin import Ending
+from solver.study.key_figures import key_figures
 
 ENDINGS = {
     Ending.CONVERGED: "✓ solved",
@@ -18,8 +17,6 @@ ENDINGS = {
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
-ZERO = 1e-9
-"""Share of the largest value in the run below which one is zero."""
 
 
 def status_line(state: PageState) -> str:
@@ -79,13 +76,13 @@ def _more(state: PageState) -> str:
 def figures_line(frame: Frame, selection: Selection) -> str:
     """What became of the thing at the selected instant, as key figures in a line (HTML)."""
     run, column = frame.run, frame.run.column(selection.phase)
-    figures = {}
-    for (title, unit), values in zip((run.across, run.up), frame.loop, strict=True):
-        largest, value = float(np.abs(values).max()), float(values[column])
-        figures[title] = unit_for(largest, unit)(value if abs(value) > ZERO * largest else 0.0)
-    status = frame.deformed.status[:, column] if frame.deformed.status.size else np.zeros(1)
-    figures["Slips"] = percent(float(np.mean((status != 0) & (status != OPEN))))
-    figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
+    axes, status = (run.across, run.up), frame.deformed.status
+    figures = {
+        figure.title: unit_for(figure.largest, figure.unit)(figure.value)
+        if figure.unit
+        else percent(figure.value)
+        for figure in key_figures(axes, frame.loop, status, frame.energy, column)
+    }
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['name']}"] = percent(beside["distance"])

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,8 @@ from solver.files import (
     settings_from_command,
     summary,
 )
-from solver.latin import Ending, Solution, solve, solve_in_slabs
+from solver.fit_command import add_fit
+from solver.latin import Ending, solve, solve_in_slabs
 from solver.latin.cost import RunCost, run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
@@ -38,7 +40,10 @@ from solver.report_commands import REFUSED, add_reports
 from solver.run_commands import add_checks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.study.key_figures import figures_of
+from solver.study.quantities import reading
+from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.quantity import Quantity
 from solver.sweep_command import add_sweep
 
 OUT_OF_MEMORY, INTERRUPTED = 3, 130
@@ -112,6 +117,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar="INSTANTS",
         help="solve slab after slab of so many instants: those of a cycle, where a load has many",
     )
+    run.add_argument(
+        "--of", default="", metavar="NAME,...", help="print quantities of the run, too"
+    )
     run.set_defaults(command=_run)
     scenes = commands.add_parser("scenes", help="list the scenes")
     scenes.set_defaults(command=_scenes)
@@ -121,6 +129,7 @@ def _parser() -> argparse.ArgumentParser:
     add_reports(commands)
     add_sweep(commands)
     add_checks(commands)
+    add_fit(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             further.load()(commands)
@@ -133,6 +142,7 @@ def _run(chosen: argparse.Namespace) -> int:
         with _writing(chosen.out):  # before the run, and not after it
             check_place(chosen.out)
     limit = _limit(chosen)
+    asked = [reading(name.strip()) for name in chosen.of.split(",") if name.strip()]
     print_tables(tables)
     warn(*remarks_before(settings, chosen.changes))
     began = time.perf_counter()
@@ -143,10 +153,11 @@ def _run(chosen: argparse.Namespace) -> int:
     method = method_of(settings)
     method = replace(method, stop=replace(method.stop, seconds=limit))
     most, beside = settings.max_iterations, chosen.reference
+    watch = beside or any(one.reads == "indicators" for one in asked)
     _announce(run_cost(problem, method, most, with_reference=beside), limit)
     distance = _distance(problem, limit) if chosen.reference else None
     if chosen.slab is None:
-        solution = solve(problem, method, distance=distance, watch=chosen.reference, spent=spent)
+        solution = solve(problem, method, distance=distance, watch=watch, spent=spent)
     else:
         solution = solve_in_slabs(problem, method, chosen.slab, distance=distance, spent=spent)
     if chosen.out is not None:
@@ -159,7 +170,8 @@ def _run(chosen: argparse.Namespace) -> int:
             "displacement is one of many there, and counts in no error"
         )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
-        _print_figures(settings, solution, tables, chosen.json)
+        run = FinishedRun(settings, solution)
+        _print_figures(run, asked, tables, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
@@ -196,19 +208,33 @@ def _writing(path: Path) -> Iterator[None]:
 
 
 def _print_figures(
-    settings: Settings, solution: Solution, tables: Mapping[str, str], as_json: bool
+    run: FinishedRun, asked: Sequence[Quantity], tables: Mapping[str, str], as_json: bool
 ) -> None:
-    figures = summary(settings, solution)
+    figures, (of_loop, time_of_load) = summary(run.settings, run.solution), figures_of(run)
+    values = {one.name: (one(run), one.unit) for one in asked}
     if as_json:
-        plain = {
-            name: None if isinstance(value, float) and not math.isfinite(value) else value
-            for name, value in figures.items()
-        }
-        print(json.dumps({**plain, "tables": tables, "settings": settings.values()}))
-    else:
-        for name, value in figures.items():
-            for line in value if isinstance(value, list) else [value]:
-                print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+        more = {figure.name: figure.value for figure in of_loop}
+        of = {"quantities": {name: value for name, (value, _) in values.items()}} if asked else {}
+        found = {**figures, **more, **of, "tables": tables, "settings": run.settings.values()}
+        print(json.dumps(_finite(found)))
+        return
+    for name, value in figures.items():
+        for line in value if isinstance(value, list) else [value]:
+            print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+    for figure in of_loop:
+        when = "in all" if figure.name == "energy" else f"at {time_of_load:.6g} s"
+        number = f"{figure.value:.6g} {figure.unit}".strip()
+        print(f"{figure.name:<20} {number} ({figure.title}, {when})")
+    for name, (value, unit) in values.items():
+        number = "none" if math.isnan(value) else f"{value:.6g} {unit}".strip()
+        print(f"{name:<20} {number}")
+
+
+def _finite(value: Any) -> Any:
+    """The same with None for what is no finite number, as JSON has no such numbers."""
+    if isinstance(value, dict):
+        return {name: _finite(entry) for name, entry in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _number(name: str, value: float) -> str:

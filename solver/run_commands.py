@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +16,13 @@ from solver.latin import Ending, solve
 from solver.latin.cost import run_cost
 from solver.lessons.lesson import check
 from solver.lessons.reading import lesson_from_file
-from solver.remarks import prepared, print_tables
-from solver.scenes import discretise
+from solver.remarks import prepared, print_tables, warn
+from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
+from solver.study.loop_comparison import ALIKE, LoopComparison, rms
+from solver.study.measured_loop import axes_of, is_a_loop, read_loop
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,
@@ -43,10 +45,10 @@ def add_checks(commands: Any) -> None:
     )
     mesh.add_argument("--of", required=True, metavar="NAME", help="what is asked of a run")
     compare = _of_a_scene(
-        commands, "compare", "how far a run is from another program's results", _compare
+        commands, "compare", "how far a run is from a measured loop, or another program", _compare
     )
     compare.add_argument(
-        "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their results"
+        "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their table"
     )
     compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
     compare.add_argument("--json", action="store_true", help="print it as JSON")
@@ -106,6 +108,8 @@ def _compare(chosen: argparse.Namespace) -> int:
         data = read_bytes(chosen.file)
     except (OSError, ValueError) as trouble:
         raise SettingError("--with", str(chosen.file), CAN, why(trouble)) from None
+    if is_a_loop(data, chosen.file.name):
+        return _compare_loop(chosen, settings, tables, data)
     results = read_results(data, chosen.file.name, settings)
     tables = {**tables, results.source: results.message}
     problem = prepared(settings, chosen.changes, tables)
@@ -132,6 +136,39 @@ def _compare(chosen: argparse.Namespace) -> int:
     else:
         far = f"{results.quantity}: {100.0 * distance:.4g} % from {results.source}"
         print(f"{far}, at {comparison.counted} of {rows} rows")
+    return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _compare_loop(
+    chosen: argparse.Namespace, settings: Settings, tables: Mapping[str, str], data: bytes
+) -> int:
+    problem = prepared(settings, chosen.changes, tables)
+    loop = loop_of(settings, problem)
+    measured = read_loop(data, chosen.file.name, axes_of(loop))
+    print_tables({measured.source: measured.message})
+    tables = {**tables, measured.source: measured.message}
+    beside = LoopComparison(measured, loop, problem)
+    solution = solve(problem, method_of(settings))
+    differences, drive = beside.differences(*beside.both(solution.iterate))
+    rows, counted = len(measured.force), len(differences)
+    if chosen.json:
+        figures = {
+            "quantity": beside.quantity,
+            "interface": None,
+            "distance": rms(differences),
+            "given": beside.given,
+            "distance_given": rms(drive),
+            "rows": rows,
+            "rows_compared": counted,
+            "status": str(solution.status.ending),
+            "tables": tables,
+        }
+        print(json.dumps(figures))
+    else:
+        far = f"{beside.quantity}: {100.0 * rms(differences):.4g} % from {measured.source}"
+        print(f"{far}, at {counted} of {rows} rows")
+    if rms(drive) > ALIKE:
+        warn(beside.drive_message(drive))
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 

@@ -39,7 +39,7 @@ OFTEN, SELDOM = 0.2, 10.0
 
 def add_sweep(commands: Any) -> None:
     """Add the command."""
-    parser = commands.add_parser("sweep", help="a quantity of a run over one or two settings")
+    parser = commands.add_parser("sweep", help="quantities of a run over up to two settings")
     parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
     parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
@@ -57,7 +57,9 @@ def add_sweep(commands: Any) -> None:
 
 def _sweep(chosen: argparse.Namespace) -> int:
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    plan = plan_of(settings, chosen.vary, [name.strip() for name in chosen.of.split(",")])
+    # Without a range it is a run, which has one row.
+    vary = chosen.vary or [f"friction={settings.friction!r}"]
+    plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)

@@ -24,6 +24,7 @@ PAPER = ["--set", "method=paper"]
 FIGURES = ["scene", "status", "advice", "iterations", "indicator", "behaviour"]
 FIGURES += ["estimated_error", "certified", "residual"]
 FIGURES += ["error_displacement", "error_force", "seconds"]
+FIGURES += ["displacement", "force", "slipping", "energy"]
 
 
 def printed_figures(text):
@@ -318,3 +319,26 @@ def test_whoever_reads_no_further_loses_no_file(tmp_path):
     assert (done.returncode, done.stderr) == (1, b"")
     with np.load(file) as found:
         assert len(found["indicator"]) == 1
+
+
+def test_a_run_prints_any_quantity_and_a_sweep_of_nothing_is_a_run(capsys, tmp_path):
+    names = "end_displacement,dissipation,peak_stress,error_force"
+    assert main(["run", "bar", *SMALL, "--of", names]) == 0
+    printed = printed_figures(capsys.readouterr().out)
+    assert printed["peak_stress"] == "none"
+    assert printed["end_displacement"].endswith(" m")
+    assert main(["run", "bar", *SMALL, "--of", names, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    of = found["quantities"]
+    assert list(of) == names.split(",")
+    assert (of["peak_stress"], of["error_force"]) == (None, found["error_force"])
+    assert found["displacement"] == pytest.approx(of["end_displacement"])
+    assert found["energy"] == pytest.approx(of["dissipation"])
+    assert found["force"] == pytest.approx(900.0)
+    assert 0.0 < found["slipping"] < 1.0
+    assert main(["run", "bar", *SMALL, "--of", "nothing"]) == 2
+    assert "quantity" in capsys.readouterr().err
+    sweep = ["sweep", "bar", *SMALL, "--of", "end_displacement", "--out", str(tmp_path)]
+    assert main([*sweep, "--on", "processes:1"]) == 0
+    line = (tmp_path / "sweep.csv").read_text().splitlines()[-1]
+    assert float(line.split(",")[2]) == pytest.approx(of["end_displacement"])

@@ -37,7 +37,7 @@ LAYERS = [
     ["study"],
     ["lessons"],
     ["run_commands", "report_commands"],
-    ["sweep_command"],
+    ["sweep_command", "fit_command"],
     ["cli"],
     ["__main__"],
 ]

@@ -46,8 +46,9 @@ class HysteresisLoop(View):
         self.y.rename(*run.up)
         exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
         reference = nothing if run.reference_loop is None else run.reference_loop
+        beside = _beside(frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
-            low, high = extent([frame.loop[row], exact[row], reference[row]])
+            low, high = extent([frame.loop[row], exact[row], reference[row], beside[row]])
             axis.hold(key_of(run), min(low, 0.0), max(high, 0.0), 0.08)
         is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
         self.draw("LATIN", *frame.loop)
@@ -55,13 +56,15 @@ class HysteresisLoop(View):
         self.draw("exact", *exact)
         self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
         name = (frame.extras.get("beside") or {}).get("name", "another program")
-        self.draw("beside", *_beside(frame), name)
+        self.draw("beside", *beside, name)
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
 
 
 def _beside(frame: Frame) -> tuple[Floats, Floats]:
-    """Another program's displacement of the loaded end, under the load of the run."""
+    """A measured loop; or another program's displacement of the end, under the run's load."""
     beside, instants = frame.extras.get("beside"), frame.run.instants
+    if beside is not None and beside["quantity"] == "loop":
+        return beside["loop"][0], beside["loop"][1]
     if beside is None or beside["quantity"] != "displacement":
         return np.zeros(0), np.zeros(0)
     x, t = beside["x"], beside["t"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from app.units import percent, unit_for
 from app.worker.geometry import DrawnRods, floats, thinned
 from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from app.worker.thrust import thrust
+from solver.definitions import SettingError
 from solver.discrete import Problem
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
@@ -22,6 +24,8 @@ from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.study.comparison import Comparison, OtherResults
+from solver.study.loop_comparison import LoopComparison
+from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of
 from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 
@@ -238,8 +242,11 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
     displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
     iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.
+    Of a measured loop "loop", (2, n_rows), instead of what is of places.
     """
     brought = needs.brought
+    if isinstance(brought, MeasuredLoop):
+        return _loop_beside(brought, sampler, iterate)
     if brought is None or brought.scene != sampler.settings.scene:
         return None
     laid = _laid_beside(brought, sampler, needs.interface)
@@ -251,6 +258,23 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
         "values": floats(brought.values),
         "distance": laid.of(iterate),
         "interface": laid.interface,
+    }
+
+
+def _loop_beside(
+    measured: MeasuredLoop, sampler: Sampler, iterate: Iterate
+) -> dict[str, Any] | None:
+    """A measured loop and its distance to the iterate, if it is of the same quantities."""
+    loop, distance = sampler.loop, np.nan
+    if measured.units != (loop.across[1], loop.up[1]):
+        return None
+    with suppress(SettingError):
+        distance = LoopComparison(measured, loop, sampler.problem).of(iterate)
+    return {
+        "name": measured.source,
+        "quantity": "loop",
+        "loop": floats(np.stack([measured.displacement, measured.force])),
+        "distance": distance,
     }
 
 

@@ -67,6 +67,11 @@ class FinishedRun:
         return self.loop or loop_of(self.settings, self.problem)
 
     @property
+    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Titles and units of displacement and force of that loop."""
+        return self._loop.across, self._loop.up
+
+    @property
     def states(self) -> States:
         """What sticks, slips and is open, from which a run of like settings may start."""
         return states_of(self.iterate)

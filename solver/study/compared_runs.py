@@ -1,0 +1,191 @@
+"""Runs beside a measured loop, over the settings that are fitted to it, on their scales z."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from solver.arrays import Array
+from solver.latin import Ending
+from solver.reference.rules import States
+from solver.refusal import RefusedError
+from solver.scenes import loop_of
+from solver.settings import Settings
+from solver.study.fittable import scale_of
+from solver.study.loop_comparison import LoopComparison, rms
+from solver.study.measured_loop import MeasuredLoop
+from solver.study.quantities.finished import finished_run
+
+COARSE, FAR = math.log(3.0), math.log(1e3)
+"""Steps from the start by which each setting is tried alone, and how far they go."""
+SAME = 1e-6
+"""Share of the misfit up to which two are the same."""
+ACCURACY = 1e-4
+"""Of runs that are not certified."""
+FINE, MOST_STEPS = 1e-7, 40
+"""Tolerance, and steps, of each."""
+STEP = 1e-4
+"""Of differences, in z, of the method."""
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedRun:
+    """A run beside a measured loop.
+
+    Attributes
+    ----------
+    values
+        Of the settings that are fitted, shape (p,), in SI.
+    instants, displacement, force
+        Its loop, shape (n_instants,), in SI.
+    differences, drive
+        Of what it finds, and of what is given, to every row; shares of the measured range.
+    beside
+        The loop as it is laid beside the problem.
+    is_certified
+        Whether it is a solution up to rounding.
+    """
+
+    values: Array
+    instants: Array
+    displacement: Array
+    force: Array
+    differences: Array
+    drive: Array
+    beside: LoopComparison
+    is_certified: bool
+
+    @property
+    def distance(self) -> float:
+        """Distance to the loop."""
+        return rms(self.differences)
+
+
+class ComparedRuns:
+    """Runs over z, each beside the measured loop and from the statuses of the one before.
+
+    `watch` is called after each with how many there were, and the nearest one.
+    """
+
+    def __init__(
+        self,
+        settings: Settings,
+        measured: MeasuredLoop,
+        names: Sequence[str],
+        watch: Callable[[int, ComparedRun], object],
+    ) -> None:
+        self.names, self.scales = tuple(names), [scale_of(settings, name) for name in names]
+        self.bounds = np.array([scale.bounds() for scale in self.scales]).T
+        accuracy = min(settings.accuracy, ACCURACY)
+        self._settings = settings.replace(finish="at-once", accuracy=accuracy)
+        self._measured, self._watch = measured, watch
+        self._before: States | None = None
+        self._known: dict[bytes, Array] = {}
+        self.count = 0
+        self.first = self.nearest = self.run(np.zeros(len(names)))
+
+    def changes(self, z: Array) -> dict[str, float]:
+        """Values of the settings by name."""
+        scaled = zip(self.names, self.scales, z, strict=True)
+        return {name: scale.value(float(at)) for name, scale, at in scaled}
+
+    def run(self, z: Array) -> ComparedRun:
+        """Run at a place.
+
+        Raises
+        ------
+        RefusedError
+            For settings that do not fit together, or a run that does not converge.
+        """
+        changes = self.changes(z)
+        settings = self._settings.replace(**changes)
+        finished = finished_run(settings, errors=False, indicators=False, before=self._before)
+        self.count += 1
+        status, problem, iterate = finished.solution.status, finished.problem, finished.iterate
+        if status.ending is not Ending.CONVERGED:
+            values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
+            raise RefusedError("the run", values, "one that converges", status.advice)
+        self._before = finished.states
+        beside = LoopComparison(self._measured, loop_of(settings, problem), problem)
+        loop = beside.both(iterate)
+        return ComparedRun(
+            np.array(list(changes.values())),
+            problem.instants,
+            *loop,
+            *beside.differences(*loop),
+            beside,
+            finished.solution.is_certified,
+        )
+
+    def differences(self, z: Array) -> Array:
+        """Of a run, shape (n_rows,); NaN where there is none, so that no step goes there."""
+        key = z.tobytes()
+        if key not in self._known:
+            self._known[key] = np.full(len(self.first.differences), np.nan)
+            with contextlib.suppress(RefusedError):
+                run = self.run(z)
+                self._known[key] = run.differences
+                self.nearest = min(self.nearest, run, key=lambda each: each.distance)
+            self._watch(self.count, self.nearest)
+        return self._known[key]
+
+    def jacobian(self, z: Array, step: float = STEP) -> Array:
+        """Derivatives of the differences, shape (n_rows, p), by steps both ways or where they go.
+
+        The smallest step is taken one way only.
+        """
+        columns = []
+        for way, (low, high), at in zip(np.eye(len(z)), self.bounds.T, z, strict=True):
+            ends = [end for end in (at + step, at - step) if low <= end <= high]
+            if step == STEP:
+                ends = ends[:1]
+            tried = {end - at: self.differences(z + (end - at) * way) for end in ends}
+            known = {0.0: self.differences(z)} | tried
+            known = {move: left for move, left in known.items() if np.isfinite(left).all()}
+            first, last = min(known), max(known)
+            columns.append((known[last] - known[first]) / ((last - first) or 1.0))
+        return np.array(columns).T
+
+    def coarse(self) -> Array:
+        """Place to begin at: by large steps in one setting after the other, while they help.
+
+        They go on where nothing changes, as where a start lets nothing slip.
+        """
+        best = np.zeros(len(self.names))
+        for place, (low, high) in enumerate(self.bounds.T):
+            middle = best
+            for way in (-COARSE, COARSE):
+                moved = middle
+                while best is middle or moved is best:
+                    at = moved[place] + way
+                    if abs(at) > FAR or not low <= at <= high:
+                        break
+                    moved = np.where(np.arange(len(best)) == place, at, moved)
+                    misfit, least = self._misfit(moved), self._misfit(best)
+                    if misfit < (1.0 - SAME) * least:
+                        best = moved
+                    elif not misfit <= (1.0 + SAME) * least:
+                        break
+        return best
+
+    def _misfit(self, z: Array) -> float:
+        return float(np.sum(self.differences(z) ** 2))
+
+    def solve(self, z: Array, pull: Array) -> Array:
+        """Place of the least squares from a place on, with so much pull (n, p) to the start."""
+        found = least_squares(
+            lambda at: np.concatenate([self.differences(at), pull @ at]),
+            z,
+            jac=lambda at: np.concatenate([self.jacobian(at), pull]),
+            bounds=self.bounds,
+            xtol=FINE,
+            ftol=FINE,
+            gtol=FINE**2,
+            max_nfev=MOST_STEPS,
+        )
+        return np.asarray(found.x)

@@ -1,0 +1,173 @@
+"""What a fit found, for people and scripts: lines, a CSV file, a page, settings, the loop."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solver.checked import dump
+from solver.definitions import about
+from solver.disk import write
+from solver.scenes.words import listed
+from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.compared_runs import ComparedRun
+from solver.study.fit import Fit
+from solver.study.loop_comparison import ALIKE, rms
+from solver.study.measured_loop import MeasuredLoop, table_of
+from solver.study.page import (
+    PlotSection,
+    Section,
+    aligned,
+    bullets,
+    plain_table,
+    write_csv,
+    write_page,
+)
+
+PARAMETERS, LOOP, SETTINGS, PAGE = "parameters.csv", "loop.csv", "settings.toml", "fit.html"
+FILES = PARAMETERS, LOOP, SETTINGS, PAGE
+LEAST = 0.005
+"""Correlation that is printed as 0."""
+
+
+def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
+    """What was found, a sentence or a row of a table a line."""
+    return [*aligned(_rows(fit)).splitlines(), *messages(fit), _distances(fit, measured)]
+
+
+def messages(fit: Fit) -> list[str]:
+    """What the loop cannot tell, and what else there is to know, in sentences."""
+    lost = [name for name, error in zip(fit.names, fit.errors, strict=True) if math.isinf(error)]
+    values = dict(zip(fit.names, fit.values, strict=True))
+    sentences = []
+    for powers, margin in fit.together:
+        if math.isnan(margin):
+            sentences.append(f"Only a combination of {listed(list(powers))} is known.")
+            continue
+        product = math.prod(float(values[name]) ** power for name, power in powers.items())
+        factors = (n if power == 1.0 else f"{n}^{power:g}" for n, power in powers.items())
+        known = f"{' * '.join(factors)} is known: {product:.6g} in SI units"
+        sentences.append(f"Only {known}, with a standard error of {100.0 * margin:.2g} %.")
+    if lost and fit.together:
+        sentences.append(
+            f"The loop does not tell {listed(lost)} apart: they stay as near to where they began "
+            "as that allows."
+        )
+    elif lost:
+        sentences.append(
+            f"The loop says nothing of {listed(lost)}: what is given here is where it began."
+        )
+    nearest = fit.nearest
+    if rms(nearest.drive) > ALIKE:
+        sentences.append(f"{nearest.beside.drive_message(nearest.drive)}.")
+    if not nearest.is_certified:
+        sentences.append("The nearest run is not certified, so that values may be less exact.")
+    return sentences
+
+
+def _distances(fit: Fit, measured: MeasuredLoop) -> str:
+    near, far = (f"{100.0 * run.distance:.4g} %" for run in (fit.nearest, fit.first))
+    rows = f"{len(fit.nearest.differences)} of {len(measured.force)} rows"
+    quantity = fit.nearest.beside.quantity
+    return f"{quantity}: {near} from {measured.source}, {far} before; {fit.runs} runs, {rows}"
+
+
+def _rows(fit: Fit) -> list[list[str]]:
+    """Table of the settings: value, standard error and correlations."""
+    table = [["setting", "value", "standard error", "start", *_correlated(fit)]]
+    entries = zip(fit.names, fit.values, fit.errors, fit.start, fit.correlation, strict=True)
+    for name, value, error, start, correlation in entries:
+        unit = about(fit.settings.definitions()[name]).unit
+        shown = f"{error:.2g}" if math.isfinite(error) else "not known alone"
+        with_others = ["-" if math.isnan(c) else f"{c + 0.0:.2f}" for c in correlation]
+        cells = [f"{value:.6g} {unit}".strip(), shown, f"{start:.6g}"]
+        table.append([name, *cells, *(with_others if len(fit.names) > 1 else [])])
+    return table
+
+
+def _correlated(fit: Fit) -> list[str]:
+    return [f"with {name}" for name in fit.names] if len(fit.names) > 1 else []
+
+
+def as_json(fit: Fit, measured: MeasuredLoop) -> dict[str, Any]:
+    """The same for scripts; None where there is no number."""
+    entries = zip(fit.names, fit.start, fit.values, fit.errors, strict=True)
+    return {
+        "quantity": fit.nearest.beside.quantity,
+        "distance": fit.nearest.distance,
+        "distance_before": fit.first.distance,
+        "runs": fit.runs,
+        "rows": len(measured.force),
+        "rows_compared": len(fit.nearest.differences),
+        "parameters": {
+            name: {"start": float(start), "value": float(value), "standard_error": _finite(error)}
+            for name, start, value, error in entries
+        },
+        "correlation": [[_finite(value) for value in row] for row in fit.correlation],
+        "messages": messages(fit),
+        "settings": {"scene": fit.settings.scene, **fit.settings.values()},
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def write_loop(run: ComparedRun, folder: Path) -> None:
+    """Write the loop of a run as CSV, with time, in SI."""
+    across, up = (f"{name} [{unit}]" for name, unit in run.beside.axes)
+    columns = {"time [s]": run.instants, across: run.displacement, up: run.force}
+    write(folder / LOOP, table_of(columns))
+
+
+def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
+    """Write all files; what is to be told of them.
+
+    Raises
+    ------
+    OSError
+        When one cannot be written.
+    """
+    head = ["setting", "unit", "start", "value", "standard_error"]
+    units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
+    head += [f"correlation_{name}" for name in fit.names]
+    entries = zip(fit.names, units, fit.start, fit.values, fit.errors, fit.correlation, strict=True)
+    rows = [[*entry[:5], *entry[5]] for entry in entries]
+    write_csv(folder / PARAMETERS, head, rows)
+    write_loop(fit.nearest, folder)
+    write(folder / SETTINGS, dump(fit.settings))
+    sentences = [
+        *messages(fit),
+        _distances(fit, measured),
+        f"{measured.source}: {measured.message}",
+    ]
+    sections: list[Section] = [
+        bullets(sentences),
+        plain_table(_rows(fit)),
+        PlotSection("Loop and differences", _panels(fit, measured)),
+        f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
+    ]
+    return write_page(
+        folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections
+    )
+
+
+def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
+    run, beside = fit.nearest, fit.nearest.beside
+    x, y = (PanelAxis(title, unit) for title, unit in beside.axes)
+    curves = (
+        PanelCurve("measured", measured.displacement, measured.force, 5, "points"),
+        PanelCurve("before", fit.first.displacement, fit.first.force, 0, "dotted"),
+        PanelCurve("fitted", run.displacement, run.force, 1),
+    )
+    numbers = np.arange(1.0, len(beside.counted) + 1.0)[beside.counted]
+    left = PanelCurve("difference", numbers, 100.0 * run.differences, 1, "points")
+    share = PanelAxis(f"{beside.quantity}: fitted less measured", "% of its range")
+    return [
+        Panel("Force over displacement", x, y, curves),
+        Panel("What is left", PanelAxis("row of the table", whole=True), share, (left,)),
+    ]
