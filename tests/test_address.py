@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
+from app.link import CASES, LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
@@ -61,6 +61,16 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
     assert query_of(place) == f"?lesson={name}&k_scale=3.0"
 
 
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_is_its_name_and_what_was_changed(name: str) -> None:
+    place, refusal = read(f"?case={name}&friction=0.25")
+    assert not refusal
+    assert place.plots.split(",") == list(CASES[name].views or ("",))
+    assert query_of(place) == f"?case={name}&friction=0.25"
+    assert read(query_of(place))[0].settings.values() == place.settings.values()
+    assert read(f"?case={name}&plots=Convergence")[0].plots == "Convergence"
+
+
 @pytest.mark.parametrize(
     ("query", "told"),
     [
@@ -69,6 +79,7 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
         ("substructures=60", "raise Elements"),
         ("scene=moon", "there is no scene moon"),
         ("lesson=moon", "there is no lesson moon"),
+        ("case=moon", "there is no case moon"),
         ("tab=Moon", "Live, What if"),
         ("instant=2", "from 0 to 1"),
         ("plots=Convergence,Moon", "there is no plot Moon"),

@@ -27,9 +27,11 @@ KEYS = {
     "how": str,
     "change": str,
     "controls": list,
+    "views": list,
     "picture": dict,
 }
-"""Keys of the table `case`, and the type of each; a case without a picture has its scene's."""
+"""Keys of the table `case`, and the type of each; `OPTIONAL` may be left out."""
+OPTIONAL = "views", "picture"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +58,10 @@ class Case:
         What it follows from, and how it is known.
     change, controls
         What to change first, and the names of its settings.
+    views
+        Names of the plots that come to the front.
     picture
-        By which it is found.
+        By which it is found; without one that of the scene.
     """
 
     name: str
@@ -73,6 +77,7 @@ class Case:
     how: str
     change: str
     controls: tuple[str, ...]
+    views: tuple[str, ...]
     picture: Emblem
 
 
@@ -102,7 +107,7 @@ def all_cases() -> list[Case]:
 
 
 def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
-    check_keys(entries, KEYS, optional=("picture",))
+    check_keys(entries, KEYS, optional=OPTIONAL)
     if not 0.0 < entries["tolerance"] < 1.0:
         allowed = "a share above 0 and below 1"
         raise SettingError("tolerance", entries["tolerance"], allowed, "say what the mesh leaves")
@@ -114,5 +119,6 @@ def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
     paths = entries.get("picture", CATALOGUE[settings.scene].emblem._asdict())
     check_keys(paths, dict.fromkeys(Emblem._fields, str))
     read = {key: value for key, value in entries.items() if key != "quantity"}
-    read |= {"controls": tuple(entries["controls"]), "picture": Emblem(**paths)}
+    read |= {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
+    read["picture"] = Emblem(**paths)
     return Case(name=name, settings=settings, reading=reading(entries["quantity"]), **read)
