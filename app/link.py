@@ -10,6 +10,7 @@ from typing import Any
 from urllib.parse import parse_qsl, quote
 
 import panel as pn
+import param
 from bokeh.core.properties import String
 from bokeh.model import DataModel
 from bokeh.models import CustomJS
@@ -37,8 +38,9 @@ if (page.copied) {
 }
 """
 BACK = """
-addEventListener("popstate", () => { page.search = location.search })
+addEventListener("popstate", () => { page.search = ""; page.search = location.search || "?" })
 """
+"""One may come back to the same address again, and to that which says nothing."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ class Link:
         self._state, self._location = state, pn.state.location
         self.query = query_of(place_of(state))
         self.browser = Browser(name="browser")
-        self.browser.on_change("search", lambda name, old, new: self.go(new))
+        self.browser.on_change("search", lambda name, old, new: new and self.go(new))
         args = {"page": self.browser}
         self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
         if pn.state.curdoc is not None:
@@ -130,11 +132,13 @@ class Link:
 
 def show(state: PageState, place: Place) -> None:
     """Show what an address says."""
-    state.param.update(**{name: getattr(place, name) for name in SHARED})
-    if place.instant is not None:
-        state.select(phase=place.instant)
-    if dump(place.settings) != dump(state.settings):
-        state.adopt(place.settings)
+    # At once: what is between two addresses has none.
+    with param.parameterized.batch_call_watchers(state):
+        state.param.update(**{name: getattr(place, name) for name in SHARED})
+        if place.instant is not None:
+            state.select(phase=place.instant)
+        if dump(place.settings) != dump(state.settings):
+            state.adopt(place.settings)
     if place.iteration:
         state.reset(place.iteration)
 

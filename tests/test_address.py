@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.link import CASES, LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
+from app.lessons.catalogue import CASES, settings_of
+from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
@@ -69,6 +70,15 @@ def test_a_case_is_its_name_and_what_was_changed(name: str) -> None:
     assert query_of(place) == f"?case={name}&friction=0.25"
     assert read(query_of(place))[0].settings.values() == place.settings.values()
     assert read(f"?case={name}&plots=Convergence")[0].plots == "Convergence"
+
+
+def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
+    state = PageState(settings_of(CASES["crate"]), case="crate")
+    seen: list[str] = []
+    watched = ["settings", "case", "plots"]
+    state.param.watch(lambda *events: seen.append(query_of(place_of(state))), watched)
+    show(state, read("?scene=bar&peak=800.0")[0])
+    assert seen == ["?scene=bar&peak=800.0"]
 
 
 @pytest.mark.parametrize(
