@@ -91,7 +91,7 @@ class CasePanel:
         """Show the case that is open, or none."""
         case, self._controls = self.case, []
         if case is not None:
-            self._state.readings = [case.reading.name]
+            self._state.readings = [case.quantity.name]
             self._controls = [SettingControl(name, self._state) for name in case.controls]
             self.view[:] = self._parts(case)
             self.update()
@@ -105,14 +105,14 @@ class CasePanel:
         case, frame = self.case, self._state.frame
         if case is None:
             return
-        found = math.nan if frame is None else frame.readings.get(case.reading.name, math.nan)
-        quantity, is_known, run, off = case.reading.quantity, self._is_known(case), PENDING, ""
+        found = math.nan if frame is None else frame.readings.get(case.quantity.name, math.nan)
+        quantity, is_known, run, off = case.quantity, self._is_known(case), PENDING, ""
         if math.isfinite(found):
             run = _written(found, quantity)
             off = f" ({100.0 * abs(found / case.known - 1.0):.1f} % off)" if is_known else ""
         known = "known" if is_known else "known before the change"
         words = f"{known} **{_written(case.known, quantity)}**, this run **{run}**{off}"
-        self._numbers.object = f"{case.reading.title}: {words}"
+        self._numbers.object = f"{quantity.title}: {words}"
 
     def _is_known(self, case: Case) -> bool:
         """Whether what is known is of these settings, however they are solved."""

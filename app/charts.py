@@ -34,7 +34,6 @@ LABEL = 34
 """Characters of a line beside an axis."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
-THIN = "points", "faint"
 STYLE = """<style>
 .panels { display: grid; gap: 0 1rem; grid-template-columns:
   repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
@@ -91,16 +90,15 @@ def in_units(chart: Chart) -> Chart:
         y_axis, y = _in_unit(chart.y, chart.y_values)
         scale, size = _in_unit(chart.scale, chart.z.ravel())
         more = {"x_values": chart.x_values / x, "y_values": chart.y_values / y}
-        more |= {"scale": scale, "z": chart.z / size, "level": chart.level and chart.level / size}
+        more |= {"scale": scale, "z": chart.z / size}
     else:
         drawn = [*chart.curves, *([] if runs is None else [runs])]
         x_axis, x = _in_unit(chart.x, *(each.x for each in drawn))
         y_axis, y = _in_unit(chart.y, *(each.y for each in drawn))
-        size = y
         curves = [replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves]
         more = {"curves": tuple(curves)}
     if runs is not None:
-        runs = replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / size)
+        runs = replace(runs, x=runs.x / x, y=runs.y / y)
     return replace(chart, x=x_axis, y=y_axis, runs=runs, **more)
 
 
@@ -201,18 +199,17 @@ def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
     y = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
-    is_thin = curve.line in THIN
+    is_thin = curve.line == "points"
     looks: dict[str, Any] = {
         "color": COLORS[curve.hue],
         "line_dash": "solid" if is_thin else curve.line,
         "line_width": 1.0 if is_thin else 2.2,
-        "alpha": 0.35 if curve.line == "faint" else 1.0,
     }
     if panel.runs is None:
         told = [("", curve.label), (panel.x.label, "@x"), (panel.y.label, "@y")]
         looks |= {"tools": ["hover"], "hover_tooltips": told}
     yield hv.Curve((curve.x, y), "x", "y").opts(**looks)
-    if curve.line == "points":
+    if is_thin:
         yield hv.Points((curve.x, y), ["x", "y"]).opts(color=COLORS[curve.hue], size=6)
 
 
@@ -231,8 +228,6 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
     )
     paths, labels = contours(chart)
     yield hv.Contours(paths, ["x", "y"]).opts(color="#000", alpha=0.75, line_width=1.2)
-    if chart.level is not None:
-        labels = known.assign(text=[f"{value:.2g}" for value in known["value"]])
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
@@ -279,8 +274,7 @@ def contours(chart: Map) -> tuple[list[Array], list[tuple[float, float, str]]]:
         return [], []
     (x, x_back), (y, y_back), (z, _) = map(_even, (chart.x, chart.y, chart.scale))
     known = chart.z[np.isfinite(chart.z)]
-    several = levels(known, is_logarithmic=chart.scale.logarithmic)
-    at = several if chart.level is None else [chart.level]
+    at = levels(known, is_logarithmic=chart.scale.logarithmic)
     made = contour_generator(x(chart.x_values), y(chart.y_values), z(chart.z))
     lines = [(f"{level:.4g}", line.T) for level in at for line in made.lines(z(level))]
     paths = [np.stack([x_back(across), y_back(up)], 1) for _, (across, up) in lines]

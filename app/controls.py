@@ -23,7 +23,7 @@ STEPS = 80
 """Steps of a slider at least."""
 POINTS = "points"
 GROUPS = (
-    *("Load", "Top", "Left", "Right", "Contact", "Bar", "Strand", "Body", "Body force"),
+    *("Load", "Ends", "Top", "Left", "Right", "Contact", "Bar", "Strand", "Body", "Body force"),
     *("Decomposition", "Method", "Stop"),
 )
 """Order of the groups: what the scene is, then how it is solved."""

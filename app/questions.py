@@ -19,8 +19,8 @@ from app.worker.references import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import behind, kind_of, law_of, loads_of
 from solver.settings import Settings
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
-from solver.study.quantities.quantities import QUANTITIES, reading
 from solver.study.quantities.quantity import Quantity
 from solver.study.sweep import Plan, plan_of
 from solver.study.sweep.plan import axis_of

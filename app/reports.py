@@ -65,14 +65,8 @@ class Reports:
             size="small",
             description="How often each method runs; its median time counts.",
         )
-        self.sizes = pmui.Switch(
-            label="Growth with the size",
-            description="Also measure other numbers of elements, instants and substructures; "
-            "takes several times as long.",
-            margin=(10, 6),
-        )
         self.is_quick = pmui.Switch(label="A quarter of the cases", value=True, margin=(10, 6))
-        fields = (self.kind, self.repeats, self.sizes, self.is_quick)
+        fields = (self.kind, self.repeats, self.is_quick)
         for field in fields:
             field.param.watch(lambda event: self._show(), "value")
         self._start = button("Start", self.start, icon="play_arrow", **LOOKS)
@@ -101,8 +95,7 @@ class Reports:
         """The command that is chosen, and the settings that it has."""
         arguments = {
             FIGURES: ["figures"],
-            STUDY: ["study", SETTINGS, "--repeats", str(self.repeats.value)]
-            + ["--no-growth"] * (not self.sizes.value),
+            STUDY: ["study", SETTINGS, "--repeats", str(self.repeats.value)],
             STABILITY: ["stability", *["--quick"] * self.is_quick.value],
             PROOF: ["proof"],
         }[self.kind.value]
@@ -157,7 +150,7 @@ class Reports:
         kind, is_busy = self.kind.value, self.job is not None
         is_refused = kind == STUDY and not has_reference(self.state.settings)
         self._words.object = WORDS[kind] + f" {NO_REFERENCE}" * is_refused
-        self.repeats.visible = self.sizes.visible = kind == STUDY
+        self.repeats.visible = kind == STUDY
         self.is_quick.visible = kind == STABILITY
         files = DONE.get(self.command, {})
         label = "Do it again" if files else "Start"

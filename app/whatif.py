@@ -24,11 +24,10 @@ from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
-from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep import Plan
-from solver.study.sweep.chart import chart_of, is_map, ordered
-from solver.study.sweep.report import counts
-from solver.study.sweep.table import csv_of
+from solver.study.sweep.chart import chart_of, is_map
+from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"
 NEAR = 0.04
@@ -269,11 +268,11 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
     """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
     place = [np.nan, np.nan]
-    axes = ordered(plan)[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
+    axes = plan.axes[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
     for i, axis in enumerate(axes):
         value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
         if axis.is_numeric:
-            place[i] = value / sizes_of(plan.unit(axis)).get(unit, 1.0)
+            place[i] = value / sizes_of(axis.unit).get(unit, 1.0)
         elif value in axis.values:
             place[i] = axis.values.index(value)
     return place[0], place[1]

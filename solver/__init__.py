@@ -1,6 +1,6 @@
 """Slipfront's engine: frictional contact by the multiscale LATIN method.
 
->>> from solver import Latin, Rods, Stack, iterations, solve
+>>> from solver import End, Latin, Rods, Stack, iterations, solve
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Any
 
 HOMES = {
+    "End": "solver.discrete",
     "Latin": "solver.latin",
     "Problem": "solver.discrete",
     "Rods": "solver.discrete",
@@ -19,7 +20,7 @@ HOMES = {
 """Where the names stand that are given here: loaded when asked for, as NumPy is told beforehand how
 many threads it may use (`solver/__main__.py`)."""
 
-__all__ = ["Latin", "Problem", "Rods", "Stack", "iterations", "solve"]
+__all__ = ["End", "Latin", "Problem", "Rods", "Stack", "iterations", "solve"]
 
 
 def __getattr__(name: str) -> Any:

@@ -40,33 +40,35 @@ _BEHIND = re.compile(r"(.*?)[\s,_/.:;-]+([^\s,_]+)")
 _IN_OR_SLASH = re.compile(r"(.*?)(?:\s+in\s+|\s*/\s*)(.+)")
 
 Dimensions = tuple[int, ...]
-"""Exponents of N, m, s and °."""
+"""Exponents of N, m, s, ° and K."""
 
 _POWERS = {"n": -9, "µ": -6, "μ": -6, "u": -6, "m": -3, "c": -2, "": 0, "da": 1, "h": 2}
 _POWERS |= {"k": 3, "M": 6, "G": 9}
 _WITH_PREFIX: dict[str, tuple[int, Dimensions]] = {
-    "N": (1, (1, 0, 0, 0)),
-    "m": (1, (0, 1, 0, 0)),
-    "s": (1, (0, 0, 1, 0)),
-    "Pa": (1, (1, -2, 0, 0)),
-    "bar": (100_000, (1, -2, 0, 0)),
-    "Nm": (1, (1, 1, 0, 0)),
+    "N": (1, (1, 0, 0, 0, 0)),
+    "m": (1, (0, 1, 0, 0, 0)),
+    "s": (1, (0, 0, 1, 0, 0)),
+    "Pa": (1, (1, -2, 0, 0, 0)),
+    "bar": (100_000, (1, -2, 0, 0, 0)),
+    "Nm": (1, (1, 1, 0, 0, 0)),
 }
 _SYMBOLS: dict[str, tuple[Fraction, Dimensions]] = {
     prefix + unit: (size * Fraction(10) ** power, dimensions)
     for unit, (size, dimensions) in _WITH_PREFIX.items()
     for prefix, power in _POWERS.items()
 } | {
-    "Nmm": (Fraction(1, 1000), (1, 1, 0, 0)),
-    "sec": (Fraction(1), (0, 0, 1, 0)),
-    "min": (Fraction(60), (0, 0, 1, 0)),
-    "h": (Fraction(3600), (0, 0, 1, 0)),
-    "°": (Fraction(1), (0, 0, 0, 1)),
-    "deg": (Fraction(1), (0, 0, 0, 1)),
-    "rad": (Fraction(180.0 / math.pi), (0, 0, 0, 1)),
-    "%": (Fraction(1, 100), (0, 0, 0, 0)),
-    "1": (Fraction(1), (0, 0, 0, 0)),
-    "-": (Fraction(1), (0, 0, 0, 0)),
+    "Nmm": (Fraction(1, 1000), (1, 1, 0, 0, 0)),
+    "sec": (Fraction(1), (0, 0, 1, 0, 0)),
+    "min": (Fraction(60), (0, 0, 1, 0, 0)),
+    "h": (Fraction(3600), (0, 0, 1, 0, 0)),
+    "°": (Fraction(1), (0, 0, 0, 1, 0)),
+    "deg": (Fraction(1), (0, 0, 0, 1, 0)),
+    "rad": (Fraction(180.0 / math.pi), (0, 0, 0, 1, 0)),
+    "K": (Fraction(1), (0, 0, 0, 0, 1)),
+    "°C": (Fraction(1), (0, 0, 0, 0, 1)),
+    "%": (Fraction(1, 100), (0, 0, 0, 0, 0)),
+    "1": (Fraction(1), (0, 0, 0, 0, 0)),
+    "-": (Fraction(1), (0, 0, 0, 0, 0)),
 }
 _NOT_TAKEN = {"lbf", "lb", "lbs", "kip", "psi", "ksi", "in", "inch", "ft", "kgf", "kp", "kg", "hz"}
 _SPELT = {symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")} | _NOT_TAKEN
@@ -78,6 +80,7 @@ _EXAMPLES = {
     "Pa": "Pa, kPa, MPa, GPa, bar, N/mm2",
     "°": "°, deg, rad",
     "1/m": "1/m, 1/mm",
+    "K": "K, °C",
     "N·m/m": "N·m/m, kN·m/m, N",
     "": "plain numbers or %",
 }
@@ -165,7 +168,7 @@ def are_units(cells: list[str]) -> bool:
 
 def parse_unit(text: str) -> tuple[float, Dimensions] | None:
     """Size in SI and dimensions of a unit such as `kN/m`; None of what is none."""
-    size, exponents = Fraction(1), [0, 0, 0, 0]
+    size, exponents = Fraction(1), [0, 0, 0, 0, 0]
     for sign, symbol, power in _factors(text):
         if symbol not in _SYMBOLS:
             return None

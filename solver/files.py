@@ -152,7 +152,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     if problem.inside is None:
         fields = {
             "x": problem.positions,
-            "displacement": iterate.displacement,
+            "displacement": problem.at_rest(iterate.displacement),
             "friction_force": iterate.friction_force,
             "determinate": determinate_forces(problem),
             "status": iterate.status,

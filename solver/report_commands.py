@@ -13,21 +13,20 @@ from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.remarks import print_tables
 from solver.study.cases.case import case_from_file
-from solver.study.figures import paper_figures, write_figures
+from solver.study.figures import paper_figures
+from solver.study.figures.figure import FILE, write_figures
+from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned
 from solver.study.proof import report as proof
 from solver.study.proof.case import known_case, rows_of
 from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.sizes import crossover, growth
+from solver.study.speed.sizes import times_at_sizes
 from solver.study.speed.study_report import (
     conditions,
-    growth_table,
     notes,
     ratio_table,
     table,
-    winners,
     write_curves,
-    write_growth,
     write_study,
 )
 from solver.study.stability.case import Case
@@ -40,9 +39,10 @@ from solver.study.stability.report import (
     RANDOM_NOTES,
     RANDOM_TITLE,
     TITLE,
-    StabilityReport,
     cases_of,
+    last_lines,
     line,
+    write_stability,
 )
 
 REFUSED = 2
@@ -59,12 +59,7 @@ def add_reports(commands: Any) -> None:
     study.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     study.add_argument("--out", type=Path, default=Path("study"), metavar="DIR")
     study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
-    study.add_argument(
-        "--no-growth", action="store_false", dest="growth", help="leave out other sizes"
-    )
-    study.add_argument(
-        "--large", action="store_true", help="sizes that take minutes too, on the map of the end"
-    )
+    study.add_argument("--large", action="store_true", help="sizes that take minutes, too")
     study.set_defaults(command=_study)
     stable = commands.add_parser(
         "stability", help="stiff and extreme cases, or random runs, each with a verdict"
@@ -90,7 +85,11 @@ def add_reports(commands: Any) -> None:
 
 @contextlib.contextmanager
 def writing(folder: Path, *files: str) -> Iterator[None]:
-    """Make a folder for files; refuse one that cannot be made or written to, before all work."""
+    """Make a folder for files; refuse one that cannot be made or written to, before all work.
+
+    It goes again where nothing was written into it.
+    """
+    is_new = not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file in files or ("any",):
@@ -101,17 +100,21 @@ def writing(folder: Path, *files: str) -> Iterator[None]:
     except OSError as problem:
         allowed_folder = "a folder that can be made and written to"
         raise SettingError("--out", str(folder), allowed_folder, why(problem)) from None
+    finally:
+        if is_new:
+            with contextlib.suppress(OSError):  # as of one that holds files
+                folder.rmdir()
 
 
 def _figures(chosen: argparse.Namespace) -> int:
-    with writing(chosen.out):
-        figures = paper_figures()
-        files, notes = write_figures(figures, chosen.out)
+    with writing(chosen.out, FILE):
+        figures = paper_figures(paper_runs())
+        note = write_figures(figures, chosen.out)
     for figure in figures:
         print(f"{figure.heading} ({figure.verdict})")
         for finding in figure.findings:
             print(f"  {'+' if finding.holds else '-'} {finding.text}")
-    print("\n".join([*notes, f"{len(files)} files in {chosen.out}"]))
+    print("\n".join([*filter(None, [note]), f"{FILE} in {chosen.out}"]))
     return 0
 
 
@@ -123,20 +126,15 @@ def _study(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
         curves = error_against_time(settings, chosen.repeats)
-        write_curves(curves, chosen.out)
-        growths = growth(settings) if chosen.growth else []
-        write_growth(growths, chosen.out)
-        sizes = crossover(settings, large=chosen.large)
-        files, note = write_study(curves, growths, sizes, chosen.out)
+        files = write_curves(curves, chosen.out)
+        sizes = times_at_sizes(settings, large=chosen.large)
+        more, note = write_study(curves, sizes, chosen.out)
     print("\n".join(conditions(curves)), end="\n\n")
-    print(aligned(table(curves)), end="\n\n")
-    print(aligned(winners(curves)))
-    if growths:
-        print(f"\n{aligned(growth_table(growths))}")
-    print("", aligned(ratio_table(sizes)), *notes(sizes), sep="\n")
+    print(aligned(table(curves)))
+    print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
         print(note)
-    print(f"{len(files)} files in {chosen.out}")
+    print(f"{len(files + more)} files in {chosen.out}")
     return 0
 
 
@@ -160,12 +158,11 @@ def _stability(chosen: argparse.Namespace) -> int:
                 print(line(run), flush=True)
                 runs.append(run)
             is_whole = True
-        report = StabilityReport(runs, title, notes)
-        files = report.write(chosen.out)
-    print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
+        write_stability(runs, title, notes, chosen.out)
+    print("\n".join([*last_lines(runs, notes), f"{len(FILES)} files in {chosen.out}"]))
     if not is_whole:
         raise KeyboardInterrupt
-    return 0 if report.passes else 1
+    return 0 if all(run.passed for run in runs) else 1
 
 
 def _proof(chosen: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""The commands that check runs, or give one to others: `mesh`, `compare`, `lesson`, `fclib`."""
+"""The commands that check runs: `mesh`, `compare`, `lesson`."""
 
 from __future__ import annotations
 
@@ -10,19 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.disk import check_place, read_bytes, whole_file, why
+from solver.disk import read_bytes, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.latin.run_cost import run_cost
 from solver.lessons.lesson import check
 from solver.lessons.reading import lesson_from_file
-from solver.refusal import RefusedError
 from solver.remarks import prepared, print_tables
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
-from solver.study.fclib import can_write, contacts_of, instant_at, local_problem, write_fclib
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,
@@ -34,7 +32,8 @@ from solver.study.mesh import (
     value_on,
     which_to_refine,
 )
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
 
 
 def add_checks(commands: Any) -> None:
@@ -54,11 +53,6 @@ def add_checks(commands: Any) -> None:
     lesson = commands.add_parser("lesson", help="test what lessons claim")
     lesson.add_argument("files", nargs="+", type=Path, metavar="FILE", help="lessons (.toml)")
     lesson.set_defaults(command=_lesson)
-    fclib = _of_a_scene(commands, "fclib", "one instant as a contact problem for others", _fclib)
-    fclib.add_argument("--out", type=Path, required=True, metavar="FILE.hdf5", help="write it here")
-    fclib.add_argument(
-        "--instant", type=float, metavar="SECONDS", help="the nearest one; the last without"
-    )
 
 
 def _of_a_scene(
@@ -87,7 +81,7 @@ def _mesh(chosen: argparse.Namespace) -> int:
         coarse, middle, fine = (values[size_of(run)] for run in runs)
         refinements.append(Refinement((coarse, middle, fine), own))
     elements, instants = refinements
-    unit = asked.quantity.unit
+    unit = asked.unit
     print(f"Elements: {answer(elements, unit)}")
     print(f"Instants: {answer(instants, unit, TIME_STEP)}")
     if which := which_to_refine(elements, instants):
@@ -95,14 +89,14 @@ def _mesh(chosen: argparse.Namespace) -> int:
     return 0 if which else 1
 
 
-def _value(settings: Settings, asked: Reading) -> float:
+def _value(settings: Settings, asked: Quantity) -> float:
     """Quantity of a run, printed; before it what that will take, if it is much."""
     most, size = settings.max_iterations, size_of(settings)
     cost = run_cost(discretise(settings), method_of(settings), most, with_reference=False)
     if cost.is_large:
         print(f"slipfront: {size} will take about {cost}", file=sys.stderr, flush=True)
     value = value_on(settings, asked)
-    print(f"{size:>32}  {value:.6g} {asked.quantity.unit}".rstrip(), flush=True)
+    print(f"{size:>32}  {value:.6g} {asked.unit}".rstrip(), flush=True)
     return value
 
 
@@ -150,33 +144,3 @@ def _lesson(chosen: argparse.Namespace) -> int:
             print(f"  {line}", flush=True)
             missed += not holds
     return int(missed > 0)
-
-
-def _fclib(chosen: argparse.Namespace) -> int:
-    settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    if not can_write():
-        remedy = "install it: pip install 'slipfront[peers]'"
-        raise RefusedError("FCLIB", "a file in HDF5", "where h5py is installed", remedy)
-    try:
-        check_place(chosen.out)
-        problem = prepared(settings, chosen.changes, tables)
-        instants = problem.instants
-        time = float(instants[-1]) if chosen.instant is None else chosen.instant
-        contacts, instant = contacts_of(problem), instant_at(time, instants)
-        solution = solve(problem, method_of(settings))
-        is_sure = solution.is_certified
-        scene = settings.scene
-        local = local_problem(contacts, solution.iterate, instant, scene, certified=is_sure)
-        with whole_file(chosen.out, "wb") as file:
-            write_fclib(file, local)
-    except OSError as trouble:
-        can = "a file in an existing folder that can be written"
-        raise SettingError("--out", str(chosen.out), can, why(trouble)) from None
-    if not is_sure:
-        print(
-            "slipfront: the run is not certified: where contacts stood before is what it has "
-            "found, and no solution stands in the file",
-            file=sys.stderr,
-        )
-    print(f"t = {instants[instant]:.6g} s, {len(contacts.friction)} points: {chosen.out}")
-    return 0 if solution.status.ending is Ending.CONVERGED else 1

@@ -19,9 +19,16 @@ from solver.report_commands import writing
 from solver.study.page import write_page
 from solver.study.sweep import Plan, Row, patience, plan_of, sweep
 from solver.study.sweep.plan import FORM, LOST, STUCK
-from solver.study.sweep.report import counts, growth, sections, title_of
+from solver.study.sweep.report import (
+    counts,
+    csv_of,
+    growth,
+    lines_of,
+    rows_in,
+    sections,
+    title_of,
+)
 from solver.study.sweep.run import field_file
-from solver.study.sweep.table import csv_of, lines_of, rows_in
 
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0

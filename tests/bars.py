@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 
+from solver.discrete.rods import End
 from solver.latin import iterations, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -27,6 +29,13 @@ def options(**values):
 def table(forces):
     times = np.linspace(0.0, 1.0, len(forces))
     return [[float(t), float(f)] for t, f in zip(times, forces, strict=True)]
+
+
+def pulled(bar, load, **changes):
+    """The same bar, held at its left end and pulled at its right one."""
+    load = np.asarray(load, dtype=float)
+    ends = {"left": End(displacement=np.zeros_like(load)), "right": End(force=load)}
+    return replace(bar, **ends, **changes)
 
 
 def sample(chosen, number):

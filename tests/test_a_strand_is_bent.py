@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ropes import exact_of, moment_of, settings_of, solved
 
-from solver import Rods, solve
+from solver import End, Rods, solve
 from solver.arrays import Array
 from solver.discrete.cross_section import CONSTRUCTIONS, CrossSection, WireLayer, seven_wire
 from solver.discrete.helical_wire import HelicalWire
@@ -25,8 +25,8 @@ from solver.reference.incremental import IncrementalRod
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
+from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.quantities.quantities import reading
 
 CLAMPED: dict[str, Any] = {"bending": "clamp", "layers": 2, "elements": 24, "instants": 31}
 CHANGING: dict[str, Any] = {**CLAMPED, "tension_load": "shaken"}
@@ -247,10 +247,10 @@ def rods(curvature: Array, elements: int = 40, substructures: int = 4) -> Rods:
         elements=elements,
         substructures=substructures,
         bound=np.full(elements + 1, BENT.bound),
-        load=np.zeros(len(curvature)),
+        left=End(displacement=np.zeros(len(curvature))),
+        right=End(displacement=np.zeros(len(curvature))),
         instants=instants,
         duration=1.0,
-        rigid_grip=True,
         body_force=WIRE.body_force(arc, curvature),
     )
 

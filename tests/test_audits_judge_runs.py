@@ -16,6 +16,7 @@ from solver import report_commands
 from solver.cli import main
 from solver.latin import Ending
 from solver.reference.choice import reference_of
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
 from solver.study.stability.case import (
@@ -36,15 +37,8 @@ from solver.study.stability.outcome import (
     Outcome,
     judge,
     judged_runs,
-    kkt_residual,
 )
-from solver.study.stability.report import (
-    COLUMNS,
-    RANDOM_NOTES,
-    RANDOM_TITLE,
-    StabilityReport,
-    cases_of,
-)
+from solver.study.stability.report import COLUMNS, cases_of, counts, last_lines
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -101,7 +95,7 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
         (GOOD, {RIGHT, UNSOLVED, UNCLEAR, NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = JudgedRun(Case("a", "b", {}, expected).by("fast"), found)
+            row = JudgedRun(Case("a", {}, expected).by("fast"), found)
             assert row.passed is (expected in passing)
 
 
@@ -110,7 +104,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
     monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
-    (row,) = judged_runs([Case("load", "zero", {"peak": 0.0}).by("fast")])
+    (row,) = judged_runs([Case("zero", {"peak": 0.0}).by("fast")])
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
     assert row.verdict is Verdict.WRONG
@@ -118,7 +112,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
 
 @pytest.fixture
 def written(tmp_path, monkeypatch, capsys):
-    case = Case("load", "zero <N>", {"peak": 0.0}, quick=True)
+    case = Case("zero <N>", {"peak": 0.0}, quick=True)
     given = [case.by(method) for method in METHODS]
     monkeypatch.setattr(report_commands, "cases_of", lambda scene, quick: given)
     folder = tmp_path / "made by" / "the command"
@@ -197,11 +191,9 @@ def test_a_wrong_row_is_listed_with_what_repeats_it():
         JudgedRun(random_case(draw("bar", 9, row), 9, row), nearly(error_force=error))
         for row, error in ((4, 0.5), (5, 0.0))
     )
-    report = StabilityReport([wrong, right], RANDOM_TITLE, RANDOM_NOTES)
-    text = "\n".join(report.lines())
+    text = "\n".join(last_lines([wrong, right], []))
     assert wrong.case.command in text
     assert right.case.command not in text
     assert "1 of 2 runs pass" in text
-    assert not report.passes
-    counted = {verdict: runs for verdict, runs, _ in report.counts()[1:]}
+    counted = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
     assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}

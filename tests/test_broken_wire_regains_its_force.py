@@ -49,7 +49,7 @@ def wire_forces(**changes):
 
 def points(scene):
     """Nodes, that of the break twice, which are points of the interfaces: none held."""
-    return slice(1, -1 if scene.rigid_grip else None)
+    return slice(1, -1 if scene.right.is_prescribed else None)
 
 
 def relative(found, exact):

@@ -39,7 +39,7 @@ def frame() -> Frame:
     case = CASES[NAME]
     run = finished_run(case.settings, errors=False)
     sampler = Sampler(discretise(case.settings), case.settings, 1)
-    needs = Needs(readings=(case.reading.name,))
+    needs = Needs(readings=(case.quantity.name,))
     return sampler.frame(run.iterate, run.solution.records, run.solution.status, needs)
 
 
@@ -55,7 +55,7 @@ def test_a_case_brings_its_run_its_words_and_the_settings_to_change(case: Case) 
     panel = panel_of(state)
     panel.open(case.name)
     assert state.settings.values() == settings_of(case).values()
-    assert state.readings == [case.reading.name]
+    assert state.readings == [case.quantity.name]
     assert panel.view.visible
     words = words_of(panel)
     assert case.source in words

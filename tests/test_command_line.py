@@ -115,7 +115,7 @@ def test_a_file_without_an_end_is_read_no_further_than_any_may_be_long(kind, cap
         settings_from_toml("#" * 5_000_000)
 
 
-def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys, monkeypatch):
+def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys, monkeypatch, tmp_path):
     assert main(["run", "bar", *SMALL, "--no-reference", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["error_force"] is None
     monkeypatch.setattr("solver.reference.contact.MOST_JUMPS", 100)
@@ -125,8 +125,10 @@ def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys, monkeyp
     printed = capsys.readouterr()
     assert json.loads(printed.out)["error_force"] is None
     assert "at most 100" in printed.err
+    monkeypatch.chdir(tmp_path)
     assert main(["study", "strand", *changes]) == 2
     assert "nothing to compare with" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -112,7 +112,7 @@ def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words
     state.change(peak=2e15)
     assert state.refusal.endswith("Allowed: any number (at most 1·10¹⁵ N in size).")
     state.change(body_load="nothing")
-    assert "delayed, cycles." in state.refusal
+    assert "delayed, cycles, or a table of time and force" in state.refusal
     state = of_scene("block")
     state.change(substructures_up=state.settings.elements_up + 1)
     assert "lower Substructures up or raise Elements up" in state.refusal

@@ -13,15 +13,15 @@ from small_scenes import SMALL
 
 from solver import Stack
 from solver.discrete import Given, Side, Support
-from solver.discrete.rods import Rods
+from solver.discrete.rods import End, Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Contact, FrictionLaw, Strength
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.pulled_bar import pulled_compliant_bar
 from solver.reference.distance import distance_to
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.stability.outcome import kkt_residual
 
 LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
@@ -109,6 +109,7 @@ CHANGING = {"friction_law": "slip-dependent"}
 
 def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
     """Give a clamped pulled_bar of 1 m whose end is pulled, or displaced by force L / ES."""
+    force = np.asarray(force, dtype=float)
     return (
         Rods(
             length=1.0,
@@ -116,10 +117,10 @@ def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
             elements=elements,
             substructures=1,
             bound=np.full(elements + 1, bound),
-            load=np.asarray(force, dtype=float),
+            left=End(displacement=np.zeros(len(force))),
+            right=End(displacement=force / STIFFNESS) if displaced else End(force),
             instants=np.linspace(0.0, 1.0, len(force)),
             duration=1.0,
-            rigid_grip=displaced,
             friction_law=law,
         )
     ).discretise()
@@ -376,10 +377,10 @@ def bonded_rod(peak, softens, length=3.0, elements=1200):
         elements=elements,
         substructures=1,
         bound=np.full(elements + 1, peak),
-        load=end * STIFFNESS / length,
+        left=End(displacement=np.zeros(41)),
+        right=End(displacement=end),
         instants=np.linspace(0.0, 1.0, 41),
         duration=1.0,
-        rigid_grip=True,
         friction_law=law,
     )
 

@@ -28,11 +28,11 @@ from processes import PATIENCE, wait_for
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
-from solver import Latin, Rods, solve
+from solver import End, Latin, Rods, solve
 import numpy as np, solver
 t = np.linspace(0.0, 1.0, 21)
 rods = Rods(length=1.0, stiffness=1e6, elements=20, substructures=2, bound=np.full(21, 1500.0),
-            load=900.0 * t, instants=t, duration=1.0)
+            left=End(displacement=0.0 * t), right=End(force=900.0 * t), instants=t, duration=1.0)
 print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
 """
 

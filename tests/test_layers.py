@@ -107,7 +107,7 @@ def test_neither_the_solver_nor_a_worker_of_the_page_imports_graphics():
 def test_the_engine_runs_where_graphics_cannot_be_imported():
     program = (
         "import sys\n"
-        f"sys.modules.update(dict.fromkeys({sorted(GRAPHICS | {'matplotlib'})!r}))\n"
+        f"sys.modules.update(dict.fromkeys({sorted(GRAPHICS)!r}))\n"
         "from solver.cli import main\n"
         "sys.exit(main(['run', 'bar', '--set', 'peak=0']))\n"
     )

@@ -28,8 +28,8 @@ from app.state import PageState, Poll, default_settings
 from app.worker.sampling import Sampler
 from solver.lessons.lesson import Lesson
 from solver.scenes import discretise
+from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
-from solver.study.quantities.quantities import reading
 
 each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
 NAME = "how-fast-how-big"

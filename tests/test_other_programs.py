@@ -1,4 +1,4 @@
-"""Results of other programs are compared, and instants are given to them as FCLIB problems."""
+"""Results of other programs are compared with runs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import sparse
 
 from solver.cli import main
 from solver.definitions import SettingError
@@ -16,12 +15,9 @@ from solver.discrete.problem import Problem
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces
 from solver.reference.solution import Reference
-from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
-from solver.study import fclib
 from solver.study.comparison import Comparison, read_results
-from solver.study.fclib import contacts_of, local_problem, write_fclib
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -167,124 +163,3 @@ def test_the_command_refuses_in_words(options: Any, why: str, tmp_path: Any, cap
     path.write_text(HEAD + ROWS)
     assert main(["compare", "bar", *(one.format(path) for one in options)]) == 2
     assert why in capsys.readouterr().err
-
-
-PLANE = {
-    "block": {"elements": 16, "elements_up": 6, "instants": 21},
-    "layers": {"layers": 3, "elements": 6, "elements_up": 2, "instants": 21},
-}
-INSTANTS = (0, 6, 13)
-
-
-def problem_of(scene, **changes):
-    return discretise(CATALOGUE[scene].settings.checked(PLANE.get(scene, {}) | changes))
-
-
-def gauss_seidel(compliance, free, friction, most=50_000):
-    """Solve point by point: r_N from its opening, and r_T from its slip, cut to the cone."""
-    force = np.zeros_like(free)
-    for _ in range(most):
-        before = force.copy()
-        for normal, mu in zip(range(0, len(free), 2), friction, strict=True):
-            for row in (normal, normal + 1):
-                move = compliance[row] @ force + free[row]
-                force[row] -= move / compliance[row, row]
-                bound = mu * force[normal]
-                low, high = (0.0, np.inf) if row == normal else (-bound, bound)
-                force[row] = min(max(force[row], low), high)
-        if np.abs(force - before).max() <= 1e-13 * np.abs(force).max():
-            return force
-    raise AssertionError("no solution is found")
-
-
-def read_hdf5(path):
-    """Read W, q, mu and what stands under a solution, with no other knowledge than the layout."""
-    h5py = pytest.importorskip("h5py")
-    with h5py.File(path) as file:
-        group = file["fclib_local"]
-        own = {name: group[f"W/{name}"][()] for name in ("nzmax", "m", "n", "nz", "p", "i", "x")}
-        assert own["nz"] == -1
-        assert group["spacedim"][()] == 2
-        assert own["nzmax"][0] == len(own["x"]) == own["p"][-1]
-        shape = own["m"][0], own["n"][0]
-        matrix = sparse.csc_array((own["x"], own["i"], own["p"]), shape=shape).toarray()
-        vectors = group["vectors/q"][()], group["vectors/mu"][()]
-        solution = {name: one[()] for name, one in file.get("solution", {}).items()}
-        words = {name: one[()] for name, one in group["info"].items()}
-        kinds = {group[name].dtype for name in ("spacedim", "W/p", "W/i", "W/nz")}
-    assert kinds == {np.dtype(np.int32)}
-    return matrix, *vectors, solution, words
-
-
-@pytest.mark.parametrize("scene", PLANE)
-def test_a_solver_of_the_file_alone_finds_the_reactions_of_the_reference(scene, tmp_path):
-    problem = problem_of(scene)
-    reference, contacts = reference_of(problem), contacts_of(problem)
-    for instant in INSTANTS:
-        local = local_problem(contacts, reference, instant, scene, certified=True)
-        pytest.importorskip("h5py")
-        path = tmp_path / f"{instant}.hdf5"
-        with path.open("wb") as file:
-            write_fclib(file, local)
-        compliance, free, friction, solution, words = read_hdf5(path)
-        force = gauss_seidel(compliance, free, friction) if free.any() else 0.0 * free
-        wanted = reference.contact_force[contacts.places, instant]
-        assert np.linalg.norm(force - wanted) <= 1e-8 * np.linalg.norm(wanted)
-        np.testing.assert_array_equal(solution["r"], wanted)
-        assert f"t = {problem.instants[instant]:.6g} s".encode() in words["title"]
-
-
-@pytest.mark.parametrize(
-    ("scene", "changes", "why"),
-    [
-        ("bar", {}, "bound that is known beforehand"),
-        ("strand", {}, "bound that is known beforehand"),
-        ("incline", {}, "is a spring"),
-        ("block", {"friction_law": "compliant"}, "gives way"),
-        ("block", {"friction_law": "slip-dependent"}, "changes with slip"),
-    ],
-    ids=str,
-)
-def test_what_fclib_cannot_say_is_refused_with_its_reason(scene, changes, why):
-    with pytest.raises(RefusedError, match=why):
-        contacts_of(problem_of(scene, **changes))
-
-
-def test_a_body_that_contact_alone_holds_has_no_compliance():
-    problem = problem_of("block", top="traction")
-    with pytest.raises(RefusedError, match=r"contact alone holds.*hold a side"):
-        contacts_of(problem)
-
-
-def test_the_command_writes_the_instant_that_is_nearest(tmp_path, capsys):
-    pytest.importorskip("h5py")
-    path = tmp_path / "one.hdf5"
-    sizes = [f"--set={name}={json.dumps(value)}" for name, value in PLANE["block"].items()]
-    assert main(["fclib", "block", *sizes, "--out", str(path), "--instant", "0.31"]) == 0
-    assert "t = 0.296875 s, 17 points" in capsys.readouterr().out
-    compliance, free, friction, solution, _ = read_hdf5(path)
-    assert set(solution) == {"u", "r"}
-    force = gauss_seidel(compliance, free, friction)
-    assert np.linalg.norm(force - solution["r"]) <= 1e-8 * np.linalg.norm(force)
-
-
-@pytest.mark.parametrize(
-    ("options", "why"),
-    [
-        (["--instant", "7"], "--instant = 7.0 is refused"),
-        (["--instant", "nan"], "a time from 0 to 1 s"),
-        (["--out", "/no/such/folder/one.hdf5"], "No such file or directory"),
-    ],
-)
-def test_the_command_refuses_in_words_before_it_runs(options, why, tmp_path, capsys):
-    pytest.importorskip("h5py")
-    out = ["--out", str(tmp_path / "one.hdf5")]
-    assert main(["fclib", "block", *out, *options]) == 2
-    assert why in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-def test_without_h5py_it_says_what_to_install(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(fclib, "find_spec", lambda name: None)
-    assert main(["fclib", "block", "--out", str(tmp_path / "one.hdf5")]) == 2
-    assert "slipfront[peers]" in capsys.readouterr().err

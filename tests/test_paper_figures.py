@@ -8,8 +8,6 @@ the default load, wide enough for another order of rounding and too tight for an
 from __future__ import annotations
 
 import re
-import sys
-from collections.abc import Callable, Iterator
 from itertools import islice
 
 import numpy as np
@@ -24,13 +22,12 @@ from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.figures import PaperRuns, paper_figures
-from solver.study.figures import paper_runs as runs_of_the_paper
+from solver.study.figures import paper_figures
 from solver.study.figures.figure import Finding, PaperFigure
 from solver.study.figures.modes import figure_5, figure_6, figure_7, figure_8
+from solver.study.figures.paper_runs import PaperRuns, paper_runs
 
 NUMBERS = (3, 4, 5, 6, 7, 8)
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
 SMALL = PaperFigure(
     3,
     "A <small> figure",
@@ -49,58 +46,23 @@ SMALL = PaperFigure(
 
 
 @pytest.fixture(scope="module")
-def solved() -> list[str]:
-    """What was called to solve the runs of the paper's figures, in order."""
-    return []
+def runs() -> PaperRuns:
+    return paper_runs()
 
 
 @pytest.fixture(scope="module")
-def paper_runs(solved: list[str]) -> Iterator[PaperRuns]:
-    """The runs behind the paper's figures, each solved when it is first asked for."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("solve", "reference_of"):
-            patch.setattr(runs_of_the_paper, name, counted(name, solved))
-        yield PaperRuns()
-
-
-def counted(name: str, calls: list[str]) -> Callable[..., object]:
-    """A function of these runs that also says that it was called."""
-    real = getattr(runs_of_the_paper, name)
-
-    def call(*given: object, **options: object) -> object:
-        calls.append(name)
-        return real(*given, **options)
-
-    return call
-
-
-@pytest.fixture(scope="module")
-def figures(paper_runs):
-    return paper_figures(paper_runs)
-
-
-def test_all_figures_together_solve_nothing_twice(figures, solved):
-    assert tuple(figure.number for figure in figures) == NUMBERS
-    assert solved.count("reference_of") == 1
-    assert solved.count("solve") == 2 * 4  # to the early iterate, and on from there
+def figures(runs):
+    return paper_figures(runs)
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory, figures):
     folder = tmp_path_factory.mktemp("made") / "by" / "the command"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report_commands, "paper_figures", lambda: figures)
+        patch.setattr(report_commands, "paper_runs", lambda: None)
+        patch.setattr(report_commands, "paper_figures", lambda runs: figures)
         assert main(["figures", "--out", str(folder)]) == 0
     return folder
-
-
-def test_six_pictures_and_a_page_are_written(written):
-    names = {f"figure-{number}.png" for number in NUMBERS} | {"figures.html"}
-    assert {file.name for file in written.iterdir()} == names
-    for number in NUMBERS:
-        content = (written / f"figure-{number}.png").read_bytes()
-        assert content.startswith(SIGNATURE)
-        assert 5_000 < len(content) < 100_000
 
 
 def test_the_page_stands_alone_and_shows_every_figure_with_claim_numbers_and_caption(
@@ -117,16 +79,15 @@ def test_the_page_stands_alone_and_shows_every_figure_with_claim_numbers_and_cap
             assert found.text in plain
 
 
-@pytest.mark.parametrize(
-    "obstacle", ["folder is a file", "picture is a folder", "parent is a file"]
-)
+@pytest.mark.parametrize("obstacle", ["folder is a file", "page is a folder", "parent is a file"])
 def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(
     tmp_path, monkeypatch, capsys, obstacle
 ):
-    monkeypatch.setattr(report_commands, "paper_figures", lambda: [SMALL])
+    monkeypatch.setattr(report_commands, "paper_runs", lambda: None)
+    monkeypatch.setattr(report_commands, "paper_figures", lambda runs: [SMALL])
     folder = tmp_path / "out"
-    if obstacle == "picture is a folder":
-        (folder / "figure-3.png").mkdir(parents=True)
+    if obstacle == "page is a folder":
+        (folder / "figures.html").mkdir(parents=True)
     else:
         folder.write_text("in the way", encoding="utf-8")
     target = folder / "below" if obstacle == "parent is a file" else folder
@@ -138,20 +99,6 @@ def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(
     assert "a folder that can be made and written to" in err
 
 
-def test_without_matplotlib_there_is_the_page_alone_and_a_line_says_what_to_install(
-    tmp_path, monkeypatch, capsys
-):
-    monkeypatch.setattr(report_commands, "paper_figures", lambda: [SMALL])
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for module in [name for name in sys.modules if name.startswith("matplotlib.")]:
-        monkeypatch.delitem(sys.modules, module)
-    assert main(["figures", "--out", str(tmp_path)]) == 0
-    assert {file.name for file in tmp_path.iterdir()} == {"figures.html"}
-    assert "PNG files need matplotlib: pip install 'slipfront[figures]'" in (
-        capsys.readouterr().out.splitlines()
-    )
-
-
 BENCHMARK = {"load": "sine", "peak": 900.0, "substructures": 10, "relaxation": 0.8}
 WITHIN = 0.2
 
@@ -161,8 +108,8 @@ def options(**values):
 
 
 @pytest.fixture(scope="module")
-def histories(paper_runs):
-    return {True: paper_runs.multiscale.records, False: paper_runs.monoscale.records}
+def histories(runs):
+    return {True: runs.multiscale.records, False: runs.monoscale.records}
 
 
 def first_below(records, name, limit):
@@ -224,36 +171,36 @@ def test_monoscale_without_relaxation_stalls_far_from_the_answer():
     assert solution.records[-1].error_force > 0.1
 
 
-def test_fig_5_stuck_substructures_need_a_mode_and_swept_ones_decay_like_a_steady_front(paper_runs):
-    last = paper_runs.five.records[-1]
+def test_fig_5_stuck_substructures_need_a_mode_and_swept_ones_decay_like_a_steady_front(runs):
+    last = runs.five.records[-1]
     assert last.error_force < 1e-5
     assert last.error_displacement < 1e-6
-    values = figure_5(paper_runs).values
+    values = figure_5(runs).values
     at_one_percent = [values[f"modes_{number}"] for number in range(1, 6)]
     assert at_one_percent[:2] == [0, 1]
     assert min(at_one_percent[2:]) >= 10
     assert 0.5 < values["front_low"] < 1.0 < values["front_high"] < 1.4
 
 
-def test_fig_6_modes_of_substructures_4_and_5_are_alike_and_later_ones_more_local(paper_runs):
-    figure = figure_6(paper_runs)
+def test_fig_6_modes_of_substructures_4_and_5_are_alike_and_later_ones_more_local(runs):
+    figure = figure_6(runs)
     values = figure.values
     assert min(values[f"likeness_{order}"] for order in (1, 3, 5)) > 0.98
     assert "change sign 0, 2, 4 and 0, 2, 4 times" in figure.findings[1].text
-    third, _, fifth = paper_runs.friction_forces[2:]  # the third is swept in part
+    third, _, fifth = runs.friction_forces[2:]  # the third is swept in part
     found = np.abs(third.correlations(fifth.space_modes))
     assert found[4] < 0.85 < found[0]
 
 
-def test_fig_7_the_displacement_is_far_more_reducible_than_the_friction_force(paper_runs):
-    values = figure_7(paper_runs).values
+def test_fig_7_the_displacement_is_far_more_reducible_than_the_friction_force(runs):
+    values = figure_7(runs).values
     assert values["left_by_3"] < 0.003 < values["left_by_2"] < 0.01 < values["left_by_1"]
     assert values["modes_displacement"] <= 3
     assert values["modes_force"] >= 10
 
 
-def test_fig_8_pgd_modes_orthonormalised_in_their_order_are_the_svd_modes(paper_runs):
-    values = figure_8(paper_runs).values
+def test_fig_8_pgd_modes_orthonormalised_in_their_order_are_the_svd_modes(runs):
+    values = figure_8(runs).values
     assert min(values["sorted_1"], values["sorted_2"]) > 0.99
     assert values["sorted_3"] > 0.97
     assert max(values["kept_2"], values["kept_3"]) < 0.9 < 0.99 < values["kept_1"]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bars import pulled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -80,7 +81,7 @@ def test_shaken_once_is_shaken_for_good():
 def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, factors):
     scene = rod(elements=80, instants=9)
     pressure = np.array([1.0, *factors])
-    scene = replace(scene, load=np.array([0.0, *load]), bound=np.outer(scene.bound, pressure))
+    scene = pulled(scene, [0.0, *load], bound=np.outer(scene.bound, pressure))
     found, exact = reference_of(scene.discretise()), closed_form(scene)
     assert found.converged.all()
     bound = np.outer(np.full(81, 1500.0 / 80), pressure)

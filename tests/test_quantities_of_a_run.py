@@ -16,9 +16,9 @@ from solver.latin import Solution, iterations
 from solver.latin.status import CANCELLED
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, fate_of
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.quantities.quantities import QUANTITIES, reading
 
 STIFFNESS, BOUND = 210e9 * 3.14e-6, 1500.0
 SMALL = {"elements": 20, "instants": 21, "substructures": 2}

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from bars import pulled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,7 +27,7 @@ def scene(**values: object) -> Rods:
 
 
 def under(base: Rods, load: list[float] | np.ndarray) -> Rods:
-    return replace(base, load=np.array(load), instants=np.linspace(0.0, 1.0, len(load)))
+    return pulled(base, load, instants=np.linspace(0.0, 1.0, len(load)))
 
 
 def solved(base: Rods) -> ClosedForm:
@@ -191,8 +190,8 @@ def assert_equilibrium(of: Problem, found: Reference) -> None:
         stiffness[np.ix_(part.dofs, part.dofs)] += part.elasticity.stiffness.toarray()
         if part.body_force is not None:
             load[part.dofs] += part.body_force
-    for pulled in of.given_forces:
-        load[of.row_dofs[pulled.rows]] += pulled.values
+    for given_force in of.given_forces:
+        load[of.row_dofs[given_force.rows]] += given_force.values
     displacement = found.displacement / of.scales.displacement
     inner = stiffness @ displacement
     outer = load + found.friction_force / of.scales.force

@@ -19,9 +19,9 @@ from solver.reference.shakedown import (
     slip_space,
 )
 from solver.scenes import CATALOGUE, discretise
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import ends_of
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.quantities.quantities import QUANTITIES, reading
 
 N_CYCLES = 4
 LOADS = {"layers": "bend_load", "block": "top_tangential_load"}

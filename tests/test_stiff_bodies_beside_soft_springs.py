@@ -14,10 +14,10 @@ from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings
 from solver.scenes.method import method_of
-from solver.study.stability.outcome import kkt_residual
 
 SMALL = {"elements": 6, "elements_up": 3, "substructures": 2, "instants": 21}
 STEEL = 2.1e11

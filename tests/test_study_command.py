@@ -1,4 +1,4 @@
-"""`python -m solver study` measures what it says: curves, growth, and who is first where."""
+"""`python -m solver study` measures what it says: errors against time, and who is first where."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import os
 import re
 import subprocess
 import sys
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,11 +26,11 @@ from solver.study.speed.error_against_time import (
     Study,
     forms_of,
 )
-from solver.study.speed.sizes import FACTORS, crossover, growth
-from solver.study.speed.study_report import notes, winners
+from solver.study.speed.sizes import FACTORS, times_at_sizes
+from solver.study.speed.study_report import notes, ratio_table, table
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
-TINY += ["--repeats", "1", "--no-growth"]
+TINY += ["--repeats", "1"]
 
 
 def rows(file):
@@ -77,20 +76,21 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)
-    cells = {f"<td>{cell}</td>" for row in winners(study)[1:] for cell in row}
+    cells = {f"<td>{cell}</td>" for row in table(study)[1:] for cell in row}
     for words in (*forms_of(study.settings), INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
 
 
-def test_the_table_names_the_first_of_the_levels(measured):
+def test_the_table_marks_the_first_of_the_levels(measured):
     folder, study = measured
-    for level, found in zip(LEVELS.values(), winners(study)[1:], strict=True):
+    for column, level in enumerate(LEVELS.values(), start=1):
         times = {
             row["method"]: float(row["seconds"])
             for row in rows(folder / "levels.csv")
             if float(row["level"]) == level and row["seconds"]
         }
-        assert found[1] == min(times, key=times.get)
+        first = [row[0] for row in table(study) if row[column].endswith("*")]
+        assert first == [min(times, key=times.get)]
 
 
 def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
@@ -98,10 +98,10 @@ def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
         course("LATIN multiscale", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
         course(INCREMENTAL, [0.02], [0.0]),
     )
-    head, coarse, *_, fine = winners(study)
-    assert head[-1] == f"LATIN / {INCREMENTAL}"
-    assert coarse[1:] == [INCREMENTAL, "20", "LATIN multiscale", "30", "1.5"]
-    assert fine[-2:] == ["200", "10"]
+    _, latin, incremental, ratios = table(study)
+    assert latin[1:3] == ["30 ms (2)", "200 ms (3)"]
+    assert incremental[1:3] == ["20 ms *", "20 ms *"]
+    assert ratios[:3] == [f"best LATIN / {INCREMENTAL}", "1.5", "10"]
 
 
 @pytest.mark.parametrize("trouble", [KeyboardInterrupt, MemoryError])
@@ -112,39 +112,19 @@ def test_what_was_measured_by_then_stays_when_a_study_is_ended(
         raise trouble
 
     monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
-    monkeypatch.setattr(report_commands, "crossover", end)
+    monkeypatch.setattr(report_commands, "times_at_sizes", end)
     assert main([*TINY, "--out", str(tmp_path)]) == (130 if trouble is KeyboardInterrupt else 3)
     for name in ("curves.csv", "levels.csv"):
         assert rows(tmp_path / name) == rows(measured[0] / name)
 
 
-def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
-    tmp_path, monkeypatch, capsys, measured
-):
+def test_a_page_without_who_draws_it_says_so(tmp_path, monkeypatch, capsys, measured):
     monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert main([*TINY, "--out", str(tmp_path)]) == 0
-    page = (tmp_path / "study.html").read_text(encoding="utf-8")
-    assert page.count("data-root-id") == 3
-    assert NO_CHARTS not in capsys.readouterr().out
     monkeypatch.setattr("solver.study.page.entry_points", lambda group: ())
     assert main([*TINY, "--out", str(tmp_path)]) == 0
     assert NO_CHARTS in capsys.readouterr().out.splitlines()
     names = {file.name for file in tmp_path.iterdir()}
     assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
-
-
-def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
-    sizes = {"elements": (2, 8, 16), "substructures": (1, 4)}
-    monkeypatch.setitem(CATALOGUE, "bar", replace(CATALOGUE["bar"], sizes=sizes))
-    found = growth(
-        BarSettings.checked({"method": "paper", "elements": 8, "instants": 5, "substructures": 3})
-    )
-    assert {one.setting: one.sizes for one in found} == {
-        "elements": (8, 16),
-        "substructures": (1, 4),
-    }
-    assert all(seconds > 0.0 for one in found for seconds in one.seconds)
 
 
 PROGRAM = "import solver.__main__, solver.executors as found; print(found.machine())"
@@ -174,13 +154,12 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("scene", list(SMALL_ONES))
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     settings = CATALOGUE[scene].settings.checked(SMALL_ONES[scene])
-    found = crossover(settings)
-    name = CATALOGUE[scene].grows[0]
-    assert found.setting == name
-    assert found.sizes == [round(factor * getattr(settings, name)) for factor in FACTORS]
-    last = settings.instants - 1
-    assert found.instants == [round(factor * last) + 1 for factor in FACTORS]
-    assert (found.ratios > 0.0).all()
+    (head, *rows), name = ratio_table(settings, times_at_sizes(settings)), CATALOGUE[scene].grows[0]
+    sizes = [round(factor * getattr(settings, name)) for factor in FACTORS]
+    assert head[1:] == [f"{name} {size}" for size in sizes]
+    instants = [round(factor * (settings.instants - 1)) + 1 for factor in FACTORS]
+    assert [row[0] for row in rows] == [f"{number} instants" for number in instants]
+    assert all(float(ratio) > 0.0 for row in rows for ratio in row[1:])
 
 
 def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
@@ -188,9 +167,9 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
 ) -> None:
     settings = CATALOGUE["strand"].settings.checked({**SMALL_ONES["strand"], "wires": 2})
     monkeypatch.setattr(measuring, "LONGEST", 0.0)
-    found = crossover(settings)
-    assert found.sizes == [1, 2, 4]
-    said = {one.size: one.message for one in found.comparisons}
+    found = times_at_sizes(settings)
+    said = {one.size: one.message for one in found}
+    assert list(said) == [1, 2, 4]
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
-    assert any("Wires 4" in line and "left out" in line for line in notes(found))
+    assert any("Wires 4" in line and "left out" in line for line in notes(settings, found))

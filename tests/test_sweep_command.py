@@ -27,7 +27,7 @@ from solver.study.chart import Map
 from solver.study.page import write_page
 from solver.study.sweep import Plan, Row, plan_of, sweep
 from solver.study.sweep.adaptive import Chooser
-from solver.study.sweep.chart import chart_of, ordered
+from solver.study.sweep.chart import chart_of
 from solver.study.sweep.plan import axis_of
 from solver.study.sweep.run import snake
 
@@ -208,12 +208,8 @@ def test_two_numbers_make_a_map_and_names_or_few_values_make_curves(
     assert (chart.z.shape if isinstance(chart, Map) else None) == size
     assert chart.runs is not None
     for number, x in zip(chart.runs.numbers, chart.runs.x, strict=True):
-        value = next(iter(v for k, v in plan.point(int(number)).items() if k == axis_name(plan)))
+        value = plan.point(int(number))[plan.axes[0].name]
         assert x == (list(plan.axes[0].values).index(value) if chart.x.names else value)
-
-
-def axis_name(plan: Plan) -> str:
-    return ordered(plan)[0].name
 
 
 BAR = BarSettings.checked({})
@@ -304,7 +300,7 @@ class Known(Executor):
         self._values = values
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        _, number, _ = args
+        _, number = args
         future: Future[Any] = Future()
         future.set_result(Row(number, "converged", "", (float(self._values[number]),)))
         return future

@@ -14,11 +14,10 @@ from solver.latin import solve
 from solver.laws import FrictionLaw
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise, exact_of, features_of, law_of
 from solver.scenes.method import method_of
-from solver.study.fclib import contacts_of
 from solver.study.quantities.cycle_measures import has_a_limit
-from solver.study.stability.outcome import kkt_residual
 
 GENERAL = {"friction_law": "general"}
 PLANE = ["block", "layers", "incline", "fault"]
@@ -228,9 +227,6 @@ def test_what_is_known_of_coulombs_friction_alone_is_not_said_of_others():
     assert has_a_limit(chosen("layers", **GENERAL, **bent))
     for law in ({"cohesion": 1e5}, {"friction_cap": 1e5}, {"tangential_stiffness": 1e12}):
         assert not has_a_limit(chosen("layers", **GENERAL, **law, **bent))
-    flat = discretise(chosen("block", **GENERAL, gap="flat", cohesion=1e5))
-    with pytest.raises(ValueError, match="cohesion or a cap"):
-        contacts_of(flat)
 
 
 def test_layers_on_soft_joints_are_not_called_as_stiff_as_one_beam():

@@ -21,7 +21,7 @@ from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence
 from app.views.loops import HysteresisLoop
-from app.views.rope import WireForces
+from app.views.rope import AxialForces
 from app.views.status_map import StatusMap
 from app.views.view import View
 from app.worker.extras import EXTRAS, OF_ROPE
@@ -258,12 +258,12 @@ def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> 
     card.fit()
     assert isinstance(card.seen, ContactForce)
     card.tabs.active = 1
-    state.settings = default_settings("bar")
+    state.settings = default_settings("block")
     card.fit()
     assert isinstance(card.seen, ContactForce)
     state.settings = default_settings("strand")
     card.fit()
-    assert isinstance(card.seen, WireForces)
+    assert isinstance(card.seen, AxialForces)
 
 
 def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:

@@ -13,7 +13,7 @@ from solver.laws import FrictionLaw, Strength
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.limit_analysis import collapse_of
-from solver.study.stability.outcome import kkt_residual
+from solver.reference.residual import kkt_residual
 
 TIMES = np.linspace(0.0, 1.0, 21)
 PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))

@@ -25,8 +25,8 @@ from solver.reference.choice import reference_of
 from solver.scenes import discretise, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
+from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
-from solver.study.quantities.quantities import reading
 from solver.study.quantities.reduction_measures import clips_in
 
 DEGENERATE = [{"instants": 1, "load": "ramp"}, {"peak": 0.0}, {"elements": 52, "peak": 2000.0}]

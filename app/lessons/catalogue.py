@@ -16,7 +16,7 @@ from solver.lessons.lesson import SUBJECTS, Lesson
 from solver.lessons.reading import lesson_from_file
 from solver.settings import Settings
 from solver.study.cases.case import Case, all_cases
-from solver.study.quantities.quantities import reading
+from solver.study.quantities import reading
 
 _READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
 LESSONS = {
@@ -93,7 +93,7 @@ def _value(frame: Frame | None, name: str) -> str:
     """A quantity of a frame's run with its unit, as far as the run has come."""
     if frame is None or name not in frame.readings:
         return PENDING
-    value, quantity = frame.readings[name], reading(name).quantity
+    value, quantity = frame.readings[name], reading(name)
     if not math.isfinite(value) and frame.status is None:
         return PENDING
     if math.isnan(value):

@@ -181,12 +181,12 @@ def unit_of(act: Act) -> Unit:
 
 
 def strokes_of(
-    description: Description, layout: Layout, factor: float, column: int, foot: Array
+    description: Description, layout: Layout, factor: float, column: int, feet: Array
 ) -> list[Array]:
     """Lines of what holds the bodies at an instant, px from the middle of their foot, NaN between.
 
-    `column` is that of the instant in the description's values; `foot` is where the right end of
-    the foot has gone, to which a spring is fixed.
+    `column` is that of the instant in the description's values; `feet` is where the left
+    and the right end of the foot have gone, to which a spring is fixed, shape (2, 2).
     """
     lines: list[Array] = []
     for hold in description.holds:
@@ -203,7 +203,9 @@ def strokes_of(
         elif hold.kind == "support":
             lines.append(hatched(_support(description, hold, layout, factor, edge), away))
         elif hold.kind == "spring":
-            lines.append(_spring(foot, edge[0, 0] + WALL))
+            moved = 0.0 if hold.moved is None else hold.moved[column]
+            wall = edge[0, 0] + WALL * away[0] + layout.shift(np.array([moved, 0.0]), factor)[0]
+            lines.append(_spring(feet[int(hold.side == "right")], float(wall), away))
     return lines
 
 
@@ -252,12 +254,12 @@ def _rollers(edge: Array, away: Array) -> Array:
     return np.concatenate([gapped(centres[:, None] + RADIUS * RING), gapped(behind[None])])
 
 
-def _spring(foot: Array, wall: float) -> Array:
+def _spring(foot: Array, wall: float, away: Array) -> Array:
     """A coil from the foot to its wall."""
     y, coils = foot[1] + 12.0, 6
-    x = np.linspace(foot[0] + 8.0, wall - 6.0, 2 * coils)
+    x = np.linspace(foot[0] + 8.0 * away[0], wall - 6.0 * away[0], 2 * coils)
     swing = np.where(np.arange(2 * coils) % 2 == 0, 6.0, -6.0)
     coil = np.stack([x, y + swing], axis=1)
     line = np.concatenate([[[foot[0], y]], coil, [[wall, y]]])
     upright = np.array([[wall, y - 16.0], [wall, y + 18.0]])
-    return np.concatenate([gapped(line[None]), hatched(upright, np.array([1.0, 0.0]))])
+    return np.concatenate([gapped(line[None]), hatched(upright, away)])

@@ -6,7 +6,7 @@ from app.views.bases import ClipErrors, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
 from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
-from app.views.rope import StressRanges, Unrolled, WireForces, WireSection
+from app.views.rope import AxialForces, StressRanges, Unrolled, WireSection
 from app.views.scene import Stress
 from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap
@@ -14,7 +14,7 @@ from app.views.thrust import Thrust
 from app.views.view import View
 
 CARDS: tuple[tuple[type[View], ...], ...] = (
-    (Thrust, ContactForce, WireForces, HysteresisLoop, Stress),
+    (Thrust, ContactForce, AxialForces, HysteresisLoop, Stress),
     (StatusMap, Unrolled, WireSection, SlipPlane, Cycles, CycleEnergy, Fretting),
     (Convergence, ErrorTime),
     (Spectra, SpaceModes, TimeFunctions, StressRanges, ClipErrors),

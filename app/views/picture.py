@@ -188,8 +188,8 @@ class Picture:
         ]
 
     def _holds(self) -> Array:
-        foot = self._follow(np.array([[self.layout.length, 0.0]]))[0]
-        strokes = strokes_of(self._described, self.layout, self.factor, self._now, foot)
+        feet = self._follow(np.array([[0.0, 0.0], [self.layout.length, 0.0]]))
+        strokes = strokes_of(self._described, self.layout, self.factor, self._now, feet)
         if self._described.tilt is not None:
             corner = np.array([-0.5 * self.layout.size[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * self.layout.size[0], 0.0]), -self.tilt)

@@ -141,13 +141,13 @@ class StressRanges(RopePlot):
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
 
 
-class WireForces(ExtraView):
-    """Force along each wire; a broken one regains it from its break on."""
+class AxialForces(ExtraView):
+    """Force along a rod or each wire; a broken one regains it from its break on."""
 
-    name = "Force in the wires"
+    name = "Axial force"
     needs = frozenset({"axial force"})
 
-    applies = staticmethod(lambda settings: kind_of(settings) in ("wires", "helices"))
+    applies = staticmethod(lambda settings: kind_of(settings) != "plane")
 
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N"))
@@ -178,5 +178,5 @@ class WireForces(ExtraView):
             is_broken = "broken" in names[number]
             look = {"line_color": ERROR if is_broken else next(colors)}
             self._lines[number].glyph.update(**look, line_width=3.5 if is_broken else 2)
-            title = names[number] if bent or number else f"wire {names[number]}"
+            title = names[number] if bent or number or len(names) == 1 else f"wire {names[0]}"
             self.draw(wire, x, axial["force"][number, :, column], title)

@@ -21,7 +21,6 @@ from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
-from solver.scenes import kind_of
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.quantities.cycles import Fate, cycles_of, ends_of, fate_of, slips_of
 from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
@@ -44,7 +43,7 @@ def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
 
 
 def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Axial force in wires at all instants; None where there are none.
+    """Axial force in rods or wires at all instants; None where there are none.
 
     "x" of the middles of elements, (n_places,), m; "force", (n_wires, n_places, n_instants), N;
     "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
@@ -53,7 +52,7 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     if sampler.rope is not None:
         return axial_force_of_rope(sampler.rope, sampler, iterate, needs)
     drawn = sampler.drawn
-    if kind_of(sampler.settings) != "wires" or not isinstance(drawn, DrawnRods):
+    if not isinstance(drawn, DrawnRods):
         return None
     force = drawn.axial
     count = int(force.wires.max()) + 1
@@ -65,7 +64,9 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     return {
         "x": floats(force.positions[places]),
         "force": floats(shown),
-        "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires],
+        "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires]
+        if count > 1
+        else ["rod"],
         "stuck": None,
     }
 

@@ -77,7 +77,7 @@ class Drawn:
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the bodies have moved."""
-        moved = iterate.displacement[self._dofs][:, :, self._columns]
+        moved = iterate.problem.at_rest(iterate.displacement)[self._dofs][:, :, self._columns]
         moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
         return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
@@ -112,7 +112,7 @@ class DrawnRods(Drawn):
             size += 2 * len(places)
             first_element += len(part.dofs) - 1
         self._along = np.concatenate(kept)
-        self.axial, self._elements = AxialForce(problem), np.concatenate(elements)
+        self.axial, self._elements = AxialForce(problem, columns), np.concatenate(elements)
         nodes = np.stack([problem.positions[self._along], np.concatenate(lows)], axis=1)
         quads = np.concatenate(corners).astype(np.int32)
         mesh = floats(nodes), quads, np.concatenate(parts)
@@ -124,12 +124,12 @@ class DrawnRods(Drawn):
 
     def axial_force(self, iterate: Iterate) -> Array:
         """That in all elements, shape (n_elements, n_instants), N."""
-        moved = iterate.displacement[:, self._columns].T
-        return np.stack([self.axial(at_once) for at_once in moved], axis=1)
+        return self.axial(iterate.displacement[:, self._columns])
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         """They move along themselves."""
-        along = iterate.displacement[np.ix_(self._along, self._columns)]
+        moved = iterate.problem.at_rest(iterate.displacement)
+        along = moved[np.ix_(self._along, self._columns)]
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
 
 

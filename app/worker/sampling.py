@@ -25,8 +25,8 @@ from solver.reference.solution import Reference
 from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
+from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.quantities import reading
 
 MOST_INSTANTS, MOST_POINTS = 401, 401
 """Instants, and points of an interface, that a frame has at most."""

@@ -1,9 +1,20 @@
 """From a structure as plain data to a discrete problem."""
 
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods
+from solver.discrete.rods import End, Rods
 from solver.discrete.rope import Rope
 from solver.discrete.stack import Given, Side, Spring, Stack, Support
 from solver.discrete.structure import Structure
 
-__all__ = ["Given", "Problem", "Rods", "Rope", "Side", "Spring", "Stack", "Structure", "Support"]
+__all__ = [
+    "End",
+    "Given",
+    "Problem",
+    "Rods",
+    "Rope",
+    "Side",
+    "Spring",
+    "Stack",
+    "Structure",
+    "Support",
+]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod
 
 if TYPE_CHECKING:
-    from solver.discrete.rods import Rods
+    from solver.discrete.rods import End, Rods
 
 COARSEST = 6
 """Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
@@ -25,6 +25,8 @@ iterations instead of 40 (measured by default, with Anderson acceleration and au
 up to half of the iterations with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires
 gain nothing."""
 NO_ROW = -1
+SIDES = {"left": "support", "right": "load"}
+"""Interfaces of the ends, by their side."""
 
 
 def rod_stiffness(elements: int, element_stiffness: float | Array) -> sparse.csr_array:
@@ -201,7 +203,7 @@ def discretise_rods(rods: Rods) -> Problem:
     element length they meet them.
     """
     cut = _cut(rods)
-    shared: dict[tuple[bytes, bytes], Elasticity] = {}
+    shared: dict[tuple[bytes, bytes, tuple[int, ...]], Elasticity] = {}
     return Problem(
         substructures=tuple(
             _substructure(rods, cut, rod, piece, shared)
@@ -211,6 +213,7 @@ def discretise_rods(rods: Rods) -> Problem:
         interfaces=dict(_interfaces(rods, cut)),
         positions=np.concatenate([rods.nodes[nodes] for nodes in cut.nodes_of_dofs]),
         instants=rods.instants,
+        carried=None if rods.settlement is None else rods.settlement / rods.length,
         scales=Scales(rods.length, rods.stiffness, rods.duration),
     )
 
@@ -232,28 +235,71 @@ def _cut(rods: Rods) -> CutRods:
     if rods.wires == 1:
         return CutRods(sizes, 1, [(0, None)], (True, True), broken)
     contacts = [(wire + 1, wire) for wire in range(rods.wires - 1)]
-    return CutRods(sizes, rods.wires, contacts, (False, not rods.rigid_grip), broken)
+    rubs = not rods.left.is_prescribed, not rods.right.is_prescribed
+    return CutRods(sizes, rods.wires, contacts, rubs, broken)
 
 
 def _substructure(
-    rods: Rods, cut: CutRods, rod: int, piece: int, shared: dict[tuple[bytes, bytes], Elasticity]
+    rods: Rods,
+    cut: CutRods,
+    rod: int,
+    piece: int,
+    shared: dict[tuple[bytes, bytes, tuple[int, ...]], Elasticity],
 ) -> Substructure:
     size, start = cut.sizes[piece], cut.starts[piece]
     rows, trace, ends = cut.rows(rod, piece)
     section = np.ones(0) if rods.section is None else rods.section[start : start + size]
-    key = trace.tobytes(), section.tobytes()
+    springs = {
+        node: end
+        for node, end, is_there in (
+            (0, rods.left, piece == 0),
+            (size, rods.right, piece == len(cut.sizes) - 1),
+        )
+        if is_there and end.is_on_spring
+    }
+    key = trace.tobytes(), section.tobytes(), tuple(springs)
     if key not in shared:
-        shared[key] = _elasticity(size, rods.elements, trace, ends, section)
-    body_force = None
+        unit = rods.stiffness / rods.length
+        added = {node: end.spring / unit for node, end in springs.items()}
+        shared[key] = _elasticity(size, rods.elements, trace, ends, section, added)
+    forces: list[Array] = []
     if rods.body_force is not None:
         own = np.s_[None] if rods.body_force.ndim == 1 else np.s_[start : start + size + 1]
         scaled = rods.body_force[own] * rods.length / rods.stiffness
-        body_force = tributary(size, 1.0 / rods.elements)[:, None] * scaled
-    return Substructure(shared[key], cut.dofs(rod, piece), rows, body_force)
+        forces.append(tributary(size, 1.0 / rods.elements)[:, None] * scaled)
+    strain = rods.free_strain
+    needed = None
+    if strain is not None:
+        needed = strain[start : start + size] * (section[:, None] if len(section) else 1.0)
+        # Elements push against their nodes with the force that would keep them as they were.
+        forces.append(np.diff(-needed, axis=0, prepend=0.0, append=0.0))
+    for node, end in springs.items():
+        pulled = np.zeros((size + 1, len(rods.instants)))
+        pulled[node] = end.spring / rods.stiffness * _seen(rods, end, start + node)
+        forces.append(pulled)
+    body_force = sum(forces[1:], forces[0]) if forces else None
+    return Substructure(shared[key], cut.dofs(rod, piece), rows, body_force, needed)
 
 
-def _elasticity(size: int, elements: int, trace: Indices, ends: int, section: Array) -> Elasticity:
-    """Operator of a piece, whose last rows are its ends; no `section` is 1 throughout."""
+def _seen(rods: Rods, end: End, node: int) -> Array:
+    """Displacement of what holds an end, as seen from the support, shape (n_instants,), m."""
+    assert end.displacement is not None
+    settled = 0.0 if rods.settlement is None else rods.settlement[node]
+    return np.asarray(end.displacement - settled)
+
+
+def _elasticity(
+    size: int,
+    elements: int,
+    trace: Indices,
+    ends: int,
+    section: Array,
+    springs: Mapping[int, float],
+) -> Elasticity:
+    """Operator of a piece, whose last rows are its ends; no `section` is 1 throughout.
+
+    `springs` hold nodes, and are part of it.
+    """
     element = 1.0 / elements
     part = size * element
     varies = len(section) > 0
@@ -261,6 +307,8 @@ def _elasticity(size: int, elements: int, trace: Indices, ends: int, section: Ar
     direction = np.full(len(trace), at_ends)
     direction[: len(trace) - ends] = at_ends * element / part
     stiffness = rod_stiffness(size, elements * section if varies else float(elements))
+    for node, spring in springs.items():
+        stiffness[node, node] += spring
     return Elasticity(stiffness, trace, direction)
 
 
@@ -268,13 +316,18 @@ def _interfaces(rods: Rods, cut: CutRods) -> Iterator[tuple[str, Interface]]:
     for number, (above, below) in enumerate(cut.contacts):
         name = "friction" if below is None else f"contact {below + 1}-{above + 1}"
         yield name, _friction(rods, cut, number)
-    held = np.zeros_like(rods.load) if rods.support is None else rods.support / rods.length
-    yield "support", Dirichlet(cut.left[0], np.tile(held, (rods.wires, 1)))
+    yield SIDES["left"], _held_or_pulled(rods, rods.left, cut.left[0], 0)
     yield from cut.cuts()
-    # Over ES the load is a scaled force, and the scaled displacement of an end under it.
-    given, last = np.tile(rods.load / rods.stiffness, (rods.wires, 1)), cut.right[-1]
-    is_held = rods.rigid_grip
-    yield "load", Dirichlet(last, given) if is_held else Neumann(last, given, np.eye(rods.wires))
+    yield SIDES["right"], _held_or_pulled(rods, rods.right, cut.right[-1], -1)
+
+
+def _held_or_pulled(rods: Rods, end: End, rows: Indices, node: int) -> Interface:
+    """Law of an end; a spring that holds it is part of the rod."""
+    if end.is_prescribed:
+        return Dirichlet(rows, np.tile(_seen(rods, end, node) / rods.length, (rods.wires, 1)))
+    force = np.zeros(len(rods.instants)) if end.force is None else end.force
+    pulled = np.tile(force / rods.stiffness, (rods.wires, 1))
+    return Neumann(rows, pulled, np.eye(rods.wires))
 
 
 def _friction(rods: Rods, cut: CutRods, number: int) -> Contact:

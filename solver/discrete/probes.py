@@ -109,12 +109,14 @@ def reaction(problem: Problem, name: str) -> Probe:
 
 
 class AxialForce:
-    """Axial force in the elements of wires, from their displacement.
+    """Axial force in the elements of rods, from their displacement.
 
     Parameters
     ----------
     problem
         One of rods.
+    instants
+        Those at which it is evaluated; all by default.
 
     Attributes
     ----------
@@ -124,7 +126,7 @@ class AxialForce:
         Wire of every element, from 0, shape (n_elements,).
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, instants: slice | Indices = slice(None)) -> None:
         parts, places = problem.substructures, problem.positions
         self._first = np.concatenate([part.dofs[:-1] for part in parts])
         self._second = np.concatenate([part.dofs[1:] for part in parts])
@@ -132,16 +134,19 @@ class AxialForce:
         self._stiffness = scale * np.concatenate(
             [-sparse.csr_array(part.elasticity.stiffness).diagonal(1) for part in parts]
         )
+        free = [part.free_force for part in parts if part.free_force is not None]
+        self._free: Array | float = 0.0
+        if free:
+            self._free = problem.scales.force * np.concatenate(free)[:, instants]
         self.positions: Array = 0.5 * (places[self._first] + places[self._second])
         begins = [places[part.dofs[0]] == places[0] for part in parts]
         sizes = [len(part.dofs) - 1 for part in parts]
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
 
     def __call__(self, displacement: Array) -> Array:
-        """Forces, shape (n_elements,), N, for displacements of one instant (n_dofs,)."""
-        return np.asarray(
-            self._stiffness * (displacement[self._second] - displacement[self._first])
-        )
+        """Forces, (n_elements, n), N, for displacements (n_dofs, n) of these n instants, m."""
+        strained = displacement[self._second] - displacement[self._first]
+        return np.asarray(self._stiffness[:, None] * strained - self._free)
 
 
 def _inside(problem: Problem) -> Inside:

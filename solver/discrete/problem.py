@@ -67,6 +67,9 @@ class Problem:
     motions
         Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent; None
         where there are none, or where no digits are lost beside them.
+    carried
+        Displacement of the support that rods lie on, scaled, shape (n_dofs, n_instants), where it
+        moves: all displacements of the problem are seen from it.
     """
 
     substructures: tuple[Substructure, ...]
@@ -77,6 +80,13 @@ class Problem:
     inside: Inside | None = None
     rest: Array | None = None
     motions: Array | None = None
+    carried: Array | None = None
+
+    def at_rest(self, displacement: Array) -> Array:
+        """Displacements as who stands beside sees them, (n_dofs, n_instants), m."""
+        if self.carried is None:
+            return displacement
+        return displacement + self.carried * self.scales.displacement
 
     @cached_property
     def n_rows(self) -> int:
@@ -315,8 +325,12 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
     RefusedError
         If a law remembers more than that.
     """
+
+    def during(field: Array | None) -> Array | None:
+        return None if field is None else field[:, some]
+
     parts = tuple(
-        part if part.body_force is None else replace(part, body_force=part.body_force[:, some])
+        replace(part, body_force=during(part.body_force), free_force=during(part.free_force))
         for part in problem.substructures
     )
     interfaces = {
@@ -328,7 +342,8 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         substructures=parts,
         interfaces=interfaces,
         instants=problem.instants[some],
-        rest=None if problem.rest is None else problem.rest[:, some],
+        rest=during(problem.rest),
+        carried=during(problem.carried),
     )
 
 

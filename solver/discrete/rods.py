@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import Literal, Self, cast
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cut_rods import COARSEST, discretise_rods
-from solver.discrete.probes import Probe, reaction
+from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods
+from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
-from solver.refusal import RefusedError
+from solver.refusal import RefusedError, check_range
 
 SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Where a body force that changes along the rods is shown, and the pressure where anything rubs."""
@@ -23,10 +23,51 @@ SEVERAL = 8
 
 
 @dataclass(frozen=True, eq=False)
+class End:
+    """How an end of every rod is pulled, or held; with nothing given it is free.
+
+    Attributes
+    ----------
+    force
+        Axial force on it, positive to the right, shape (n_instants,), N; None where it is held.
+    displacement
+        Of what holds it, shape (n_instants,), m; None where nothing does.
+    spring
+        Stiffness of the spring by which that holds it, N/m; infinite where it does so itself.
+
+    Raises
+    ------
+    RefusedError
+        For a force and a displacement, or a spring that is not stiffer than zero.
+    """
+
+    force: Array | None = None
+    displacement: Array | None = None
+    spring: float = np.inf
+
+    def __post_init__(self) -> None:
+        check_range(self, "spring", 0.0, np.inf, above=True)
+        if self.force is not None and self.displacement is not None:
+            raise RefusedError(
+                "End.force", "given, with a displacement", "either of them", "leave out the other"
+            )
+
+    @property
+    def is_prescribed(self) -> bool:
+        """Whether its displacement is given."""
+        return self.displacement is not None and bool(np.isinf(self.spring))
+
+    @property
+    def is_on_spring(self) -> bool:
+        """Whether a spring holds it."""
+        return self.displacement is not None and not np.isinf(self.spring)
+
+
+@dataclass(frozen=True, eq=False)
 class Rods:
     """One rod on a rigid rough support, or equal parallel rods that rub on each other.
 
-    Their left ends are held; absent parts are None.
+    Absent parts are None.
 
     Attributes
     ----------
@@ -38,22 +79,23 @@ class Rods:
     bound
         Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or where it changes
         with time (n_nodes, n_instants).
-    load
-        Force at the right end of every rod, or with a rigid grip that of a rod which carries
-        nothing but its share, shape (n_instants,), N.
+    left, right
+        The ends of every rod.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
     wires
         Number of the rods, from 1: a single one rubs on its support, several on their neighbours.
     broken
         Number of the broken rod and of the node where it is broken, of several rods.
-    rigid_grip
-        Whether the right ends are displaced by load times L / ES instead.
-    support
-        Displacement of the held ends, shape (n_instants,), m.
     body_force
         Axial force per length, N/m: uniform along the rods, shape (n_instants,), or at the nodes of
         each, (n_nodes, n_instants).
+    strain
+        Strain e_0 that the rods would have without any force, as by heat, shape (n_elements,
+        n_instants), 1.
+    settlement
+        Displacement s of the support itself, at the nodes of a single rod, shape (n_nodes,
+        n_instants), m. Ends are not on it.
     friction_law
         Along the interfaces.
     section
@@ -66,7 +108,8 @@ class Rods:
     Raises
     ------
     RefusedError
-        For a bound or a body force of another shape, or a bound below zero.
+        For a field of another shape, a bound below zero, a break of ends that are not held and
+        pulled, or a settlement under several rods.
     """
 
     length: float
@@ -74,40 +117,43 @@ class Rods:
     elements: int
     substructures: int
     bound: Array
-    load: Array
+    left: End
+    right: End
     instants: Array
     duration: float
     wires: int = 1
     broken: tuple[int, int] | None = None
-    rigid_grip: bool = False
-    support: Array | None = None
     body_force: Array | None = None
+    strain: Array | None = None
+    settlement: Array | None = None
     section: Array | None = None
     pressure: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
         nodes, instants = self.elements + 1, len(self.instants)
-        if self.bound.shape not in ((nodes,), (nodes, instants)):
-            raise RefusedError(
-                "Rods.bound",
-                list(self.bound.shape),
-                f"shape [{nodes}], or [{nodes}, {instants}] where it changes with time",
-                "give a value for every node, at every instant where it changes",
-            )
+        shapes: dict[str, list[tuple[int, ...]]] = {
+            "bound": [(nodes,), (nodes, instants)],
+            "body_force": [(instants,), (nodes, instants)],
+            "strain": [(self.elements, instants)],
+            "settlement": [(nodes, instants)],
+        }
+        for name, allowed in shapes.items():
+            values: Array | None = getattr(self, name)
+            if values is not None and values.shape not in allowed:
+                raise RefusedError(
+                    f"Rods.{name}",
+                    list(values.shape),
+                    "shape " + " or ".join(str(list(shape)) for shape in allowed),
+                    "space comes first, then time",
+                )
         if self.bound.min() < 0.0:
             raise RefusedError(
                 "Rods.bound", float(self.bound.min()), "0 or more", "give no bound below zero"
             )
-        if self.body_force is not None and self.body_force.shape not in (
-            (instants,),
-            (nodes, instants),
-        ):
+        if self.wires > 1 and self.settlement is not None:
             raise RefusedError(
-                "Rods.body_force",
-                list(self.body_force.shape),
-                f"shape [{instants}], or [{nodes}, {instants}] where it changes along the rods",
-                "give a value for every instant, at every node where it changes along them",
+                "Rods.settlement", self.wires, "a single rod", "several rods rub on each other"
             )
 
     @property
@@ -119,6 +165,33 @@ class Rods:
     def bounds(self) -> Array:
         """The bound, shape (n_nodes, n_instants), or (n_nodes, 1) where it stays the same, N/m."""
         return self.bound if self.bound.ndim == 2 else self.bound[:, None]
+
+    @property
+    def load(self) -> Array:
+        """Force on the right end of a rod that rubs nowhere, shape (n_instants,), N."""
+        if self.right.is_prescribed:
+            assert self.right.displacement is not None
+            return self.right.displacement * (self.stiffness / self.length)
+        return np.zeros(len(self.instants)) if self.right.force is None else self.right.force
+
+    @property
+    def is_only_pulled(self) -> bool:
+        """Whether nothing but a force at the right ends moves the rods, and the left ones rest."""
+        held = self.left.is_prescribed and not np.any(self.left.displacement)
+        moved = self.body_force, self.strain, self.settlement
+        return held and self.right.force is not None and all(each is None for each in moved)
+
+    @property
+    def free_strain(self) -> Array | None:
+        """Strain of rods that no force strains, as seen from their support; or None.
+
+        A support that moves by s strains what sticks to it by ds/dx: seen from it, that is as if
+        the rod shrank. So both are e_0 - ds/dx, shape (n_elements, n_instants).
+        """
+        if self.settlement is None:
+            return self.strain
+        moved = np.diff(self.settlement, axis=0) * (self.elements / self.length)
+        return -moved if self.strain is None else self.strain - moved
 
     @property
     def rubbing_sides(self) -> int:
@@ -135,8 +208,14 @@ class Rods:
             return None
         nodes = np.linspace(0.0, self.length, elements + 1)
         body_force, section = self.body_force, self.section
+        strain, settlement = self.strain, self.settlement
         if body_force is not None and body_force.ndim == 2:
             body_force = self._at(nodes, body_force)
+        if settlement is not None:
+            settlement = self._at(nodes, settlement)
+        if strain is not None:  # what it would lengthen the parts between the new nodes by
+            longer = np.concatenate([np.zeros_like(strain[:1]), np.cumsum(strain, axis=0)])
+            strain = np.diff(self._at(nodes, longer), axis=0) * (elements / self.elements)
         if section is not None:  # in series what the elements have between the new nodes
             compliance = np.concatenate([[0.0], np.cumsum(1.0 / section)])
             soft = np.diff(np.interp(nodes, self.nodes, compliance))
@@ -147,6 +226,8 @@ class Rods:
             substructures=1,
             bound=self._at(nodes, self.bound),
             body_force=body_force,
+            strain=strain,
+            settlement=settlement,
             section=section,
         )
 
@@ -159,18 +240,57 @@ class Rods:
         return discretise_rods(self)
 
     def loop(self, problem: Problem) -> Loop:
-        """Mean force on the loaded ends over their mean displacement."""
-        rows, given = problem.interfaces["load"].rows, problem.interfaces["load"].given_force
+        """Mean force on the ends that are driven over their mean displacement.
+
+        Where no end is: what a right end does, or the force that holds it, over what drives.
+        """
+        side = self.driven_end or "right"
+        end, node = (self.left, 0) if side == "left" else (self.right, -1)
+        rows = problem.interfaces[SIDES[side]].rows
         weights = np.full(len(rows), 1.0 / len(rows))
+        settled = 0.0 if self.settlement is None else self.settlement[node]
+        moved = Probe(problem.row_dofs[rows], weights, settled)
         force: Array | Callable[[LoopFields], Array]
-        if given is not None:
-            force = weights @ given.values * problem.scales.force
-        else:
-            held = reaction(problem, "load")
+        if end.is_prescribed:
+            held = reaction(problem, SIDES[side])
             force = lambda fields: held(fields.displacement) / len(rows)  # noqa: E731
-        across, up = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
-        ends = Probe(problem.row_dofs[rows], weights)
-        return Loop((f"{across} displacement", "m"), (up, "N"), ends, force)
+        elif end.displacement is not None:
+            stretched, spring = end.displacement, end.spring
+            force = lambda fields: spring * (stretched - moved(fields.displacement))  # noqa: E731
+        else:
+            force = self.load if side == "right" else np.asarray(end.force)
+        drive = self._drive
+        if self.driven_end is None and drive is not None:
+            title, unit, values = drive
+            across = (title, unit)
+            if end.displacement is not None:
+                return Loop(across, ("Force", "N"), constant(values), force)
+            follow = lambda fields: moved(fields.displacement)  # noqa: E731
+            return Loop(across, ("End displacement", "m"), constant(values), follow)
+        of, up = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
+        return Loop((f"{of} displacement", "m"), (up, "N"), moved, force)
+
+    @property
+    def driven_end(self) -> Literal["left", "right"] | None:
+        """The end that is pulled or moved, the right one before the left one, or None."""
+        for side, end in (("right", self.right), ("left", self.left)):
+            if np.any(end.force) if end.displacement is None else np.any(end.displacement):
+                return cast(Literal["left", "right"], side)
+        return None
+
+    @property
+    def _drive(self) -> tuple[str, str, Array] | None:
+        """What drives rods whose ends are left alone: title, unit, and values over time."""
+        drives = (
+            ("Strain without force", "", self.strain),
+            ("Settlement", "m", self.settlement),
+            ("Body force", "N/m", self.body_force),
+        )
+        for title, unit, values in drives:
+            if values is not None and values.any():
+                along = np.atleast_2d(values)
+                return title, unit, along[np.abs(along).max(axis=1).argmax()]
+        return None
 
     def described(self) -> Description:
         """The rods in words, for whoever draws them."""
@@ -186,32 +306,45 @@ class Rods:
         )
 
     def _acts(self) -> Iterator[Act]:
-        start, pulled = np.array([[0.0, 0.5]]), self.wires if self.wires <= SEVERAL else 1
+        right, pulled = OUTWARD["right"], self.wires if self.wires <= SEVERAL else 1
         heights = (np.arange(pulled) + 0.5) / pulled
-        end = np.stack([np.ones(pulled), heights], axis=1)
-        right = OUTWARD["right"]
-        if self.rigid_grip:
-            moved = self.load * self.length / self.stiffness
-            yield Act("right x", "u", end, right, right, moved, "m")
-        else:
-            yield Act("right x", "F", end, right, right, self.load, "N")
-        if self.support is not None:
-            yield Act("left x", "u", start, right, OUTWARD["left"], self.support, "m")
+        for side, x, end in (("right", 1.0, self.right), ("left", 0.0, self.left)):
+            places = np.stack([np.full(pulled, x), heights], axis=1)
+            if end.displacement is not None:
+                where = places[:1] if side == "left" else places
+                yield Act(f"{side} x", "u", where, right, OUTWARD[side], end.displacement, "m")
+            elif end.force is not None:
+                yield Act(f"{side} x", "F", places, right, OUTWARD[side], end.force, "N")
         if self.body_force is not None:
-            x = np.array([0.5]) if self.body_force.ndim == 1 else SHOWN
-            middle = np.stack([x, np.full(len(x), 0.5)], axis=1)
-            nearest = np.rint(x * self.elements).astype(np.intp)
-            values = self.body_force if self.body_force.ndim == 1 else self.body_force[nearest]
-            yield Act("body", "b", middle, right, right, values, "N/m")
+            is_uniform = self.body_force.ndim == 1
+            along = np.array([0.5]) if is_uniform else SHOWN
+            values = self.body_force if is_uniform else self._shown(self.body_force)
+            places = np.stack([along, np.full(len(along), 0.5)], axis=1)
+            yield Act("body", "b", places, right, right, values, "N/m")
+        if self.strain is not None:
+            values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
+            yield Act("body strain", "ε₀", np.zeros((0, 2)), right, right, values, "")
+        if self.settlement is not None:
+            places = np.stack([SHOWN, np.zeros_like(SHOWN)], axis=1)
+            values = self._shown(self.settlement)
+            yield Act("bottom x", "s", places, right, OUTWARD["bottom"], values, "m")
         most = self.bounds.max(axis=1)
-        x = SHOWN[np.interp(SHOWN, self.nodes / self.length, most) > 0.0]
-        if self.pressure is not None and len(x):
-            places = np.stack([x, np.ones_like(x)], axis=1)
+        rubs = SHOWN[np.interp(SHOWN, self.nodes / self.length, most) > 0.0]
+        if self.pressure is not None and len(rubs):
+            places = np.stack([rubs, np.ones_like(rubs)], axis=1)
             ways = OUTWARD["bottom"], OUTWARD["top"]
             yield Act("top y", "p", places, *ways, self.pressure, "N/m")
 
+    def _shown(self, values: Array) -> Array:
+        """Values at the nodes nearest to where arrows are drawn."""
+        return np.asarray(values[np.rint(SHOWN * self.elements).astype(np.intp)])
+
     def _holds(self) -> Iterator[Hold]:
-        yield Hold("clamp", "left", moved=self.support)
+        for side, end in (("left", self.left), ("right", self.right)):
+            if end.is_on_spring:
+                yield Hold("spring", side, moved=end.displacement)
+            elif end.is_prescribed and (side == "left" or not np.any(end.displacement)):
+                yield Hold("clamp", side, moved=end.displacement)
         if self.wires > 1:
             return
         rubs = np.flatnonzero(self.bounds.any(axis=1))

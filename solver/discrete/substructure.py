@@ -55,9 +55,14 @@ class Substructure:
         Its boundary rows, shape (n_boundary,).
     body_force
         Nodal forces inside, shape (n_dofs, n_instants), or None.
+    free_force
+        Axial force of each element of a rod, scaled, that would strain it as much as it is strained
+        without any, shape (n_elements, n_instants); None where that is nothing. Its nodal forces
+        are among `body_force`.
     """
 
     elasticity: Elasticity
     dofs: Indices
     rows: Indices
     body_force: Array | None
+    free_force: Array | None = None

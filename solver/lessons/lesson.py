@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from solver.checked import dump
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.quantities.quantities import Reading
+from solver.study.quantities.quantity import Quantity
 
 SUBJECTS = "mechanics", "method"
 
@@ -46,13 +46,13 @@ class Claim:
         One sentence.
     settings
         Of the run that it is about.
-    reading
-        The quantity of that run.
+    quantity
+        Of that run.
     """
 
     claim: str
     settings: Settings
-    reading: Reading
+    quantity: Quantity
     expected: Expected
 
     def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
@@ -61,14 +61,14 @@ class Claim:
         A quantity of one instant has to be as expected where the plots stand, too: at a share of
         the interval.
         """
-        quantity, value = self.reading.quantity, self.reading(run)
+        quantity, value = self.quantity, self.quantity(run)
         holds, words = self.expected.holds(value), _written(value, quantity.unit)
         if quantity.at_instant is not None:
             seen = quantity.at_instant(run, round(share * (run.problem.n_instants - 1)))
             if not self.expected.holds(seen):
                 holds = False
                 words += f", but {_written(seen, quantity.unit)} at the instant of the plots"
-        return holds, f"{self.reading.title}: {words}; expected {self.expected.words}"
+        return holds, f"{quantity.title}: {words}; expected {self.expected.words}"
 
 
 def _written(value: float, unit: str) -> str:
@@ -163,8 +163,8 @@ class Lesson:
                 continue
             values = claim.settings.values()
             same = all(values[name] == own[name] for name in own if name != self.draw)
-            if self.draw in values and same and asked in ("", claim.reading.name):
-                asked = claim.reading.name
+            if self.draw in values and same and asked in ("", claim.quantity.name):
+                asked = claim.quantity.name
                 curve[values[self.draw]] = 0.5 * (claim.expected.low + claim.expected.high)
         return sorted(curve.items())
 
@@ -172,14 +172,14 @@ class Lesson:
     def drawn_quantity(self) -> str:
         """What that curve shows, in words."""
         claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
-        return next((claim.reading.title for claim in claims), "")
+        return next((claim.quantity.title for claim in claims), "")
 
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
     wanted: defaultdict[str, set[str | None]] = defaultdict(set)
     for claim in lesson.checkpoints:
-        reads = claim.reading.quantity.reads if isinstance(claim, Claim) else None
+        reads = claim.quantity.reads if isinstance(claim, Claim) else None
         wanted[dump(claim.settings)].add(reads)
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:

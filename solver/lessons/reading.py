@@ -12,7 +12,7 @@ from solver.definitions import SettingError
 from solver.files import scene_settings
 from solver.lessons.lesson import SUBJECTS, Claim, EndingClaim, Expected, Lesson
 from solver.settings import Settings
-from solver.study.quantities.quantities import reading
+from solver.study.quantities import reading
 from solver.toml_files import check_keys, placed, read_toml
 
 KEYS = {

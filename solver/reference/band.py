@@ -92,7 +92,8 @@ class Band:
     def stiffened(self, diagonal: Array) -> Self:
         """The matrix plus a diagonal one, which may be negative, where degrees are kept."""
         band = copy(self)
-        band._added, band.solutions = diagonal, 0
+        band._added = diagonal if self._added is None else self._added + diagonal
+        band.solutions = 0
         return band
 
     def only(self, kept: Flags) -> Self:

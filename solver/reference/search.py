@@ -15,6 +15,10 @@ NEWTON_LIMIT = 8
 """Steps from one guess of the statuses before a better one is sought."""
 COARSEST = 8
 """Degrees of freedom below which no coarser mesh is asked for a guess."""
+HELD = 1e-13
+"""Force that moves a rod as one by a unit, over the largest row of the stiffness, which is none."""
+LEASH = 1e-10
+"""Stiffness over the same that holds a loose rod for a step: it goes far, and keeps its digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +63,17 @@ class Search:
         self._starts = band.apart(movable)
         sizes = np.diff(self._starts, append=len(movable))
         self._rod = np.repeat(np.arange(len(sizes)), sizes)
+        self._loose = self._loose_rods()
+
+    def _loose_rods(self) -> Flags:
+        """Rods that move as one without force, where nothing sticks."""
+        is_whole = np.logical_and.reduceat(self._movable > 0.0, self._starts)
+        if not is_whole.any():
+            return is_whole
+        pulled = np.abs(self._band.product(self._movable))
+        return is_whole & (
+            np.maximum.reduceat(pulled, self._starts) <= HELD * self._band.largest_row
+        )
 
     def __call__(self, force: Array, status: Array) -> Minimum:
         """Minimum, sought from a guess of the statuses; no force where nothing moves."""
@@ -143,9 +158,18 @@ class Search:
         return Search(band, summed(group, self._bound), movable), group
 
     def _slip(self, force: Array, status: Array) -> Array:
-        """Solve for the increment under given statuses; exactly zero where they are zero."""
-        keep = self._free + np.abs(status)
-        return self._band.solve_kept(keep, keep * (force - self._bound * status))
+        """Solve for the increment under given statuses; exactly zero where they are zero.
+
+        A loose rod of which all points slip goes as far as it has to for some of them to turn back.
+        """
+        keep, band = self._free + np.abs(status), self._band
+        if self._loose.any():
+            flies = self._loose & np.logical_and.reduceat(keep > 0.0, self._starts)
+            if flies.any():
+                leash = LEASH * band.largest_row
+                band = band.stiffened(np.where(flies[self._rod], leash, 0.0))
+                self._band.solutions += 1
+        return band.solve_kept(keep, keep * (force - self._bound * status))
 
     def _rounding(self, largest: float, increment: Array) -> float:
         """What rounding leaves of a pull, where the largest force is given."""

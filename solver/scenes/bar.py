@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 import numpy as np
 
+import solver.scenes.bar_ends as bar_ends
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, curve, quantity
+from solver.definitions import SettingError, count, curve, quantity
+from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
@@ -17,8 +19,8 @@ from solver.loads import PRESETS, interpolate
 from solver.profiles import harmonic_means, means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry
+from solver.scenes.base import STIFFNESSES, SceneSettings
+from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_bar
 from solver.scenes.words import acting, is_steel
 
@@ -26,6 +28,12 @@ SECTIONS = ("uniform", "rising", "falling")
 """Of `shared.PROFILES`, those that leave no element without a section."""
 FACTORS = 1e-8, 1e8
 LARGEST_CONTRAST = 1e8
+DONE = {
+    "body_load": ("all along it is {}", "pulled", "pushed"),
+    "temperature_load": ("it is {}", "heated", "cooled"),
+    "settlement_load": ("what it lies on is {}", "moved", "moved back"),
+}
+"""Words for what is done along the bar, by the setting of its path."""
 SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
 
@@ -34,20 +42,17 @@ class BarSettings(SceneSettings):
     """Settings of the friction bar; the defaults are Table 1 under a sine of 900 N."""
 
     scene = "bar"
-    LOADS: ClassVar = ("peak",)
-    PEAKS: ClassVar = {
-        "load": "peak",
-        "support_load": "support_displacement",
-        "body_load": "body_force",
-        "pressure_load": "pressure",
-    }
-    BEHIND: ClassVar = {
-        "right x": "peak",
-        "top y": "pressure",
-        "left x": "support_displacement",
-        "body": "body_force",
-    }
-    PROFILES: ClassVar = shared.PROFILES
+    LOADS: ClassVar = (
+        "peak",
+        "right_displacement",
+        "left_force",
+        "support_displacement",
+        "temperature",
+        "settlement",
+    )
+    PEAKS: ClassVar = {**bar_ends.PEAKS, "pressure_load": "pressure"}
+    BEHIND: ClassVar = {"top y": "pressure", "body": "body_force", "bottom x": "settlement"}
+    PROFILES: ClassVar = {**shared.PROFILES, **bar_ends.RISING}
 
     load = curve(
         "sine",
@@ -55,9 +60,10 @@ class BarSettings(SceneSettings):
         "time",
         "force",
         ("s", "N"),
-        "Axial force at the free end over time: a preset, or points (s, N).",
+        "Axial force at the right end over time: a preset, or points (s, N).",
         group="Load",
         title="Load path",
+        applies=bar_ends.is_end("right", "pulled"),
     )
     peak = quantity(
         900.0,
@@ -67,44 +73,132 @@ class BarSettings(SceneSettings):
         group="Load",
         title="Peak load",
         unit="N",
-        applies=lambda settings: isinstance(settings.load, str),
+        applies=lambda settings: settings.right_end == "pulled" and isinstance(settings.load, str),
     )
-    seed = shared.seed(lambda settings: settings.load == "random")
+    seed = shared.seed(
+        lambda settings: any(getattr(settings, name) == "random" for name in settings.paths)
+    )
     duration = shared.duration()
     instants = shared.instants(101)
-    support_displacement = quantity(
-        0.0,
-        (-1e12, 1e12),
-        (0.0, 1e-3),
-        "Largest prescribed displacement of the clamped end; 0 leaves it fixed.",
-        group="Load",
-        title="Support displacement",
-        unit="m",
+    right_end = bar_ends.end("right", "pulled")
+    right_displacement = bar_ends.size(
+        "right_load",
+        "m",
+        (1e12, 1e-3),
+        "Displacement of the right end",
+        "Largest displacement of what holds the right end; 0 leaves it where it is.",
+        bar_ends.is_end("right", *bar_ends.HOLDING),
     )
-    support_load = choice(
+    right_load = bar_ends.path_over_time(
+        "right_load",
+        "ramp",
+        "displacement",
+        "m",
+        "displacement of the right end",
+        bar_ends.is_end("right", *bar_ends.HOLDING),
+    )
+    right_spring = bar_ends.spring("right")
+    left_end = bar_ends.end("left", "held")
+    support_displacement = bar_ends.size(
+        "support_load",
+        "m",
+        (1e12, 1e-3),
+        "Displacement of the left end",
+        "Largest displacement of what holds the left end; 0 leaves it where it is.",
+        bar_ends.is_end("left", *bar_ends.HOLDING),
+    )
+    support_load = bar_ends.path_over_time(
+        "support_load",
         "sine",
-        PRESETS,
-        "Path of the support's displacement over time.",
-        group="Load",
-        title="Path of the support",
-        applies=lambda settings: settings.support_displacement != 0.0,
+        "displacement",
+        "m",
+        "displacement of the left end",
+        bar_ends.is_end("left", *bar_ends.HOLDING),
     )
-    body_force = quantity(
-        0.0,
-        (-1e15, 1e15),
-        (0.0, 3000.0),
+    left_spring = bar_ends.spring("left")
+    left_force = bar_ends.size(
+        "left_load",
+        "N",
+        (1e15, 2400.0),
+        "Force at the left end",
+        "Largest axial force at the left end, positive to the right.",
+        bar_ends.is_end("left", "pulled"),
+    )
+    left_load = bar_ends.path_over_time(
+        "left_load",
+        "sine",
+        "force",
+        "N",
+        "force at the left end",
+        bar_ends.is_end("left", "pulled"),
+    )
+    body_force = bar_ends.size(
+        "body_load",
+        "N/m",
+        (1e15, 3000.0),
+        "Body force",
         "Largest axial force per length inside the bar; 0 leaves it out.",
         group="Load",
-        title="Body force",
-        unit="N/m",
     )
-    body_load = choice(
-        "ramp",
-        PRESETS,
-        "Path of the body force over time.",
+    body_load = bar_ends.path_over_time(
+        "body_load", "ramp", "force", "N/m", "body force", group="Load"
+    )
+    temperature = bar_ends.size(
+        "temperature_load",
+        "K",
+        (1e9, 60.0),
+        "Heating",
+        "Largest change of the temperature of the bar; 0 leaves it out.",
         group="Load",
-        title="Path of the body force",
-        applies=lambda settings: settings.body_force != 0.0,
+    )
+    temperature_load = bar_ends.path_over_time(
+        "temperature_load", "ramp", "temperature", "K", "temperature", group="Load"
+    )
+    temperature_profile = curve(
+        "uniform",
+        shared.PROFILES,
+        "position",
+        "factor",
+        ("m", ""),
+        "Factor on the temperature along the bar: a preset, or points (m, factor).",
+        group="Load",
+        title="Temperature along the bar",
+        applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
+    )
+    expansion = quantity(
+        1.2e-5,
+        (1e-12, 1.0),
+        (1e-6, 1e-4),
+        "Strain of the bar without any force, per kelvin.",
+        group="Load",
+        title="Thermal expansion",
+        unit="1/K",
+        applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
+        logarithmic=True,
+    )
+    settlement = bar_ends.size(
+        "settlement_load",
+        "m",
+        (1e12, 1e-3),
+        "Settlement",
+        "Largest displacement of the support along the bar, as of soil that settles or a slab that "
+        "shrinks; 0 leaves it where it is. The ends are not on it.",
+        group="Load",
+    )
+    settlement_load = bar_ends.path_over_time(
+        "settlement_load", "ramp", "displacement", "m", "settlement", group="Load"
+    )
+    settlement_profile = curve(
+        "linear",
+        ("linear", *shared.PROFILES),
+        "position",
+        "factor",
+        ("m", ""),
+        "Factor on the settlement along the bar: a preset (linear: nothing at the left end), or "
+        "points (m, factor).",
+        group="Load",
+        title="Settlement along the bar",
+        applies=lambda settings: bar_ends.acts(settings, "settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
     pressure = shared.pressure("the bar on its support", 10_000.0)
@@ -143,6 +237,12 @@ class BarSettings(SceneSettings):
         title="S along the bar",
     )
 
+    @classmethod
+    def chief(cls) -> tuple[str, ...]:
+        """Settings that the bar is about: what is done to its right end first."""
+        ends = cls.PATH, "seed", "peak", "right_displacement"
+        return (*ends, "friction", "substructures", "k_scale")
+
     @property
     def n_nodes(self) -> int:
         """Number of nodes."""
@@ -161,6 +261,21 @@ class BarSettings(SceneSettings):
         shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
         for name in ("friction_profile", "pressure_profile"):
             shared.refuse_negative(self, name, "factor")
+        for side in bar_ends.PATHS:
+            self._check_spring(f"{side}_spring")
+        self._check_equilibrium()
+
+    def _check_spring(self, name: str) -> None:
+        """Refuse springs beside which no digits of the bar are left, or of themselves."""
+        unit, value = self.young * self.section / self.length, getattr(self, name)
+        low, high = (share * unit for share in STIFFNESSES)
+        if self.applies(name) and not low <= value <= high:
+            raise SettingError(
+                name,
+                value,
+                f"from {plain(low)} N/m to {plain(high)} N/m with such a bar",
+                "let the end be free, or held",
+            )
 
     def _check_section(self) -> None:
         """Refuse a section that vanishes, or is too uneven for the digits of a number."""
@@ -190,23 +305,28 @@ class BarSettings(SceneSettings):
         The bar is at rest and free of stress before the first instant.
         """
         nodes = np.linspace(0.0, self.length, self.elements + 1)
-        density = self.friction * self._density(nodes)
-        bound = density * self.pressure
-        if self.pressure_load != "steady":
-            bound = np.outer(density, self.path("pressure_load"))
         mean, section = self._uneven_section()
+        strain = settlement = None
+        if bar_ends.acts(self, "temperature_load"):
+            along = means([self.points("temperature_profile")], nodes)
+            strain = np.outer(self.expansion * along, self.path("temperature_load"))
+        if bar_ends.acts(self, "settlement_load"):
+            along = interpolate(self.points("settlement_profile"), nodes)
+            settlement = np.outer(along, self.path("settlement_load"))
         return Rods(
             length=self.length,
             stiffness=self.young * self.section * mean,
             elements=self.elements,
             substructures=self.substructures,
-            bound=bound,
-            load=self.path("load"),
+            bound=self._bound(nodes),
+            left=bar_ends.end_of(self, "left"),
+            right=bar_ends.end_of(self, "right"),
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
-            support=self.path("support_load") if self.support_displacement else None,
-            body_force=self.path("body_load") if self.body_force else None,
+            body_force=self.path("body_load") if bar_ends.acts(self, "body_load") else None,
+            strain=strain,
+            settlement=settlement,
             section=section,
             friction_law=self.law,
         )
@@ -215,18 +335,57 @@ class BarSettings(SceneSettings):
         """The bar in a sentence."""
         bound = self.law.without_slip(self.structure().bound)
         table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-        ends = f"its right end is {acting(self.path('load'), 'pulled', 'pushed')}"
-        if self.support_displacement:
-            left = acting(self.path("support_load"), "moved", "moved back")
-            ends += f", and its left end is {left}"
-        if self.body_force:
-            along = acting(self.path("body_load"), "pulled", "pushed")
-            ends += f"; all along it is {along}"
+        rests, moved = bar_ends.ends_in_words(self)
+        clauses = [moved] if moved else []
+        for path, words in DONE.items():
+            if bar_ends.acts(self, path):
+                clauses.append(words[0].format(acting(self.path(path), *words[1:])))
         if self.pressure_load != "steady":
-            ends += "; what presses it changes"
-        held = "" if self.support_displacement else ", held at its left end"
+            clauses.append("what presses it changes")
         body = "A steel bar" if is_steel(self.young) else "An elastic bar"
-        return f"{body} lies on a {table} table{held}; {ends}."
+        head = f"{body} lies on a {table} table{f', {rests}' if rests else ''}"
+        return f"{'; '.join([head, *clauses])}."
+
+    @property
+    def features(self) -> Features:
+        """What it has: a loop over a displacement where an end is pulled or moved."""
+        acting = {name for name in self.paths if bar_ends.acts(self, name)}
+        driven = {path for paths in bar_ends.PATHS.values() for path in paths.values()}
+        return Features(loop_is_over_displacement=bool(acting & driven))
+
+    def _behind(self) -> Mapping[str, str]:
+        sides = {
+            f"{side} x": self.PEAKS[paths["force" if kind == "pulled" else "displacement"]]
+            for side, paths in bar_ends.PATHS.items()
+            if (kind := getattr(self, f"{side}_end")) != "free"
+        }
+        return {**self.BEHIND, **sides}
+
+    def _bound(self, nodes: Array) -> Array:
+        """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
+        density = self.friction * self._density(nodes)
+        if self.pressure_load == "steady":
+            return density * self.pressure
+        return np.outer(density, self.path("pressure_load"))
+
+    def _check_equilibrium(self) -> None:
+        """Refuse more force than friction carries, where it alone holds the bar."""
+        if {self.left_end, self.right_end} & set(bar_ends.HOLDING):
+            return
+        nodes = np.linspace(0.0, self.length, self.elements + 1)
+        bound = self.law.without_slip(self._bound(nodes)) * self.law.strongest
+        shares = tributary(self.elements, self.length / self.elements)
+        most = np.broadcast_to(shares @ bound, (self.n_instants,))
+        total = np.abs(bar_ends.total_force(self))
+        worst = int(np.argmax(total - most))
+        if total[worst] >= (1.0 - SLACK) * most[worst]:
+            raise SettingError(
+                "left_end",
+                self.left_end,
+                f"held, or spring, where forces reach {plain(float(total[worst]))} N and friction "
+                f"carries less than {plain(float(most[worst]))} N",
+                "hold an end, lower the forces, or raise friction or pressure",
+            )
 
     def coarser(self) -> Iterator[Rods]:
         """Yield the same bar, uncut, on ever coarser meshes."""
@@ -259,7 +418,7 @@ class BarSettings(SceneSettings):
 
 
 BAR = Entry(
-    title="Clamped bar on a rough support",
+    title="Bar on a rough support",
     source="paper, section 3, Table 1",
     emblem=Emblem(
         ground="M5 9V28M5 23H46M12 23l-3 4M19 23l-3 4M26 23l-3 4M33 23l-3 4M40 23l-3 4",
@@ -268,6 +427,5 @@ BAR = Entry(
     ),
     settings=BarSettings,
     kind="rod",
-    sizes=shared.ROD_SIZES,
     grows=("elements",),
 )

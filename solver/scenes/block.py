@@ -224,6 +224,5 @@ BLOCK = Entry(
     ),
     settings=BlockSettings,
     kind="plane",
-    sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
 )

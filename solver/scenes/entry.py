@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -41,8 +40,6 @@ class Entry:
     kind
         What there is to see: a rod on its support, wires beside each other, wires around a core, or
         plane bodies.
-    sizes
-        Numbers over which costs are measured, by setting.
     grows
         Settings by which the structure becomes larger as it is, all of them together.
     """
@@ -52,7 +49,6 @@ class Entry:
     emblem: Emblem
     settings: type[SceneSettings]
     kind: Kind
-    sizes: Mapping[str, tuple[int, ...]]
     grows: tuple[str, ...]
 
 

@@ -84,8 +84,8 @@ def exact_strand(strand: Rods) -> Iterator[ExactCurve]:
 
 def _is_even(bar: Rods) -> bool:
     """Whether nothing but a force at its end moves the bar, which is the same throughout."""
-    absent = bar.support, bar.body_force, bar.section
-    return all(one is None for one in absent) and bar.bound.ndim == 1 and not np.ptp(bar.bound)
+    is_uniform = bar.section is None and bar.bound.ndim == 1 and not np.ptp(bar.bound)
+    return bar.is_only_pulled and is_uniform
 
 
 def _is_coulombs(body: Stack) -> bool:

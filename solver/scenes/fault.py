@@ -268,6 +268,5 @@ FAULT = Entry(
     ),
     settings=FaultSettings,
     kind="plane",
-    sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
 )

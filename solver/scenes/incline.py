@@ -148,6 +148,5 @@ INCLINE = Entry(
     ),
     settings=InclineSettings,
     kind="plane",
-    sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
 )

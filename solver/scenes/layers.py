@@ -217,6 +217,5 @@ LAYERS = Entry(
     ),
     settings=LayersSettings,
     kind="plane",
-    sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
     grows=("layers",),
 )

@@ -305,6 +305,5 @@ ROPE = Entry(
     ),
     settings=RopeSettings,
     kind="helices",
-    sizes={**shared.ROD_SIZES, "layers": (1, 2, 3, 4, 5)},
     grows=("layers",),
 )

@@ -15,18 +15,6 @@ from solver.settings import Settings
 
 S = TypeVar("S", Rods, Rope)
 
-ROD_SIZES = {
-    "elements": (50, 100, 200, 400, 800),
-    "instants": (51, 101, 201, 401),
-    "substructures": (1, 2, 5, 10, 25, 50),
-}
-"""Numbers of a rod over which costs are measured; each changes alone."""
-PLANE_SIZES = {
-    "elements": (24, 48, 96),
-    "instants": (41, 81, 161),
-    "substructures": (1, 2, 4, 8),
-}
-"""The same of plane bodies."""
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
     "rising": ((0.0, 0.2), (1.0, 1.8)),

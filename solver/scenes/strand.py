@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.cut_rods import COARSEST
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods, neighbours
+from solver.discrete.rods import End, Rods, neighbours
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
@@ -160,19 +160,21 @@ class StrandSettings(SceneSettings):
         if self.pressure_load != "steady":
             pressure = self.path("pressure_load")
             bound = np.tile(self.friction * pressure, (self.elements + 1, 1))
+        stiffness, load = self.young * self.section, self.path("load")
+        is_moved = self.grip == "displacement"
         return Rods(
             length=self.length,
-            stiffness=self.young * self.section,
+            stiffness=stiffness,
             elements=self.elements,
             substructures=self.substructures,
             bound=bound,
-            load=self.path("load"),
+            left=End(displacement=np.zeros_like(load)),
+            right=End(displacement=load * self.length / stiffness) if is_moved else End(load),
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
             wires=self.wires,
             broken=(self.broken, self._break_node()) if self.broken else None,
-            rigid_grip=self.grip == "displacement",
             friction_law=self.law,
         )
 
@@ -245,6 +247,5 @@ STRAND = Entry(
     ),
     settings=StrandSettings,
     kind="wires",
-    sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     grows=("wires",),
 )

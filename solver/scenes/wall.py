@@ -264,6 +264,5 @@ WALL = Entry(
     ),
     settings=WallSettings,
     kind="plane",
-    sizes={"courses": (2, 4, 8), "elements": (4, 6, 8), "instants": (21, 41, 81)},
     grows=("bricks", "courses"),
 )

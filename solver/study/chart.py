@@ -17,7 +17,7 @@ HUES = (
 )
 """Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind, and five more
 for panels of more curves, which have marks besides."""
-Line = Literal["solid", "dashed", "dotted", "points", "faint"]
+Line = Literal["solid", "dashed", "dotted", "points"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ class PanelCurve:
     hue
         Curves of one hue belong together; 0 is the neutral one, of references.
     line
-        How it is drawn; "points" are joined by a thin line, "faint" shows the way of what is none.
+        How it is drawn; "points" are joined by a thin line.
     """
 
     label: str
@@ -80,8 +80,6 @@ class Runs:
         Of the runs, shape (n,).
     x, y
         Where they stand, same shape; in a panel y is NaN where a run has no value.
-    values
-        What they came to, same shape; NaN for nothing.
     hues
         Of the curve to which they belong, same shape.
     holds
@@ -93,7 +91,6 @@ class Runs:
     numbers: Indices
     x: Array
     y: Array
-    values: Array
     hues: Indices
     holds: Flags
     said: Sequence[str]
@@ -124,8 +121,6 @@ class Map:
         Values, shape (len(y_values), len(x_values)); NaN where there is none.
     runs
         What they are of.
-    level
-        The one value whose line is drawn, where every cell says its own; None draws several lines.
     is_sampled
         Whether a few runs stand for all, and values between them are of facets.
     """
@@ -139,7 +134,6 @@ class Map:
     z: Array
     runs: Runs
     is_sampled: bool = False
-    level: float | None = None
 
 
 Chart = Panel | Map

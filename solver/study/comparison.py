@@ -174,7 +174,7 @@ class Comparison:
 
     def __init__(self, results: OtherResults, problem: Problem, interface: str = "") -> None:
         names = list(problem.rubbing)
-        self.results = results
+        self.results, self._problem = results, problem
         self.interface = interface if interface in names else names[0]
         self._is_friction = results.quantity == FRICTION
         x, t, positions = results.positions, results.times, problem.positions
@@ -208,7 +208,7 @@ class Comparison:
 
     def own(self, fields: Fields) -> Array:
         """Our field at the rows that both cover, shape (n_counted,)."""
-        field = fields.displacement
+        field = self._problem.at_rest(fields.displacement)
         if self._is_friction:
             field = fields.contact_force[self._places] / self._sizes
         return np.asarray((self._shares * field.ravel()[self._corners]).sum(axis=(0, 1)))

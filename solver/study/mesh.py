@@ -15,7 +15,7 @@ from solver.definitions import SettingError
 from solver.scenes import mesh_of
 from solver.settings import Settings
 from solver.study.quantities.finished import finished_run
-from solver.study.quantities.quantities import Reading
+from solver.study.quantities.quantity import Quantity
 
 SAFETY = 1.25
 """Roache's factor on what is still missing, for three meshes."""
@@ -127,12 +127,12 @@ def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[li
         return [refined(factor) for factor in (1, 2, 4)], 0
 
 
-def decides(settings: Settings, asked: Reading) -> bool:
+def decides(settings: Settings, asked: Quantity) -> bool:
     """Whether a mesh decides a quantity: not how a run went, but what it came to."""
-    return not asked.quantity.is_of_course and asked.quantity.applies(settings)
+    return not asked.is_of_course and asked.applies(settings)
 
 
-def value_on(settings: Settings, asked: Reading) -> float:
+def value_on(settings: Settings, asked: Quantity) -> float:
     """A quantity of the solution on a mesh; NaN where no run certifies one."""
     run = finished_run(settings.replace(finish="at-once"), errors=False, indicators=False)
     return asked(run) if run.solution.is_certified else math.nan

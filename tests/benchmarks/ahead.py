@@ -23,7 +23,7 @@ from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.speed.error_against_time import by_increments, by_latin, latin, seconds_of
+from solver.study.speed.error_against_time import incremental, latin, seconds_of
 
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""
@@ -90,8 +90,8 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
     del solution
     samples = [
         (
-            by_latin(settings),
-            by_increments(settings) if has_reference else math.nan,
+            seconds_of(lambda: latin(settings)),
+            seconds_of(lambda: incremental(settings)) if has_reference else math.nan,
             _seconds(settings, iterations, own_at),
             _seconds(settings, judged, known_at),
         )

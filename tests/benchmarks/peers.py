@@ -24,7 +24,7 @@ from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.page import aligned
 from solver.study.speed.error_against_time import error_against_time, seconds_of
-from solver.study.speed.study_report import conditions, table, winners
+from solver.study.speed.study_report import conditions, table
 
 
 def rows(settings: Settings, repeats: int) -> Iterator[list[str]]:
@@ -62,7 +62,7 @@ def main() -> int:
         print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
         return 2
     study = error_against_time(settings, chosen.repeats)
-    print(*conditions(study), "", aligned(table(study)), "", aligned(winners(study)), "", sep="\n")
+    print(*conditions(study), "", aligned(table(study)), "", sep="\n")
     head = ["solver", "tolerance", "ms", "error of the friction force", "of the displacement"]
     print(aligned([head, *rows(settings, chosen.repeats)]))
     absent = [one.name for one in PUBLIC if not one.installed]

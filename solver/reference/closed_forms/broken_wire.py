@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rods import Rods
+from solver.discrete.rods import End, Rods
 from solver.laws import FrictionLaw
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 
@@ -62,9 +62,9 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
         return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None
-    if scene.rigid_grip and scene.bound.ndim > 1:
+    if scene.right.is_prescribed and scene.bound.ndim > 1:
         return None
-    tension = _tension(scene) if scene.rigid_grip else scene.load
+    tension = _tension(scene) if scene.right.is_prescribed else scene.load
     sides = _sides(scene, tension)
     if sides is None:
         return None
@@ -92,7 +92,8 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
             substructures=1,
             instants=scene.instants,
             duration=scene.duration,
-            load=tension,
+            left=End(displacement=np.zeros_like(tension)),
+            right=End(force=tension),
             bound=sides * scene.bound[: elements + 1],
         )
         bars.append(closed_form(side))

@@ -70,11 +70,11 @@ def closed_form(scene: Rods) -> ClosedForm | None:
 
     Returns
     -------
-    The solution, or None for a bar whose support moves or that carries body forces: there, the
-    normal force is no play operator of the load. Also None for a bar of varying section, where
+    The solution, or None for a bar that more than a force at its end moves: there, the normal force
+    is no play operator of the load. Also None for a bar of varying section, where
     friction is not Coulomb's, and where a falling bound makes the bar slip in its middle.
     """
-    if scene.support is not None or scene.body_force is not None or scene.section is not None:
+    if not scene.is_only_pulled or scene.section is not None:
         return None
     if scene.friction_law != FrictionLaw():
         return None

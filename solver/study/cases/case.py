@@ -12,7 +12,8 @@ from solver.files import scene_settings
 from solver.scenes import CATALOGUE
 from solver.scenes.entry import Emblem
 from solver.settings import Settings
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
 from solver.toml_files import check_keys, placed, read_toml
 
 KEYS = {
@@ -50,8 +51,8 @@ class Case:
         Where the question, or what is known, is from.
     settings
         Of the run.
-    reading
-        The quantity of the run that is known.
+    quantity
+        That of the run which is known.
     known, tolerance
         What is known, and how far the run may be from it, as a share.
     formula, how
@@ -70,7 +71,7 @@ class Case:
     question: str
     source: str
     settings: Settings
-    reading: Reading
+    quantity: Quantity
     known: float
     tolerance: float
     formula: str
@@ -118,7 +119,6 @@ def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
             raise SettingError("controls", control, ", ".join(working), remedy)
     paths = entries.get("picture", CATALOGUE[settings.scene].emblem._asdict())
     check_keys(paths, dict.fromkeys(Emblem._fields, str))
-    read = {key: value for key, value in entries.items() if key != "quantity"}
-    read |= {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
-    read["picture"] = Emblem(**paths)
-    return Case(name=name, settings=settings, reading=reading(entries["quantity"]), **read)
+    read = dict(entries) | {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
+    read |= {"quantity": reading(entries["quantity"]), "picture": Emblem(**paths)}
+    return Case(name=name, settings=settings, **read)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from solver.study.figures.convergence import figure_3, figure_4
-from solver.study.figures.figure import PaperFigure, write_figures
+from solver.study.figures.figure import PaperFigure
 from solver.study.figures.modes import figure_5, figure_6, figure_7, figure_8
 from solver.study.figures.paper_runs import PaperRuns
 
-__all__ = ["PaperFigure", "PaperRuns", "paper_figures", "write_figures"]
 
-
-def paper_figures(runs: PaperRuns | None = None) -> list[PaperFigure]:
-    """Figs. 3 to 8 of one set of runs, each done when it is first asked for."""
-    runs = runs or PaperRuns()
+def paper_figures(runs: PaperRuns) -> list[PaperFigure]:
+    """Figs. 3 to 8."""
     return [make(runs) for make in (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)]

@@ -1,11 +1,9 @@
-"""The runs behind the paper's figures, each made once, when first asked for."""
+"""The runs behind the paper's figures."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
-from solver.discrete.problem import Problem
 from solver.latin import Iterate, Record, solve
 from solver.reduction.svd import Decomposition, InterfaceField, decompositions
 from solver.reference.choice import reference_of
@@ -42,51 +40,54 @@ class PaperRun:
     last: Iterate
 
 
+@dataclass(frozen=True, eq=False)
 class PaperRuns:
-    """The friction bar of Table 1 under the default load, decomposed and solved in several ways."""
+    """The friction bar of Table 1 under a sine, decomposed and solved in several ways.
 
+    Attributes
+    ----------
+    reference
+        The incremental solution; how the bar is decomposed makes no difference to it.
+    multiscale, monoscale
+        Ten substructures with the coarse problem and without.
+    five, five_reduced
+        Five substructures, converged, and with the PGD at its default settings.
+    friction_forces, displacements
+        The converged fields, decomposed in each of five substructures.
+    """
+
+    reference: Reference
+    multiscale: PaperRun
+    monoscale: PaperRun
+    five: PaperRun
+    five_reduced: PaperRun
+    friction_forces: list[Decomposition]
+    displacements: list[Decomposition]
+
+
+def paper_runs() -> PaperRuns:
+    """Solve and decompose all of them."""
     settings = BarSettings.checked({"method": "paper", "load": "sine", "peak": 900.0})
+    reference = reference_of(discretise(settings))
 
-    @cached_property
-    def reference(self) -> Reference:
-        """The incremental solution; how the bar is decomposed makes no difference to it."""
-        return reference_of(discretise(self.settings))
-
-    @cached_property
-    def multiscale(self) -> PaperRun:
-        """Ten substructures with the coarse problem."""
-        return self._run(substructures=10, multiscale=True, tolerance=1e-30, max_iterations=LONG)
-
-    @cached_property
-    def monoscale(self) -> PaperRun:
-        """Ten substructures without it."""
-        return self._run(substructures=10, multiscale=False, tolerance=1e-30, max_iterations=LONG)
-
-    @cached_property
-    def five(self) -> PaperRun:
-        """Five substructures, converged."""
-        return self._run(substructures=5, tolerance=CONVERGED, max_iterations=10 * LONG)
-
-    @cached_property
-    def five_reduced(self) -> PaperRun:
-        """Five substructures with the PGD in the linear stage, at its default settings."""
-        return self._run(substructures=5, linear_stage="pgd", max_iterations=REDUCED)
-
-    @cached_property
-    def friction_forces(self) -> list[Decomposition]:
-        """The converged friction force, decomposed in each of five substructures."""
-        return decompositions(self.five.last, InterfaceField.FRICTION_FORCE)
-
-    @cached_property
-    def displacements(self) -> list[Decomposition]:
-        """The converged displacement, decomposed in each of five substructures."""
-        return decompositions(self.five.last, InterfaceField.DISPLACEMENT)
-
-    def _run(self, **changes: object) -> PaperRun:
-        settings = self.settings.replace(**changes)
-        problem: Problem = discretise(settings)
-        distance = distance_to(self.reference, problem)
-        early = solve(problem, method_of(settings.replace(max_iterations=EARLY)), distance=distance)
-        checkpoint = early.iterate.checkpoint
-        late = solve(problem, method_of(settings), distance=distance, start=checkpoint)
+    def run(**changes: object) -> PaperRun:
+        changed = settings.replace(**changes)
+        problem = discretise(changed)
+        distance = distance_to(reference, problem)
+        method = method_of(changed.replace(max_iterations=EARLY))
+        early = solve(problem, method, distance=distance)
+        start = early.iterate.checkpoint
+        late = solve(problem, method_of(changed), distance=distance, start=start)
         return PaperRun([*early.records, *late.records], early.iterate, late.iterate)
+
+    ten = {"substructures": 10, "tolerance": 1e-30, "max_iterations": LONG}
+    five = run(substructures=5, tolerance=CONVERGED, max_iterations=10 * LONG)
+    return PaperRuns(
+        reference,
+        run(multiscale=True, **ten),
+        run(multiscale=False, **ten),
+        five,
+        run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
+        decompositions(five.last, InterfaceField.FRICTION_FORCE),
+        decompositions(five.last, InterfaceField.DISPLACEMENT),
+    )

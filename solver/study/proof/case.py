@@ -159,12 +159,12 @@ def rows_of(case: KnownCase) -> Iterator[ProofRow]:
 
 def known_case(case: Case) -> KnownCase:
     """Make a row of the proof of a case of the trade."""
-    asked = case.reading
+    asked = case.quantity
 
     def numbers(answer: Answer) -> Iterator[Number]:
         assert answer.solution is not None
         found = asked(FinishedRun(answer.settings, answer.solution, has_errors=False))
-        yield asked.title, asked.quantity.unit or "-", case.known, found
+        yield asked.title, asked.unit or "-", case.known, found
 
     settings, source = case.settings, f"{case.formula}. {case.how} {case.source}"
     changes = settings.changed()

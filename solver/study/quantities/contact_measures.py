@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
+from solver.discrete.probes import AxialForce
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.scenes import features_of, kind_of, law_of
 from solver.settings import Settings
-from solver.study.quantities.cycles import ends_of
+from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import CYCLE, Parameter, quantity
 
@@ -38,10 +39,6 @@ def _in_the_plane(settings: Settings) -> bool:
     return kind_of(settings) == "plane"
 
 
-def _with_a_spring(settings: Settings) -> bool:
-    return features_of(settings).has_spring
-
-
 def _over_a_displacement(settings: Settings) -> bool:
     return features_of(settings).loop_is_over_displacement
 
@@ -49,10 +46,29 @@ def _over_a_displacement(settings: Settings) -> bool:
 @quantity("Largest displacement", "m")
 def peak_displacement(run: FinishedRun) -> float:
     """Largest displacement of any node at any instant, m."""
-    inside, moved = run.problem.inside, run.iterate.displacement
+    inside, moved = run.problem.inside, run.problem.at_rest(run.iterate.displacement)
     if inside is None:
         return float(np.abs(moved).max())
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
+
+
+def axial_force_at(run: FinishedRun, instant: int) -> float:
+    """Axial force in the element where it is largest at an instant, pull positive, N."""
+    some = slice(instant, instant + 1)
+    force = AxialForce(run.problem, some)(run.iterate.displacement[:, some])
+    return float(force[np.abs(force).argmax(), 0])
+
+
+@quantity(
+    "Largest axial force",
+    "N",
+    applies=lambda settings: kind_of(settings) in ("rod", "wires"),
+    at_instant=axial_force_at,
+)
+def axial_force(run: FinishedRun) -> float:
+    """Largest axial force in any element at any instant, N, pull positive."""
+    force = AxialForce(run.problem)(run.iterate.displacement)
+    return float(force.flat[np.abs(force).argmax()])
 
 
 @quantity("Largest slip", "m")
@@ -230,12 +246,8 @@ def stiffness(run: FinishedRun) -> float:
 @quantity("Energy dissipated", "J", parameter=CYCLE)
 def dissipation(run: FinishedRun, at: float | None) -> float:
     """Energy that friction takes, J: of the whole run, or of a cycle; NaN if there are fewer."""
-    if at is None:
-        return float(run.dissipated.sum())
-    ends, number = ends_of(run.settings), int(at)
-    if len(ends) <= number:
-        return math.nan
-    return float(run.dissipated[ends[number - 1] + 1 : ends[number] + 1].sum())
+    some = instants_of(run.settings, at)
+    return math.nan if some is None else float(run.dissipated[some].sum())
 
 
 @quantity("Share of the points that slip", is_share=True)

@@ -15,7 +15,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import features_of, kind_of, law_of, structure_of
 from solver.settings import Settings
-from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, slips_of
+from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, instants_of, slips_of
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import CYCLE, quantity
 
@@ -76,13 +76,13 @@ def sliding_share(run: FinishedRun) -> float:
     0 is stick, 1 gross slip, anything between partial slip (O. Vingsbo, S. Söderberg, On fretting
     maps, Wear 126, 1988). A point that a clamp holds never slips, and is left out.
     """
-    ends, held = ends_of(run.settings), run.problem.is_held
+    held = run.problem.is_held
     lengths = [
         law.by_point(law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0))
         for law in run.problem.rubbing.values()
     ]
     length = np.concatenate(lengths)[:, None]
-    status = run.iterate.status[:, ends[-2] + 1 : ends[-1] + 1]
+    status = run.iterate.status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
     shares = slipping[touching > 0.0] / touching[touching > 0.0]
@@ -100,12 +100,10 @@ def shakedown_factor(run: FinishedRun) -> float:
 
     NaN where none is known, or not even the mean keeps all contacts closed.
     """
-    ends = ends_of(run.settings)
-    last = slice(ends[-2], ends[-1] + 1)
     try:
         if run.problem.opens:
-            return largest_swing(slip_space(run.problem), last)[0]
-        return shakedown_limit(run.problem, last)
+            return largest_swing(slip_space(run.problem), _last(run))[0]
+        return shakedown_limit(run.problem, _last(run))
     except NoReferenceError:
         return math.nan
 
@@ -167,10 +165,9 @@ def energy_per_metre(run: FinishedRun, at: float | None) -> float:
 
     NaN near a clamp, and with fewer cycles.
     """
-    ends, number = ends_of(run.settings), 0 if at is None else int(at)
-    if number and len(ends) <= number:
+    some = instants_of(run.settings, at)
+    if some is None:
         return math.nan
-    some = slice(ends[number - 1] + 1, ends[number] + 1) if number else slice(None)
     works = (work[:, some].sum() for _, _, work in slips_of(run.iterate))
     shares = (wire.stands_for / wire.along[-1] for wire in _rope(run.settings).wires)
     return float(sum(share * work for share, work in zip(shares, works, strict=True)))
@@ -195,10 +192,9 @@ def wire_work(run: FinishedRun) -> float:
 
     There fretting is worst; near a clamp it is beside it.
     """
-    last = _last(run)
-    after = slice(last.start + 1 if last.stop else 0, last.stop)
+    last = instants_of(run.settings, cycles_in(run.settings) or None)
     return max(
-        float((law.by_point(work[:, after].sum(axis=1)) / law.by_point(law.weights)).max())
+        float((law.by_point(work[:, last].sum(axis=1)) / law.by_point(law.weights)).max())
         for law, _, work in slips_of(run.iterate)
     )
 
@@ -212,8 +208,8 @@ def recovery_length_at(run: FinishedRun, instant: int) -> float:
     if described.broken is None or not run.force[instant]:
         return math.nan
     wire, place = described.broken
-    axial = AxialForce(run.problem)
-    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire]
+    axial = AxialForce(run.problem, slice(instant, instant + 1))
+    force = axial(run.iterate.displacement[:, instant : instant + 1])[axial.wires == wire, 0]
     share = force / run.force[instant]
     size = described.length / len(share)
     node = round(place / size)

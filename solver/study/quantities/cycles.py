@@ -128,6 +128,17 @@ def cycles_in(settings: Settings) -> int:
     return max(len(ends_of(settings)) - 1, 0)
 
 
+def instants_of(settings: Settings, number: float | None = None) -> slice | None:
+    """Instants of a cycle after its beginning, cycles counted from 1; all without a number.
+
+    None where there are fewer cycles.
+    """
+    if number is None:
+        return slice(None)
+    ends, last = ends_of(settings), int(number)
+    return slice(ends[last - 1] + 1, ends[last] + 1) if last < len(ends) else None
+
+
 def turning_points(path: Array) -> list[int]:
     """Where a path turns back by more than a small swing, and its end if it is as far out.
 

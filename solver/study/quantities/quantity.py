@@ -38,12 +38,14 @@ WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 """An error that is to be reached."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Quantity:
     """A number that a finished run has.
 
     Attributes
     ----------
+    name
+        By which it is asked for.
     title
         What it is called, in words.
     unit
@@ -51,8 +53,8 @@ class Quantity:
     of
         Takes it of a run, and of the parameter or None if there is one: NaN where the run has none,
         infinity where what is waited for never comes.
-    parameter
-        What it may be asked with.
+    parameter, at
+        What it may be asked with, and what it is asked with.
     reads
         What the records must hold for it, which takes its time: distances to a reference, or the
         indicators of every iteration.
@@ -77,12 +79,13 @@ class Quantity:
     is_of_course: bool = False
     applies: Callable[[Settings], bool] = lambda settings: True
     at_instant: Callable[[FinishedRun, int], float] | None = None
+    at: float | None = None
 
-    def __call__(self, run: FinishedRun, at: float | None = None) -> float:
-        """Value of a run, with a parameter or without."""
+    def __call__(self, run: FinishedRun) -> float:
+        """Value of a run."""
         if not self.applies(run.settings):
             return math.nan
-        return float(self.of(run) if self.parameter is None else self.of(run, at))
+        return float(self.of(run) if self.parameter is None else self.of(run, self.at))
 
 
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:

@@ -1,1 +1,1 @@
-"""What a study shows: errors against time, growth with size, who is first where."""
+"""What a study shows: errors against time, and who is first at which size."""

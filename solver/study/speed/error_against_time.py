@@ -48,7 +48,7 @@ PLAIN: dict[str, Any] = {
     "finish": "none",
 }
 """Settings that the forms of LATIN start from; all others are those of the run."""
-INCREMENTAL = "incremental solver"
+INCREMENTAL, FAST = "incremental solver", "LATIN fast"
 Clock = Callable[[], float]
 
 
@@ -130,7 +130,7 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
     }
     errors[INCREMENTAL] = np.zeros((1, 2))
     steps[INCREMENTAL] = np.array([float(reference.steps)])
-    timed[INCREMENTAL] = lambda: [by_increments(settings, time.perf_counter)]
+    timed[INCREMENTAL] = lambda: [seconds_of(lambda: incremental(settings), time.perf_counter)]
     samples: dict[str, list[list[float]]] = {method: [] for method in timed}
     for _ in range(repeats):
         for method, times in samples.items():
@@ -155,7 +155,7 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
         name: auto,
         f"{name}, Anderson": anderson,
         f"{name}, Anderson, k updated": {**anderson, "k_update": "status"},
-        "LATIN fast": {**anderson, "finish": "at-once"},
+        FAST: {**anderson, "finish": "at-once"},
         "LATIN PGD": {"linear_stage": "pgd", **({} if is_nested else auto)},
     }
     return {method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()}
@@ -199,16 +199,6 @@ def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> 
         start = clock()
         work()
         return clock() - start
-
-
-def by_latin(settings: Settings) -> float:
-    """Time of LATIN up to its stop rule, s."""
-    return seconds_of(lambda: latin(settings))
-
-
-def by_increments(settings: Settings, clock: Clock = time.process_time) -> float:
-    """Time of the incremental solver, s."""
-    return seconds_of(lambda: incremental(settings), clock)
 
 
 def latin(settings: Settings) -> Solution:

@@ -2,42 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import astuple
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.chart import Map, Panel, PanelAxis, PanelCurve, Runs
+from solver.definitions import about
+from solver.scenes import entry_of
+from solver.settings import Settings
+from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
 from solver.study.speed.error_against_time import (
     GOAL,
-    INCREMENTAL,
     LEVELS,
     MOST_ITERATIONS,
     ErrorCurve,
     Study,
 )
-from solver.study.speed.sizes import MEASURED, Crossover, Growth
+from solver.study.speed.sizes import TimesAtSize
 
 Row = list[str]
-WINNERS_NOTE = (
-    "The last column is the time of the best form of LATIN over that of the incremental solver: "
-    "below 1, LATIN is quicker."
+TABLE_NOTE = (
+    "In brackets: iterations of LATIN; a star: the first. The last row is the time of LATIN's best "
+    "form over that of the incremental solver: below 1, LATIN is quicker."
 )
 CURVES = "Error against run time, set-up included"
 CAPTION = (
     "A line is a form of LATIN, iteration by iteration; the dashed line is when the incremental "
     "solver is done. Errors below the lower edge are drawn on it."
 )
-GROWTH = "Growth with the size of the problem"
-GROWTH_NOTE = (
-    "Time of one iteration of LATIN, and of the whole solution by increments. Twice the size takes "
-    "2 to the power of the exponent as long (a least-squares fit over all sizes, with its margin "
-    "at 95 %)."
-)
-MAP, TIMES = "Who is first where", "LATIN / incremental solver"
+SIZES, TIMES = "Who is first where", "LATIN / incremental solver"
 BILLED = (
     "The time of a method is all that it takes from settings to result: discretisation, "
     "factorisation, the coarser mesh, iterations. Imports and the computation of errors are not "
@@ -64,75 +62,70 @@ def conditions(study: Study) -> list[str]:
     ]
 
 
-def winners(study: Study) -> list[Row]:
-    """Which method is first at each level, and how the best form of LATIN compares."""
-    head = ["to an error of", "first", "ms", "best form of LATIN", "ms", f"LATIN / {INCREMENTAL}"]
-    rows = [head]
-    for name, level in LEVELS.items():
-        reached = {curve.method: curve.reached(level) for curve in study.curves}
-        times = {method: point[0] for method, point in reached.items() if point is not None}
-        first = min(times, key=times.__getitem__)
-        best = min(times.keys() - {INCREMENTAL}, key=times.__getitem__, default="")
-        cells = ["none gets there", "-", "-"]
-        if best:
-            cells = [best, _ms(times[best]), f"{times[best] / times[INCREMENTAL]:.2g}"]
-        rows.append([name, first, _ms(times[first]), *cells])
-    return rows
-
-
 def table(study: Study) -> list[Row]:
-    """Time to each level, with the iterations in brackets, and what an iteration costs."""
+    """Time to each level, with the iterations in brackets and a star at the first method.
+
+    The last row is of the best form of LATIN over the incremental solver.
+    """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
-    for curve in study.curves:
+    reached = {
+        curve.method: [curve.reached(level) or (math.inf, 0.0) for level in LEVELS.values()]
+        for curve in study.curves
+    }
+    times = np.array([[seconds for seconds, _ in own] for own in reached.values()])
+    for curve, is_first in zip(study.curves, times == times.min(axis=0), strict=True):
         cells = []
-        for level in LEVELS.values():
-            reached = curve.reached(level)
-            number = f" ({reached[1]:.0f})" if reached and curve.kind == "latin" else ""
-            cells.append(f"{_ms(reached[0])} ms{number}" if reached else "not reached")
+        for (seconds, step), star in zip(reached[curve.method], is_first, strict=True):
+            number = f" ({step:.0f})" if curve.kind == "latin" else ""
+            text = f"{1e3 * seconds:.3g} ms{number}{' *' * bool(star)}"
+            cells.append(text if math.isfinite(seconds) else "not reached")
         each = curve.seconds_per_iteration
         cost = f"{1e3 * each:.3f}" if each is not None else "-"
         rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
-    return rows
+    is_latin = np.array([curve.kind == "latin" for curve in study.curves])
+    ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
+    texts = (f"{ratio:.2g}" if math.isfinite(ratio) else "-" for ratio in ratios)
+    return [*rows, [f"best {TIMES}", *texts, "-", "-"]]
 
 
-def growth_table(growths: Sequence[Growth]) -> list[Row]:
-    """Fitted exponents, and the iterations to 1 %, with the sizes they come from."""
-    rows = [["growth with", "method", "exponent", "sizes", "ms", "iterations to 1 %"]]
-    for curve in growths:
-        whole = curve.method == INCREMENTAL
-        rows.append(
-            [
-                curve.setting,
-                f"{curve.method} ({'whole' if whole else 'an iteration'})",
-                str(curve.exponent or "-"),
-                " ".join(map(str, curve.sizes)),
-                " ".join(f"{1e3 * seconds:.2g}" for seconds in curve.seconds),
-                "-" if whole else " ".join(str(number or ">300") for number in curve.iterations),
-            ]
-        )
-    return rows
-
-
-def ratio_table(measured: Crossover) -> list[Row]:
+def ratio_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
     """Time of LATIN over that of the other, a row for each number of instants."""
-    rows = [[TIMES, *(f"{measured.setting} {size}" for size in measured.sizes)]]
-    for instants, ratios in zip(measured.instants, measured.ratios, strict=True):
-        cells = ("-" if np.isnan(ratio) else f"{ratio:.2g}" for ratio in ratios)
-        rows.append([f"{instants} instants", *cells])
+    sizes = sorted({times.size for times in measured})
+    rows = [[TIMES, *(f"{entry_of(settings).grows[0]} {size}" for size in sizes)]]
+    for instants, group in _by_instants(measured):
+        ratios = {times.size: f"{times.ratio:.2g}" for times in group if not times.message}
+        rows.append([f"{instants} instants", *(ratios.get(size, "-") for size in sizes)])
     return rows
 
 
-def notes(measured: Crossover) -> list[str]:
-    """What the map shows, and what it leaves out, in sentences."""
-    ratios = measured.ratios[np.isfinite(measured.ratios)]
-    grows = " and ".join(title.lower() for title in (measured.title, *measured.others))
+def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
+    """What the sizes show, and which are left out, in sentences."""
+    title, *others = _titles(settings)
+    ratios = np.array([times.ratio for times in measured if not times.message])
+    grows = " and ".join(name.lower() for name in (title, *others))
     return [
         f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
         "settings to a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
-        *([f"What grows along the axis: {grows}."] if measured.others else []),
-        *(measured.message(times) for times in measured.comparisons if times.message),
+        *([f"What grows along the axis: {grows}."] if others else []),
+        *(
+            f"{title} {times.size}, {times.instants} instants: {times.message}"
+            for times in measured
+            if times.message
+        ),
     ]
+
+
+def _titles(settings: Settings) -> list[str]:
+    """Titles of the settings that grow together."""
+    definitions = settings.definitions()
+    return [about(definitions[name]).title for name in entry_of(settings).grows]
+
+
+def _by_instants(measured: Sequence[TimesAtSize]) -> list[tuple[int, list[TimesAtSize]]]:
+    """Sizes in ascending order, by numbers of instants in ascending order."""
+    ordered = sorted(measured, key=lambda times: (times.instants, times.size))
+    return [(key, list(group)) for key, group in groupby(ordered, lambda times: times.instants)]
 
 
 def error_panels(study: Study) -> list[Panel]:
@@ -158,49 +151,19 @@ def _curve(curve: ErrorCurve, errors: Array, hue: int) -> PanelCurve:
     return PanelCurve(curve.method, curve.seconds, np.maximum(errors, SMALLEST), hue)
 
 
-def growth_panels(growths: Sequence[Growth]) -> list[Panel]:
-    """Times over sizes, a panel for each setting that changes."""
-    hues = {method: hue for hue, method in enumerate((INCREMENTAL, *MEASURED))}
-    curves: dict[str, list[PanelCurve]] = {}
-    for curve in growths:
-        points = np.array(curve.sizes, dtype=float), np.array(curve.seconds)
-        line = PanelCurve(curve.method, *points, hues[curve.method], "points")
-        curves.setdefault(curve.setting, []).append(line)
-    return [
-        Panel(
-            setting.capitalize(),
-            PanelAxis(f"Number of {setting}", logarithmic=True, whole=True),
-            PanelAxis("Time", "s", logarithmic=True),
-            tuple(own),
-        )
-        for setting, own in curves.items()
-    ]
-
-
-def crossover_map(measured: Crossover) -> Map:
-    """The ratio of times over size and instants, with the line where both take as long."""
-    comparisons = measured.comparisons
-    sizes, instants, ratios = np.array(
-        [(times.size, times.instants, times.ratio) for times in comparisons], dtype=float
-    ).T
-    return Map(
+def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
+    """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
+    curves = []
+    for hue, (instants, group) in enumerate(_by_instants(measured), start=1):
+        sizes = np.array([float(times.size) for times in group])
+        ratios = np.array([times.ratio for times in group])
+        curves.append(PanelCurve(f"{instants} instants", sizes, ratios, hue, "points"))
+    ends = np.array([curves[0].x[0], curves[0].x[-1]])
+    return Panel(
         f"Time of {TIMES}",
-        PanelAxis(measured.title, logarithmic=True, whole=True),
-        PanelAxis("Instants", logarithmic=True, whole=True),
-        np.array(measured.sizes, dtype=float),
-        np.array(measured.instants, dtype=float),
+        PanelAxis(_titles(settings)[0], logarithmic=True, whole=True),
         PanelAxis(TIMES, logarithmic=True),
-        measured.ratios,
-        Runs(
-            np.arange(len(comparisons)),
-            sizes,
-            instants,
-            ratios,
-            np.ones(len(comparisons), dtype=int),
-            np.isfinite(ratios),
-            list(map(measured.message, comparisons)),
-        ),
-        level=1.0,
+        (*curves, PanelCurve("both take as long", ends, np.ones(2), 0, "dashed")),
     )
 
 
@@ -235,23 +198,10 @@ def write_curves(study: Study, folder: Path) -> list[Path]:
     ]
 
 
-def write_growth(growths: Sequence[Growth], folder: Path) -> list[Path]:
-    """Write `growth.csv`, if there is any; raises as `write_curves`."""
-    head = ["setting", "exponent", "margin", "method", "size", "seconds"]
-    head += ["iterations_to_1_percent", "seconds_to_1_percent"]
-    rows = [
-        (curve.setting, *margin, curve.method, *row)
-        for curve in growths
-        for margin in [astuple(curve.exponent) if curve.exponent else ("", "")]
-        for row in zip(curve.sizes, curve.seconds, curve.iterations, curve.totals, strict=True)
-    ]
-    return [write_csv(folder / "growth.csv", head, rows)] if growths else []
-
-
 def write_study(
-    study: Study, growths: Sequence[Growth], crossover: Crossover, folder: Path
+    study: Study, measured: Sequence[TimesAtSize], folder: Path
 ) -> tuple[list[Path], str]:
-    """Write the tables and `study.html` into an existing folder.
+    """Write `map.csv` and `study.html` into an existing folder.
 
     Returns
     -------
@@ -262,31 +212,19 @@ def write_study(
     OSError
         When a file cannot be written.
     """
-    growth: list[Section] = [
-        f"<h2>{GROWTH}</h2>\n<p>{GROWTH_NOTE}</p>",
-        PlotSection(GROWTH, growth_panels(growths)),
-        plain_table(growth_table(growths)),
-    ]
-    sections = [
-        f"<h2>Who is first</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
-        f"<h2>{CURVES}</h2>",
+    settings = study.settings
+    sections: list[Section] = [
+        f"<h2>Time to an error of the friction force</h2>\n{plain_table(table(study))}\n"
+        f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(study)),
-        f"<p>{CAPTION}</p>\n<h2>Time to an error of the friction force</h2>\n"
-        f"<p>In brackets: iterations of LATIN.</p>\n{plain_table(table(study))}",
-        *(growth if growths else []),
-        f"<h2>{MAP}</h2>",
-        PlotSection(MAP, [crossover_map(crossover)]),
-        f"{plain_table(ratio_table(crossover))}\n{bullets(notes(crossover))}",
+        f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
+        PlotSection(SIZES, [ratio_panel(settings, measured)]),
+        f"{plain_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
     ]
     page = folder / "study.html"
     message = write_page(page, "Error against run time", sections)
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    rows = ((crossover.setting, *astuple(times)) for times in crossover.comparisons)
-    sizes = write_csv(folder / "map.csv", head, rows)
-    files = [*write_curves(study, folder), *write_growth(growths, folder), sizes, page]
-    return files, message
-
-
-def _ms(seconds: float) -> str:
-    return f"{1e3 * seconds:.3g}"
+    setting = entry_of(settings).grows[0]
+    rows = ((setting, *astuple(times)) for times in measured)
+    return [write_csv(folder / "map.csv", head, rows), page], message

@@ -38,6 +38,7 @@ PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 RIGHT_UP_TO = 1e-6
 """Error of displacement and contact force up to which an answer is right."""
+GENERAL = {"friction_law": "general"}
 METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
 
 
@@ -47,8 +48,8 @@ class Case:
 
     Attributes
     ----------
-    group, name
-        What is extreme, and how much; or that it is random, and which one.
+    title
+        What is extreme about it; or which one it is of random ones.
     values
         Settings that differ from the scene's own.
     expected
@@ -63,8 +64,7 @@ class Case:
         Errors up to which the answer is right.
     """
 
-    group: str
-    name: str
+    title: str
     values: Mapping[str, object] = field(default_factory=dict)
     expected: str = RIGHT
     quick: bool = False
@@ -88,17 +88,20 @@ class Case:
         return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
-def cases_with(scene: str, common: Mapping[str, object]) -> Callable[..., Case]:
-    """A function that makes cases of a scene which have some settings in common."""
+def cases_with(
+    scene: str, common: Mapping[str, object], usually: str = RIGHT
+) -> Callable[..., Case]:
+    """A function that makes cases of a scene, which have some settings in common.
+
+    It takes what a case is called, what is expected of it, whether it is quick, and the settings
+    that make it one: these are its title where it has no other.
+    """
 
     def case(
-        group: str,
-        name: str,
-        values: Mapping[str, object],
-        expected: str = RIGHT,
-        quick: bool = False,
+        title: str = "", expected: str = usually, *, quick: bool = False, **values: object
     ) -> Case:
-        return Case(group, name, {**common, **values}, expected, quick, scene)
+        title = title or ", ".join(f"{name}={value}" for name, value in values.items())
+        return Case(title, {**common, **values}, expected, quick, scene)
 
     return case
 

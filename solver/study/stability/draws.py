@@ -76,7 +76,6 @@ def random_case(settings: Settings, seed: int, row: int) -> Case:
     own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
     method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
     return Case(
-        "random",
         f"row {row} of seed {seed}",
         settings.changed(),
         NOT_WRONG,
@@ -169,7 +168,9 @@ def _often(name: str, group: str, mixed: bool) -> float:
         return 0.5  # taken back where the law is not the general one
     if group == "Method":
         return 2.0 * CHANGED if mixed else 0.0
-    return 2.0 * CHANGED if name in ("load", "gap") or name.endswith("_profile") else CHANGED
+    return (
+        2.0 * CHANGED if name in ("load", "gap") or name.endswith(("_profile", "_end")) else CHANGED
+    )
 
 
 def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:

@@ -24,16 +24,23 @@ def _share(generator: Generator) -> float:
 
 
 def bar_loads(values: Values, generator: Generator) -> Sizes:
-    """The loads of the bar; its end alone is loaded in two of three."""
+    """The loads of the bar; its ends alone are loaded in half of all runs."""
     length = values["length"]
     carried = values["friction"] * values["pressure"] * length
+    stretched = carried * length / (values["young"] * values["section"])
     peak = carried * _share(generator)
     loads = {"peak": peak, "load": peak}
-    if generator.random() < 0.2:
-        loads["body_force"] = carried / length * _share(generator)
-    if generator.random() < 0.2:
-        stretched = carried * length / (values["young"] * values["section"])
-        loads["support_displacement"] = stretched * _share(generator)
+    loads["left_force"] = carried * _share(generator)
+    loads["right_displacement"] = stretched * _share(generator)
+    sizes = {
+        "body_force": carried / length,
+        "support_displacement": stretched,
+        "settlement": stretched,
+        "temperature": stretched / length / values["expansion"],
+    }
+    for name, size in sizes.items():
+        if generator.random() < 0.2:
+            loads[name] = size * _share(generator)
     return loads
 
 

@@ -6,27 +6,20 @@ import json
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
-from itertools import groupby
 from pathlib import Path
+from statistics import median_high
 
 from solver.scenes import CATALOGUE
 from solver.study.page import aligned, bullets, cell, plain_table, table, write_csv, write_page
 from solver.study.stability.case import METHODS, Case, Verdict
 from solver.study.stability.outcome import MEANING, JudgedRun
-from solver.study.stability.plane_cases import (
-    block_cases,
-    fault_cases,
-    incline_cases,
-    layers_cases,
-    wall_cases,
-)
-from solver.study.stability.rod_cases import bar_cases, rope_cases, strand_cases
+from solver.study.stability.plane_cases import plane_cases
+from solver.study.stability.rod_cases import rod_cases
 
 FILES = "stability.csv", "stability.html"
 COLUMNS = (
-    *("scene", "group", "case", "method", "expected", "verdict", "passed", "status", "certified"),
+    *("scene", "case", "method", "expected", "verdict", "passed", "status", "certified"),
     *("iterations", "estimated_error", "error_displacement", "error_force", "residual"),
     *("indicator", "behaviour", "seconds", "doubt", "advice", "settings"),
 )
@@ -50,11 +43,9 @@ RANDOM_NOTES = ("Right are errors of the contact force of at most the accuracy."
 
 def cases_of(scenes: Sequence[str] = (), *, quick: bool = False) -> list[Case]:
     """Cases of some scenes, or of all, by each method; with `quick` only the few for a check."""
-    rods = [*bar_cases(), *strand_cases(), *rope_cases()]
-    plane = [*fault_cases(), *block_cases(), *layers_cases(), *incline_cases(), *wall_cases()]
     return [
         case.by(method)
-        for case in rods + plane
+        for case in [*rod_cases(), *plane_cases()]
         if case.scene in (scenes or CATALOGUE) and (case.quick or not quick)
         for method in METHODS
     ]
@@ -65,94 +56,70 @@ def line(run: JudgedRun) -> str:
     case, outcome = run.case, run.outcome
     errors = outcome.estimated_error, outcome.error_displacement, outcome.error_force
     return (
-        f"{_passed(run):<5} {run.verdict:<8} {case.scene:<7} {f'{case.group}: {case.name}':<44} "
+        f"{_passed(run):<5} {run.verdict:<8} {case.scene:<7} {case.title:<44} "
         f"{case.method:<12} {outcome.ending.split()[0]:<10} "
         f"{'certified' if outcome.certified else '':<9} {outcome.iterations:>5} "
         f"{' '.join(f'{_number(error):>8}' for error in errors)} {outcome.seconds:6.2f} s"
     )
 
 
-@dataclass(frozen=True)
-class StabilityReport:
-    """What runs amount to.
+def summary(runs: Sequence[JudgedRun]) -> str:
+    """How many runs came to what they have to."""
+    return f"{sum(run.passed for run in runs)} of {len(runs)} runs pass."
 
-    Attributes
-    ----------
-    runs
-        Those that are done.
-    title
-        Of the page.
-    notes
-        What passing means, and what the tables do not show.
+
+def counts(runs: Sequence[JudgedRun]) -> list[list[str]]:
+    """Numbers of runs by verdict, and what each means; with a head."""
+    numbers = Counter(run.verdict for run in runs)
+    rows = ([name, str(numbers[Verdict(name)]), text] for name, text in MEANING.items())
+    return [["verdict", "runs", "what it means"], *rows]
+
+
+def counts_by_method(runs: Sequence[JudgedRun]) -> list[list[str]]:
+    """Numbers of runs by scene, method and verdict, and of those certified; with a head."""
+    rows = [["scene", "method", "runs", *Verdict, "certified", "median iterations"]]
+    groups: dict[tuple[str, str], list[JudgedRun]] = {}
+    for run in runs:
+        groups.setdefault((run.case.scene, run.case.method), []).append(run)
+    for name, group in sorted(groups.items()):
+        verdicts = Counter(run.verdict for run in group)
+        certified = sum(run.outcome.certified for run in group)
+        middle = median_high(run.outcome.iterations for run in group)
+        numbers = [len(group), *(verdicts[verdict] for verdict in Verdict), certified, middle]
+        rows.append([*name, *map(str, numbers)])
+    return rows
+
+
+def last_lines(runs: Sequence[JudgedRun], notes: Sequence[str]) -> list[str]:
+    """What a console ends with; what did not pass, with the command that repeats it."""
+    lines = ["", summary(runs), aligned(counts(runs)), "", *notes]
+    lines += ["", "By scene and method:", aligned(counts_by_method(runs))]
+    for run in runs:
+        if not run.passed:
+            lines += ["", line(run), f"      {run.outcome.advice}", f"      {run.case.command}"]
+    return lines
+
+
+def write_stability(
+    runs: Sequence[JudgedRun], title: str, notes: Sequence[str], folder: Path
+) -> None:
+    """Write `FILES` into an existing folder.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
     """
-
-    runs: Sequence[JudgedRun]
-    title: str
-    notes: Sequence[str]
-
-    @property
-    def passes(self) -> bool:
-        """Whether all runs came to what they have to."""
-        return all(run.passed for run in self.runs)
-
-    @property
-    def summary(self) -> str:
-        """How many did."""
-        return f"{sum(run.passed for run in self.runs)} of {len(self.runs)} runs pass."
-
-    def counts(self) -> list[list[str]]:
-        """Numbers of runs by verdict, and what each means; with a head."""
-        numbers = Counter(run.verdict for run in self.runs)
-        rows = ([name, str(numbers[Verdict(name)]), text] for name, text in MEANING.items())
-        return [["verdict", "runs", "what it means"], *rows]
-
-    def counts_by_method(self) -> list[list[str]]:
-        """Numbers of runs by scene, method and verdict, and of those certified; with a head."""
-
-        def kind(run: JudgedRun) -> tuple[str, str]:
-            return run.case.scene, run.case.method
-
-        rows = [["scene", "method", "runs", *Verdict, "certified", "median iterations"]]
-        for name, group in groupby(sorted(self.runs, key=kind), kind):
-            runs = list(group)
-            verdicts = Counter(run.verdict for run in runs)
-            middle = sorted(run.outcome.iterations for run in runs)[len(runs) // 2]
-            certified = sum(run.outcome.certified for run in runs)
-            numbers = [len(runs), *(verdicts[verdict] for verdict in Verdict), certified, middle]
-            rows.append([*name, *map(str, numbers)])
-        return rows
-
-    def lines(self) -> list[str]:
-        """What a console ends with; what did not pass, with the command that repeats it."""
-        lines = ["", self.summary, aligned(self.counts()), "", *self.notes]
-        lines += ["", "By scene and method:", aligned(self.counts_by_method())]
-        for run in self.runs:
-            if not run.passed:
-                more = run.outcome.advice, run.case.command
-                lines += ["", line(run), *(f"      {text}" for text in more)]
-        return lines
-
-    def write(self, folder: Path) -> tuple[Path, Path]:
-        """Write `stability.csv` and `stability.html` into an existing folder.
-
-        Raises
-        ------
-        OSError
-            When a file cannot be written.
-        """
-        table_file, page = (folder / file for file in FILES)
-        rows = [_entries(run) for run in self.runs]
-        write_csv(table_file, COLUMNS, (row.values() for row in rows))
-        heads = [column.replace("_", " ") for column in COLUMNS if column not in LONG]
-        every = table(heads, [html for row in rows for html in _html_rows(row)])
-        sections = [
-            f"<p><b>{escape(self.summary)}</b></p>\n{plain_table(self.counts())}\n"
-            f"{bullets(self.notes)}",
-            f"<h2>By scene and method</h2>\n{plain_table(self.counts_by_method())}",
-            f"<h2>Every run</h2>\n{every}",
-        ]
-        write_page(page, self.title, sections)
-        return table_file, page
+    rows = [_entries(run) for run in runs]
+    write_csv(folder / FILES[0], COLUMNS, (row.values() for row in rows))
+    heads = [column.replace("_", " ") for column in COLUMNS if column not in LONG]
+    every = table(heads, [html for row in rows for html in _html_rows(row)])
+    sections = [
+        f"<p><b>{escape(summary(runs))}</b></p>\n{plain_table(counts(runs))}\n{bullets(notes)}",
+        f"<h2>By scene and method</h2>\n{plain_table(counts_by_method(runs))}",
+        f"<h2>Every run</h2>\n{every}",
+    ]
+    write_page(folder / FILES[1], title, sections)
 
 
 def _entries(run: JudgedRun) -> dict[str, object]:
@@ -160,7 +127,7 @@ def _entries(run: JudgedRun) -> dict[str, object]:
     own = {
         **vars(run.case),
         **vars(run.outcome),
-        "case": run.case.name,
+        "case": run.case.title,
         "verdict": str(run.verdict),
         "passed": _passed(run),
         "status": str(run.outcome.ending),

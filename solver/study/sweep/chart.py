@@ -27,7 +27,7 @@ Text = Callable[[float, str], str]
 
 def charts(plan: Plan, rows: Sequence[Row]) -> list[Chart]:
     """Charts of all readings, of runs to which no others are to come."""
-    made = [chart_of(plan, rows, place) for place in range(len(plan.readings))]
+    made = [chart_of(plan, rows, place) for place in range(len(plan.of))]
     return [_filled(one) if isinstance(one, Map) and _is_sampled(one.z) else one for one in made]
 
 
@@ -38,17 +38,36 @@ def plainly(value: float, unit: str) -> str:
 
 def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plainly) -> Chart:
     """Chart of the reading at a place, whatever has come of the plan so far, in SI."""
-    return (_map if is_map(plan) else _panel)(plan, rows, place, text)
-
-
-def ordered(plan: Plan) -> list[Varied]:
-    """Axes, first the one that goes across: of a number and names, the number."""
-    return sorted(plan.axes, key=lambda axis: not axis.is_numeric)
+    across, *up = plan.axes
+    runs, title = _runs(plan, rows, place, text), plan.readings[place].title
+    if is_map(plan):
+        z = _measure(plan, place)[0] * grid(plan, rows, place).T
+        return Map(
+            title,
+            _setting_axis(across),
+            _setting_axis(up[0]),
+            across.places,
+            up[0].places,
+            _reading_axis(plan, place, z),
+            z,
+            runs,
+        )
+    curves = []
+    for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
+        own = np.flatnonzero(runs.hues == hue)
+        # Nothing lies between names.
+        own = own[np.argsort(runs.x[own])] if across.is_numeric else own[:0]
+        y = np.where(runs.holds[own], runs.y[own], np.nan)
+        curves.append(PanelCurve(label, runs.x[own], y, hue))
+    x_axis, y_axis = _setting_axis(across), _reading_axis(plan, place, runs.y)
+    x_axis = replace(x_axis, limits=_limits(across.places, x_axis))
+    y_axis = replace(y_axis, limits=_limits(runs.y, y_axis))
+    return Panel(title, x_axis, y_axis, tuple(curves), runs)
 
 
 def is_map(plan: Plan) -> bool:
     """Whether a plan makes a map: two numbers, the second one of many values."""
-    across, *up = ordered(plan)
+    across, *up = plan.axes
     return across.is_numeric and any(one.is_numeric and len(one.values) > MOST_CURVES for one in up)
 
 
@@ -72,23 +91,6 @@ def is_wide(values: Array) -> bool:
     return bool(values.size and values.min() > 0.0 and values.max() > DECADES * values.min())
 
 
-def _map(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Map:
-    across, up = ordered(plan)
-    x, y = (np.array(axis.values, dtype=float) for axis in (across, up))
-    good = _measure(plan, place)[0] * grid(plan, rows, place)
-    good = (good.T if plan.axes[0] is across else good)[np.argsort(y)][:, np.argsort(x)]
-    return Map(
-        plan.readings[place].title,
-        _setting_axis(plan, across),
-        _setting_axis(plan, up),
-        np.sort(x),
-        np.sort(y),
-        _reading_axis(plan, place, good),
-        good,
-        _runs(plan, rows, place, text),
-    )
-
-
 def _is_sampled(good: Array) -> bool:
     """Whether runs are few and enclose the others; those of a stopped sweep do not."""
     known = np.isfinite(good)
@@ -105,30 +107,6 @@ def _filled(chart: Map) -> Map:
     facets = LinearNDInterpolator(places / shape, to(chart.z[tuple(places.T)]))
     filled = back(facets(np.moveaxis(np.indices(shape), 0, -1) / shape))
     return replace(chart, z=filled, is_sampled=True)
-
-
-def _panel(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Panel:
-    across, *up = ordered(plan)
-    runs = _runs(plan, rows, place, text)
-    curves = []
-    for hue, label in enumerate(_texts(plan, up[0], text) if up else [""], start=1):
-        own = np.flatnonzero(runs.hues == hue)
-        own = own[np.argsort(runs.x[own])]
-        if not across.is_numeric:  # nothing lies between names
-            own = own[:0]
-        x, y = runs.x[own], runs.y[own]
-        curves += [
-            PanelCurve("", x, y, hue, "faint"),
-            PanelCurve(label, x, np.where(runs.holds[own], y, np.nan), hue),
-        ]
-    x_axis, y_axis = _setting_axis(plan, across), _reading_axis(plan, place, runs.y)
-    return Panel(
-        plan.readings[place].title,
-        replace(x_axis, limits=_limits(_places(across), x_axis)),
-        replace(y_axis, limits=_limits(runs.y, y_axis)),
-        tuple(curves),
-        runs,
-    )
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
@@ -148,13 +126,12 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
 
 def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     """Where the runs stand on the chart of a reading, and what they came to."""
-    axes = ordered(plan)
+    axes = plan.axes
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
-    levels = tuple(levels[plan.axes.index(axis)] for axis in axes)
     factor, unit = _measure(plan, place)
     values = factor * np.array([row.values[place] for row in rows], dtype=float)
-    texts = [_texts(plan, axis, text) for axis in axes]
+    texts = [_texts(axis, text) for axis in axes]
     messages = []
     for row, value, at in zip(rows, values, zip(*levels, strict=True), strict=True):
         point = ", ".join(of_axis[level] for of_axis, level in zip(texts, at, strict=True))
@@ -163,9 +140,8 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     values[~np.isfinite(values)] = np.nan
     return Runs(
         numbers,
-        _places(axes[0])[levels[0]],
-        _places(axes[1])[levels[1]] if is_map(plan) else values,
-        values,
+        axes[0].places[levels[0]],
+        axes[1].places[levels[1]] if is_map(plan) else values,
         levels[1] + 1 if len(axes) > 1 else np.ones_like(numbers),
         np.array([row.holds for row in rows], dtype=bool) & np.isfinite(values),
         messages,
@@ -179,25 +155,14 @@ def _reason(row: Row, value: float) -> str:
     return NEVER if math.isinf(value) else NONE if math.isnan(value) else ""
 
 
-def _texts(plan: Plan, axis: Varied, text: Text) -> list[str]:
+def _texts(axis: Varied, text: Text) -> list[str]:
     """Title of a setting with each of its values."""
-    unit = plan.unit(axis)
-    values = [text(value, unit) for value in axis.values] if axis.is_numeric else _names(axis)
-    return [f"{plan.title(axis)} {value}" for value in values]
+    values = axis.names or [text(value, axis.unit) for value in axis.values]
+    return [f"{axis.title} {value}" for value in values]
 
 
-def _names(axis: Varied) -> list[str]:
-    return [{True: "on", False: "off"}.get(value, value) for value in axis.values]
-
-
-def _places(axis: Varied) -> Array:
-    """Where the values of a setting stand: names one after the other."""
-    return np.array(axis.values if axis.is_numeric else range(len(axis.values)), dtype=float)
-
-
-def _setting_axis(plan: Plan, axis: Varied) -> PanelAxis:
-    names = () if axis.is_numeric else tuple(_names(axis))
-    return PanelAxis(plan.title(axis), plan.unit(axis), axis.logarithmic, names=names)
+def _setting_axis(axis: Varied) -> PanelAxis:
+    return PanelAxis(axis.title, axis.unit, axis.logarithmic, names=axis.names)
 
 
 def _reading_axis(plan: Plan, place: int, values: Array) -> PanelAxis:
@@ -208,5 +173,5 @@ def _reading_axis(plan: Plan, place: int, values: Array) -> PanelAxis:
 
 def _measure(plan: Plan, place: int) -> tuple[float, str]:
     """Factor and unit of a reading: shares are in per cent."""
-    quantity = plan.readings[place].quantity
+    quantity = plan.readings[place]
     return (100.0, "%") if quantity.is_share else (1.0, quantity.unit)

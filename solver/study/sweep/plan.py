@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import param
 
+from solver.arrays import Array
 from solver.definitions import (
     Parameter,
     SettingError,
@@ -23,7 +24,8 @@ from solver.definitions import (
 )
 from solver.latin import Ending
 from solver.settings import Settings
-from solver.study.quantities.quantities import Reading, reading
+from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
 
 MOST_POINTS = 20_000
 """Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
@@ -38,22 +40,35 @@ class Varied:
 
     Attributes
     ----------
-    name
-        Of the setting.
+    name, title, unit
+        Of the setting; the unit in SI, empty for a pure number.
     values
-        Plain, checked values, in the order of the chart.
+        Plain, checked values; numbers ascend.
     logarithmic
         Whether they are spread evenly over decades.
     """
 
     name: str
+    title: str
+    unit: str
     values: tuple[Any, ...]
-    logarithmic: bool = False
+    logarithmic: bool
 
     @property
     def is_numeric(self) -> bool:
         """Whether the values are numbers, which have a place on a scale."""
         return not isinstance(self.values[0], bool | str)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The values where they are no numbers, none otherwise."""
+        words = {True: "on", False: "off"}
+        return () if self.is_numeric else tuple(words.get(value, value) for value in self.values)
+
+    @property
+    def places(self) -> Array:
+        """Where the values stand on an axis: names one after the other."""
+        return np.array(self.values if self.is_numeric else range(len(self.values)), dtype=float)
 
 
 @dataclass(frozen=True)
@@ -65,14 +80,19 @@ class Plan:
     settings
         What is fixed.
     axes
-        One or two.
-    readings
-        What is taken of every run, at least one.
+        One or two; of a number and names the number is the first.
+    of
+        Names of what is taken of every run, at least one.
     """
 
     settings: Settings
     axes: tuple[Varied, ...]
-    readings: tuple[Reading, ...]
+    of: tuple[str, ...]
+
+    @property
+    def readings(self) -> tuple[Quantity, ...]:
+        """What is taken of every run."""
+        return tuple(map(reading, self.of))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -88,14 +108,6 @@ class Plan:
     def fixed(self) -> dict[str, Any]:
         """Settings that differ from their defaults; a varied method brings the rest."""
         return self.settings.changed()
-
-    def title(self, axis: Varied) -> str:
-        """Title of a setting that varies."""
-        return about(self.settings.definitions()[axis.name]).title
-
-    def unit(self, axis: Varied) -> str:
-        """SI unit of a setting that varies, empty for a pure number."""
-        return about(self.settings.definitions()[axis.name]).unit
 
     def point(self, number: int) -> dict[str, Any]:
         """Values of what varies at a point, by the setting's name."""
@@ -174,7 +186,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     vary
         One or two of `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`.
     of
-        Quantities of a run, as `solver.study.quantities.quantities.reading` takes them.
+        Quantities of a run, as `solver.study.quantities.reading` takes them.
 
     Raises
     ------
@@ -185,10 +197,11 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
         raise SettingError("--vary", list(vary), f"one or two of {FORM}", "vary one or two")
     if not of:
         raise SettingError("--of", list(of), "names of quantities", "name at least one")
-    axes = tuple(axis_of(settings, text) for text in vary)
+    axes = [axis_of(settings, text) for text in vary]
     if len({axis.name for axis in axes}) < len(axes):
         raise SettingError("--vary", list(vary), "two settings", "vary each of them once")
-    plan = Plan(settings, axes, tuple(dict.fromkeys(reading(name) for name in of)))
+    axes.sort(key=lambda axis: not axis.is_numeric)
+    plan = Plan(settings, tuple(axes), tuple(dict.fromkeys(reading(name).name for name in of)))
     if plan.size > MOST_POINTS:
         few = f"at most {MOST_POINTS} runs"
         raise SettingError("--vary", list(vary), few, f"these are {plan.size}: take fewer values")
@@ -217,7 +230,9 @@ def axis_of(settings: Settings, text: str) -> Varied:
         # What was typed is refused before what lies between.
         checked_value(definitions[name], name, end)
     checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
-    return Varied(name, tuple(checked), logarithmic)
+    ordered = sorted(checked) if isinstance(definitions[name], param.Number) else checked
+    kind = about(definitions[name])
+    return Varied(name, kind.title, kind.unit, tuple(ordered), logarithmic)
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:

@@ -1,20 +1,28 @@
-"""A sweep as a page: charts, how answers grow, and a line for every run."""
+"""A sweep as a page, and as a CSV file from which one that was ended goes on."""
 
 from __future__ import annotations
 
+import csv
+import io
 import math
 from collections import Counter
 from collections.abc import Sequence
 from html import escape
+from pathlib import Path
 
 import numpy as np
+from scipy.special import stdtrit
 
-from solver.study.exponent import exponent_of
+from solver.arrays import Array
+from solver.checked import dump
+from solver.definitions import SettingError
 from solver.study.page import PlotSection, Section, bullets, plain_table
 from solver.study.sweep.chart import charts, grid
 from solver.study.sweep.plan import Plan, Row
-from solver.study.sweep.table import cells, head, heads
 
+BEFORE, AFTER = ("run",), ("ending", "start", "iterations done", "seconds in all", "reason")
+OWN, NEIGHBOURS = "own", "neighbour's"
+CONFIDENCE = 0.95
 CAPTION = (
     "Hollow points and hatched cells are of runs that have not converged, crosses of runs without "
     "a value."
@@ -34,29 +42,49 @@ def counts(plan: Plan, rows: Sequence[Row]) -> str:
 
 def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
     """With which power of a setting over decades each reading grows, a line for every curve."""
-    numeric = [axis for axis in plan.axes if axis.is_numeric]
-    if len(numeric) != 1 or not numeric[0].logarithmic:
+    (along, *others), lines = plan.axes, []
+    if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
-    (along,), lines = numeric, []
-    names = next((axis for axis in plan.axes if axis is not along), None)
+    which = [f", {axis.name}={value}" for axis in others for value in axis.values] or [""]
     for place, reading in enumerate(plan.readings):
-        values = grid(plan, rows, place)
-        if plan.axes[0] is along and names is not None:
-            values = values.T
-        for number, curve in enumerate(np.atleast_2d(values)):
-            law = exponent_of(along.values, curve)
-            if law is not None:
-                which = f", {names.name}={names.values[number]}" if names else ""
-                count = np.isfinite(curve).sum()
-                lines.append(f"{reading.name}{which}: {along.name}^({law}), of {count} runs")
+        curves = grid(plan, rows, place).T.reshape(len(which), -1)
+        for words, curve in zip(which, curves, strict=True):
+            power, margin, count = exponent_of(along.values, curve)
+            if not math.isnan(power):
+                law = f"{power:.2f}" + (f" ± {margin:.2f}" if count > 2 else "")
+                lines.append(f"{reading.name}{words}: {along.name}^({law}), of {count} runs")
     return lines
+
+
+def exponent_of(x: Sequence[float], y: Sequence[float] | Array) -> tuple[float, float, int]:
+    """Power with which y grows with x, by least squares of the logarithms.
+
+    Points at which one of them is not a positive number are left out.
+
+    Returns
+    -------
+    The power, NaN below two points; the margin to both sides of it, with 95 % confidence if points
+    scatter at random about a power law, NaN for two points; the number of points.
+    """
+    points = np.array([x, y], dtype=float).T
+    points = points[np.isfinite(points).all(axis=1) & (points > 0.0).all(axis=1)]
+    if (count := len(points)) < 2:
+        return math.nan, math.nan, count
+    x, y = np.log(points).T
+    if count == 2:
+        return float(np.polyfit(x, y, 1)[0]), math.nan, count
+    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
+    quantile = stdtrit(count - 2, 0.5 + 0.5 * CONFIDENCE)
+    return float(slope), float(quantile * math.sqrt(covariance[0, 0])), count
 
 
 def title_of(plan: Plan) -> str:
     """What is asked for, over what."""
-    asked = ", ".join(one.title[0].lower() + one.title[1:] for one in plan.readings)
-    over = " and ".join(plan.title(axis)[0].lower() + plan.title(axis)[1:] for axis in plan.axes)
-    return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
+    asked, over = (
+        [one.title[0].lower() + one.title[1:] for one in several]
+        for several in (plan.readings, plan.axes)
+    )
+    return f"{plan.settings.scene.capitalize()}: {', '.join(asked)} over {' and '.join(over)}"
 
 
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
@@ -77,3 +105,82 @@ def _text(cell: object) -> str:
     if not isinstance(cell, float):
         return str(cell)
     return "-" if math.isnan(cell) else "never" if math.isinf(cell) else f"{cell:.6g}"
+
+
+def heads(plan: Plan) -> list[str]:
+    """Names of the columns: the run, what varies, what is asked for, and how the run ended."""
+    varied = [axis.name for axis in plan.axes]
+    return [*BEFORE, *varied, *(one.name for one in plan.readings), *AFTER]
+
+
+def cells(plan: Plan, row: Row) -> list[object]:
+    """Entries of a row, in SI units."""
+    ending = [row.ending, NEIGHBOURS if row.was_warm else OWN, row.iterations]
+    reason = " ".join(row.reason.split())
+    values = [*plan.point(row.number).values(), *row.values]
+    return [row.number, *values, *ending, round(row.seconds, 6), reason]
+
+
+def csv_of(plan: Plan, rows: Sequence[Row]) -> str:
+    """Rows as CSV, with what is fixed in front, in comments that begin with #."""
+    comments = "".join(f"# {line}\n" for line in head(plan))
+    return comments + _written([heads(plan)]) + lines_of(plan, rows)
+
+
+def lines_of(plan: Plan, rows: Sequence[Row]) -> str:
+    """Rows as lines of CSV."""
+    return _written([cells(plan, row) for row in rows])
+
+
+def _written(lines: Sequence[Sequence[object]]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(lines)
+    return text.getvalue()
+
+
+def head(plan: Plan) -> list[str]:
+    """What the columns are, with all values of what varies, and what is fixed, in SI units."""
+
+    def column(name: str, title: str, unit: str) -> str:
+        return f"{name}: {title} ({unit})" if unit else f"{name}: {title}"
+
+    varied = {axis.name for axis in plan.axes}
+    return [
+        f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
+        *(
+            f"{column(axis.name, axis.title, axis.unit)}: " + ", ".join(map(str, axis.values))
+            for axis in plan.axes
+        ),
+        *(column(one.name, one.title, one.unit) for one in plan.readings),
+        "settings of all runs:",
+        *(line for line in dump(plan.settings).splitlines() if line.split(" ")[0] not in varied),
+    ]
+
+
+def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
+    """Rows of a plan by their number, as a file holds them; a line without an end is left out.
+
+    Raises
+    ------
+    SettingError
+        If it is the table of another sweep.
+    OSError
+        If it cannot be read.
+    """
+    if not file.exists():
+        return {}
+    text, empty = file.read_text(encoding="utf-8"), csv_of(plan, [])
+    if not text.startswith(empty):
+        folder = "a folder of the same sweep, or a new one"
+        raise SettingError("--out", str(file.parent), folder, "name another")
+    whole = text[len(empty) : text.rfind("\n") + 1]
+    rows = [_row(plan, line) for line in csv.reader(io.StringIO(whole))]
+    return {row.number: row for row in rows}
+
+
+def _row(plan: Plan, line: Sequence[str]) -> Row:
+    number, *rest = line
+    *values, ending, start, iterations, seconds, reason = rest[len(plan.axes) :]
+    numbers = tuple(map(float, values))
+    is_warm = start == NEIGHBOURS
+    return Row(int(number), ending, reason, numbers, int(iterations), float(seconds), is_warm)

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 import platform
-import queue
 import time
 import uuid
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Collection, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    wait,
+)
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -24,10 +29,8 @@ from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.solution import States
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.quantities.memory import settle
-from solver.study.quantities.quantities import reading
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
@@ -35,10 +38,10 @@ TOO_LONG = "It took longer than a run may; allow more with --limit."
 KEPT = 500
 """Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41. Of the
 scenes as they are each takes 5 to 30 kB."""
-_runs: dict[str, dict[tuple[float, ...], States]] = {}
-"""What stuck, slipped and opened in the runs of this process, of the last sweep, by place."""
+_kept: dict[str, deque[tuple[tuple[float, ...], States]]] = {}
+"""Places of the runs of this process, of the last sweep, and what stuck, slipped and opened."""
 TRIES = 3
-"""Times that all is submitted again because processes were ended while they did nothing."""
+"""Times that a run is submitted again because processes were ended while they did nothing."""
 AHEAD = 500
 """Runs under way at once, done and waiting: more than there are workers, soon asked for."""
 PATIENCE = 0.2
@@ -53,25 +56,17 @@ class Common:
     ----------
     sweep
         A name that no other sweep has.
-    scene, fixed
-        Settings, those at their defaults left out.
-    readings
-        Names of what is taken of a run.
-    shape
-        Points along the axes; None for runs that start from no others.
-    limit, fields
+    plan, limit, fields, warm
         As for `sweep`.
     versions
         Of who asks, which have to be those of who answers.
     """
 
     sweep: str
-    scene: str
-    fixed: dict[str, object]
-    readings: tuple[str, ...]
-    shape: tuple[int, ...] | None
+    plan: Plan
     limit: float
     fields: str | None
+    warm: bool
     versions: str
 
 
@@ -87,8 +82,8 @@ def field_file(number: int) -> str:
     return f"run-{number:05d}.npz"
 
 
-def run(common: Common, number: int, point: dict[str, object]) -> Row:
-    """Row of a point, whose run starts from the nearest one that this process has done.
+def run(common: Common, number: int) -> Row:
+    """Row of a point.
 
     Raises
     ------
@@ -97,50 +92,52 @@ def run(common: Common, number: int, point: dict[str, object]) -> Row:
     """
     if common.versions != versions():
         raise SettingError(WORKER, versions(), common.versions, "install these on all workers")
-    readings = [reading(name) for name in common.readings]
-    if any(one.quantity.is_of_course for one in readings):
+    readings = common.plan.readings
+    if any(reading.is_of_course for reading in readings):
         settle()
-    if common.sweep not in _runs:
-        _runs.clear()
-    done, shape = _runs.setdefault(common.sweep, {}), common.shape or (1,)
-    place = tuple(np.unravel_index(number, shape) / np.array(shape)) if common.shape else ()
-    nearest = min(list(done), key=partial(math.dist, place), default=None)
-    began = time.perf_counter()
-    nothing = (math.nan,) * len(readings)
+    began, nothing = time.perf_counter(), (math.nan,) * len(readings)
     # A run that diverges is told by its status.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
-            finished = finished_run(
-                CATALOGUE[common.scene].settings.checked({**common.fixed, **point}),
-                errors=any(one.quantity.reads == "errors" for one in readings),
-                indicators=any(one.quantity.reads == "indicators" for one in readings),
-                cancelled=lambda: time.perf_counter() > began + common.limit,
-                before=None if nearest is None else done.get(nearest),
-            )
-            if common.fields is not None:
-                file = Path(common.fields) / field_file(number)
-                save_result(file, finished.settings, finished.solution)
-            status, values = (
-                finished.solution.status,
-                tuple(float(one(finished)) for one in readings),
-            )
-            ending, reason = str(status.ending), status.advice
-            if status.ending is Ending.CANCELLED:
-                ending, reason = STUCK, TOO_LONG
-            elif status.ending is Ending.CONVERGED:
-                reason = ""
-            values = tuple(float(one(finished)) for one in readings)
-            row = Row(number, ending, reason, values, finished.iterate.number)
-            row = replace(row, was_warm=finished.was_warm)
-            if common.shape and row.holds:
-                done[place] = finished.states
-                for oldest in list(done)[:-KEPT]:
-                    done.pop(oldest, None)
+            row = _finished(common, number, began)
         except RefusedError as refusal:
             row = Row(number, REFUSED, str(refusal), nothing)
         except Exception as trouble:  # whatever it is belongs in the table
             row = Row(number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
     return replace(row, seconds=time.perf_counter() - began)
+
+
+def _finished(common: Common, number: int, began: float) -> Row:
+    """Row of a run, which starts from the nearest one that this process has done."""
+    plan = common.plan
+    if common.sweep not in _kept:
+        _kept.clear()
+    kept = _kept.setdefault(common.sweep, deque(maxlen=KEPT))
+    place = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
+    nearest = min(list(kept), key=lambda own: math.dist(place, own[0]), default=None)
+    reads = {reading.reads for reading in plan.readings}
+    finished = finished_run(
+        plan.settings_at(number),
+        errors="errors" in reads,
+        indicators="indicators" in reads,
+        cancelled=lambda: time.perf_counter() > began + common.limit,
+        before=nearest and nearest[1],
+    )
+    if common.fields is not None:
+        file = Path(common.fields) / field_file(number)
+        save_result(file, finished.settings, finished.solution)
+    status = finished.solution.status
+    ending, reason = str(status.ending), status.advice
+    if status.ending is Ending.CANCELLED:
+        ending, reason = STUCK, TOO_LONG
+    elif status.ending is Ending.CONVERGED:
+        reason = ""
+    values = tuple(float(reading(finished)) for reading in plan.readings)
+    count, was_warm = finished.iterate.number, finished.was_warm
+    row = Row(number, ending, reason, values, count, was_warm=was_warm)
+    if common.warm and row.holds:
+        kept.append((place, finished.states))
+    return row
 
 
 def patience(limit: float) -> float:
@@ -193,46 +190,36 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
     """
-    is_warm = warm and not any(one.quantity.is_of_course for one in plan.readings)
     common = Common(
         uuid.uuid4().hex,
-        plan.settings.scene,
-        plan.fixed,
-        tuple(one.name for one in plan.readings),
-        plan.shape if is_warm else None,
+        plan,
         limit,
         fields,
+        warm and not any(reading.is_of_course for reading in plan.readings),
         versions(),
     )
     path = deque(() if following else (n for n in snake(plan.shape) if n not in done))
     under_way: dict[Future[Row], int] = {}
-    ended: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
-    tries = 0
+    tries = Counter[int]()
     try:
         while not cancelled():
             path.extend(following(len(under_way)) if following else ())
             while path and len(under_way) < AHEAD:
-                future = executor.submit(run, common, path[0], plan.point(path[0]))
-                under_way[future] = path.popleft()
-                future.add_done_callback(ended.put)
+                number = path.popleft()
+                under_way[executor.submit(run, common, number)] = number
             if not under_way:
                 return
-            with suppress(queue.Empty):
-                future = ended.get(timeout=PATIENCE)
-                if future not in under_way:
-                    continue
+            for future in wait(under_way, PATIENCE, FIRST_COMPLETED).done:
+                number = under_way.pop(future)
                 try:
-                    row = _row(future, under_way[future], len(plan.readings))
+                    row = _row(future, number, len(plan.readings))
                 except BrokenProcessPool:
-                    tries += 1
-                    if tries > TRIES:
+                    tries[number] += 1
+                    if tries[number] > TRIES:
                         raise
-                    path.extendleft(under_way.values())
-                    under_way = {}
-                    continue
-                del under_way[future]
-                tries = 0
-                yield row
+                    path.appendleft(number)
+                else:
+                    yield row
     finally:
         for future in under_way:
             future.cancel()

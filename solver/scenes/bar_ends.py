@@ -1,0 +1,166 @@
+"""Settings of what is done to a bar beside pressing it: its ends, heat, a support that moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import param
+
+from solver.arrays import Array
+from solver.definitions import CurveParameter, choice, curve, quantity
+from solver.discrete.rods import End
+from solver.loads import PRESETS
+from solver.scenes.words import acting, listed
+
+ENDS = ("held", "spring", "pulled", "free")
+HOLDING = ("held", "spring")
+PATHS = {
+    "left": {"force": "left_load", "displacement": "support_load"},
+    "right": {"force": "load", "displacement": "right_load"},
+}
+"""Settings of the paths of both ends."""
+PEAKS = {
+    "load": "peak",
+    "left_load": "left_force",
+    "support_load": "support_displacement",
+    "right_load": "right_displacement",
+    "body_load": "body_force",
+    "temperature_load": "temperature",
+    "settlement_load": "settlement",
+}
+"""Settings of the largest values that the presets of these paths reach."""
+RISING = {"linear": ((0.0, 0.0), (1.0, 1.0))}
+"""A profile over shares of the length that is nothing at the left end."""
+
+
+def acts(settings: Any, path: str) -> bool:
+    """Whether a path over time has any size, of its preset or of its own."""
+    return not isinstance(getattr(settings, path), str) or settings.size_of(path) != 0.0
+
+
+def is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
+    """Make the question whether an end is one of these."""
+    return lambda settings: getattr(settings, f"{side}_end") in kinds
+
+
+def end(side: str, default: str) -> param.Selector[str]:
+    """Define what holds or pulls an end."""
+    return choice(
+        default,
+        ENDS,
+        f"What is at the {side} end. held: it stands still, or is moved. spring: a spring holds it "
+        "to what stands still, or is moved. pulled: by a force. free: nothing.",
+        group="Ends",
+        title=f"{side.capitalize()} end",
+    )
+
+
+def spring(side: str) -> param.Number[float]:
+    """Define the spring of an end."""
+    return quantity(
+        1e6,
+        (1e-9, 1e18),
+        (1e3, 1e9),
+        f"Stiffness of the spring at the {side} end.",
+        group="Ends",
+        title=f"Spring at the {side} end",
+        unit="N/m",
+        applies=is_end(side, "spring"),
+        logarithmic=True,
+    )
+
+
+def size(
+    path: str,
+    unit: str,
+    most: tuple[float, float],
+    title: str,
+    doc: str,
+    applies: Callable[[Any], bool] = lambda settings: True,
+    group: str = "Ends",
+) -> param.Number[float]:
+    """Define the largest value that the preset of a path reaches; `most`: allowed, on a slider."""
+    return quantity(
+        0.0,
+        (-most[0], most[0]),
+        (0.0, most[1]),
+        doc,
+        group=group,
+        title=title,
+        unit=unit,
+        applies=lambda settings: applies(settings) and isinstance(getattr(settings, path), str),
+    )
+
+
+def path_over_time(
+    name: str,
+    default: str,
+    ordinate: str,
+    unit: str,
+    what: str,
+    applies: Callable[[Any], bool] = lambda settings: True,
+    group: str = "Ends",
+) -> CurveParameter:
+    """Define how it goes on over time."""
+    return curve(
+        default,
+        PRESETS,
+        "time",
+        ordinate,
+        ("s", unit),
+        f"{what[:1].upper()}{what[1:]} over time: a preset, or points (s, {unit}).",
+        group=group,
+        title=f"Path of the {what}",
+        applies=lambda settings: applies(settings) and acts(settings, name),
+    )
+
+
+def end_of(settings: Any, side: str) -> End:
+    """The end as a part of the structure."""
+    kind, paths = getattr(settings, f"{side}_end"), PATHS[side]
+    if kind == "free":
+        return End()
+    if kind == "pulled":
+        return End(force=settings.path(paths["force"]))
+    stiffness = getattr(settings, f"{side}_spring") if kind == "spring" else np.inf
+    return End(displacement=settings.path(paths["displacement"]), spring=stiffness)
+
+
+def ends_in_words(settings: Any) -> tuple[str, str]:
+    """How the ends are held or left alone, and what is done to them."""
+    still: dict[str, list[str]] = {}
+    moved = []
+    for side in ("right", "left"):
+        kind, the = getattr(settings, f"{side}_end"), f"its {side} end"
+        if kind == "pulled":
+            path = settings.path(PATHS[side]["force"])
+            moved.append(f"{the} is {acting(_outward(side, path), 'pulled', 'pushed')}")
+            continue
+        path = None if kind == "free" else settings.path(PATHS[side]["displacement"])
+        if path is not None and path.any():
+            at = f"the spring at {the}" if kind == "spring" else the
+            moved.append(f"{at} is {acting(path, 'moved', 'moved back')}")
+        else:
+            word = {"held": "held", "spring": "on a spring", "free": "free"}[kind]
+            still.setdefault(word, []).append(the)
+    rests = [
+        f"{word} at {'both ends' if len(ends) == 2 else ends[0]}" for word, ends in still.items()
+    ]
+    return listed(rests) if rests else "", ", and ".join(moved)
+
+
+def _outward(side: str, path: Array) -> Array:
+    return path if side == "right" else -path
+
+
+def total_force(settings: Any) -> Array:
+    """All forces that are given, shape (n_instants,), N."""
+    total = np.zeros(settings.n_instants)
+    for side, paths in PATHS.items():
+        if getattr(settings, f"{side}_end") == "pulled":
+            total = total + settings.path(paths["force"])
+    if acts(settings, "body_load"):
+        total = total + settings.length * settings.path("body_load")
+    return total
