@@ -18,7 +18,7 @@ from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import CYCLE, Parameter, quantity
 
-AT = Parameter(" at {:g} of the interval", (0.0, 1.0))
+AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
 EQUAL = 1e-6
 """Relative difference up to which two loads count as equally large."""
