@@ -92,12 +92,16 @@ class Question:
 
 
 def question_of(text: str, settings: Settings) -> Question:
-    """The question that a text asks, or iterations over k where settings do not have it."""
+    """The question that a text asks; where settings do not have it, energy, or else k's."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     names = {setting.partition("=")[0] for setting in vary}
     is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
-    return question if is_known and not question.refusal(settings) else iterations_over_k(settings)
+    if is_known and not question.refusal(settings):
+        return question
+    energy = _energy(settings)
+    is_posed = energy is not None and not energy.refusal(settings)
+    return energy if energy is not None and is_posed else iterations_over_k(settings)
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -154,6 +158,16 @@ def iterations_over_k(settings: Settings, name: str = "acceleration") -> Questio
     return Question(tuple(vary), of)
 
 
+def _energy(settings: Settings) -> Question | None:
+    """Over the load's amplitude: small ones take its third power along rods (Masing)."""
+    load = _load(settings)
+    if load is None:
+        return None
+    end = settings.definitions()[load].softbounds[getattr(settings, load) >= 0.0]
+    low, high = sorted((TENTH * end, end))
+    return Question((f"{load}={low:g}:{high:g}:{VALUES}{LOG * (end > 0.0)}",), "dissipation")
+
+
 def _bricks(settings: Settings) -> Question | None:
     """Over the courses, which the load passes one after the other; more bricks a course help."""
     if "courses" not in variable(settings):
@@ -198,6 +212,11 @@ def _map(settings: Settings, across: str | None, up: str | None, of: str) -> Que
 
 
 READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
+    "Energy over amplitude": (
+        "Energy that friction takes over the size of the load. On logarithmic scales a straight "
+        "line is a power: 3 where slip spreads from an end, 1 where all slips.",
+        _energy,
+    ),
     "Iterations over k": (
         "Iterations over the factor on k, with and without acceleration. It is steepest with the "
         "paper's method.",

@@ -30,6 +30,7 @@ from solver.study.sweep.chart import chart_of, is_map
 from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"
+SCALES = {"automatic": None, "linear": False, "logarithmic": True}
 NEAR = 0.04
 """Share of the axes up to which a tap hits a point."""
 
@@ -54,7 +55,7 @@ class WhatIf:
         self.view = pn.Column(
             pn.FlexBox(*self._ready.values(), self._help),
             *(span.view for span in self.spans),
-            pn.FlexBox(self._of, self._at, self._start, self._cancel),
+            pn.FlexBox(self._of, self._at, self._scale, self._start, self._cancel),
             self.message,
             self._keys,
             self._chart,
@@ -75,6 +76,10 @@ class WhatIf:
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")
+        self._scale = pmui.Select(
+            label="on a scale", options=list(SCALES), value=next(iter(SCALES)), width=150, **FIELD
+        )
+        self._scale.param.watch(lambda event: self.sweep and self._draw(), "value")
         self._start = button("Draw", self.start, icon="play_arrow", **FIELD)
         look = {"variant": "outlined", **FIELD}
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
@@ -130,7 +135,9 @@ class WhatIf:
     def chart(self) -> Chart:
         """What has come so far, in the units that are read."""
         plan, rows = self.sweep.plan, list(self.sweep.rows)
-        return in_units(chart_of(plan, rows, 0, lambda v, unit: unit_for(abs(v), unit)(v, 4)))
+        text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
+        scale = SCALES[self._scale.value]
+        return in_units(chart_of(plan, rows, 0, text, logarithmic=scale))
 
     # Fields
 

@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver.discrete.wall import Wall, bonded
+from solver.definitions import SettingError
+from solver.discrete.wall import Wall, bonded, with_opening
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import FrictionLaw, Strength
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.reference.limit_analysis import collapse_of
 from solver.reference.residual import kkt_residual
+from solver.scenes import CATALOGUE
 
 TIMES = np.linspace(0.0, 1.0, 21)
 PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))
@@ -45,6 +47,40 @@ def forces(found, names, component):
 
 def on_ground(problem):
     return [name for name in problem.rubbing if name.startswith("support")]
+
+
+def door():
+    """A wall of 6 by 5 bricks with an opening of 2 by 2 in its middle."""
+    whole = wall(6, 5, moved=3e-5)
+    return replace(whole, bricks=with_opening(whole.bricks, (4, 2), (2, 4), 2))
+
+
+def test_the_weight_over_an_opening_goes_round_it():
+    """The lintel lies on half a brick at each end, and the ground beside it carries all."""
+    built = door()
+    lintel = max(built.bricks, key=lambda brick: brick.columns)
+    assert (lintel.x, lintel.y, lintel.columns) == (6, 4, 12)
+    area = sum(brick.columns * brick.rows for brick in built.bricks)
+    assert area == 6 * 4 * 5 * 2 - 2 * 4 * 2 * 2
+    problem = built.discretise()
+    reference = reference_of(problem)
+    weight = 2e4 * area * 0.06 * 0.06
+    carried = forces(reference, on_ground(problem), "normal_force")[-1]
+    assert carried == pytest.approx(weight + 1e6 * 6 * 0.24, rel=1e-9)
+    run = solve(problem, Latin(), distance=distance_to(reference, problem))
+    assert run.is_certified
+    assert run.records[-1].error_force < 1e-9
+
+
+def test_an_opening_leaves_bricks_beside_and_above_it():
+    settings = CATALOGUE["wall"].settings
+    for values, name in (
+        ({"opening": 11}, "opening"),
+        ({"opening": 2, "opening_height": 6}, "opening_height"),
+        ({"opening": 2, "elements": 5, "bond": "stack"}, "elements"),
+    ):
+        with pytest.raises(SettingError, match=f"^{name} = "):
+            settings.checked(values)
 
 
 @pytest.mark.parametrize("bond", ["running", "stack"])

@@ -117,11 +117,20 @@ def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
     assert not made.mesh.visible
 
 
-def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_the_bathtub() -> None:
+def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
     settings = tiny()
     assert question_of(str(LOADS), settings) == LOADS
+    energy = Question(("peak=240:2400:13:log",), "dissipation")
     for text in ("", "friction=0:1:3", "no=1,2 dissipation", "friction=0.1 none", "friction=a of"):
-        assert question_of(text, settings) == iterations_over_k(settings)
+        assert question_of(text, settings) == energy
+
+
+@pytest.mark.usefixtures("here")
+def test_the_scale_of_the_values_is_linear_or_logarithmic_as_one_likes() -> None:
+    made = asked(LOADS)
+    for scale, is_logarithmic in (("logarithmic", True), ("linear", False)):
+        made._scale.value = scale
+        assert made.chart().y.logarithmic is is_logarithmic
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)

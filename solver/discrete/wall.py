@@ -98,6 +98,40 @@ def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> lis
     return found
 
 
+def with_opening(
+    bricks: Sequence[Brick], size: tuple[int, int], bricks_along: tuple[int, int], courses: int
+) -> list[Brick]:
+    """Bricks round an opening that stands on the ground, with a lintel over it.
+
+    Parameters
+    ----------
+    bricks, size
+        Of the whole wall, and elements of a brick, even along it.
+    bricks_along
+        First brick of the lowest course that is left out, and the first behind these.
+    courses
+        Height of the opening. The lintel is the next course, and lies on half a brick at each end.
+    """
+    along, up = size
+    left, right = (number * along for number in bricks_along)
+    half = along // 2
+    lintel = Brick(left - half, courses * up, right - left + 2 * half, up)
+    found = [lintel]
+    for brick in bricks:
+        course, end = brick.y // up, brick.x + brick.columns
+        first, last = left, right
+        if course == courses:
+            first, last = lintel.x, lintel.x + lintel.columns
+        if course > courses or end <= first or brick.x >= last:
+            found.append(brick)
+            continue
+        if brick.x < first:
+            found.append(brick._replace(columns=first - brick.x))
+        if end > last:
+            found.append(brick._replace(x=last, columns=end - last))
+    return sorted(found, key=lambda brick: (brick.y, brick.x))
+
+
 def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
     """All joints of bricks that do not overlap: with the support, beds, and upright ones."""
     x, y, columns, rows = np.array(bricks).T

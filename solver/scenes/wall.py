@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity, redefined
-from solver.discrete.wall import Wall, bonded
+from solver.discrete.wall import Brick, Wall, bonded, with_opening
 from solver.loads import PRESETS, load_path
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
@@ -37,6 +38,23 @@ class WallSettings(PlaneSettings):
         "and ends with a half. stack: joints lie one above the other.",
         group="Body",
         title="Bond",
+    )
+    opening = count(
+        0,
+        (0, 198),
+        (0, 6),
+        "Width of an opening in the middle, in bricks, under a lintel; 0 leaves it out.",
+        group="Body",
+        title="Opening",
+    )
+    opening_height = count(
+        3,
+        (1, 199),
+        (1, 10),
+        "Height of the opening, in courses; the lintel is the next one.",
+        group="Body",
+        title="Height of the opening",
+        applies=lambda settings: settings.opening > 0,
     )
     length = shared.size(0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", "Body")
     height = shared.size(0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", "Body")
@@ -157,9 +175,17 @@ class WallSettings(PlaneSettings):
 
     @property
     def n_substructures(self) -> int:
-        """Number of bricks, halves among them."""
-        halves = self.courses // 2 if self.bond == "running" else 0
-        return int(self.bricks * self.courses + halves)
+        """Number of bricks, halves and a lintel among them."""
+        return len(self._bricks)
+
+    @cached_property
+    def _bricks(self) -> list[Brick]:
+        size = self.elements, self.elements_up
+        bricks = bonded(self.bond, self.bricks, self.courses, size)
+        if not self.opening:
+            return bricks
+        first = (self.bricks - self.opening) // 2
+        return with_opening(bricks, size, (first, first + self.opening), self.opening_height)
 
     @property
     def n_bodies(self) -> int:
@@ -192,8 +218,16 @@ class WallSettings(PlaneSettings):
 
     def check_together(self) -> None:
         """Refuse halves that no element fits, joints without a pair, and too many bricks."""
+        for name, most, beside in (
+            ("opening", self.bricks - 2, f"two of {self.bricks} bricks stay beside it"),
+            ("opening_height", self.courses - 1, f"one of {self.courses} courses is the lintel"),
+        ):
+            value = getattr(self, name)
+            if self.opening and value > most:
+                remedy = "lower it, or build a larger wall"
+                raise SettingError(name, value, f"at most {max(most, 0)}, as {beside}", remedy)
         super().check_together()
-        if self.bond == "running" and self.courses > 1 and self.elements % 2:
+        if (self.opening or (self.bond == "running" and self.courses > 1)) and self.elements % 2:
             remedy = "take an even number, or bond=stack"
             raise SettingError(
                 "elements", self.elements, "an even number, as there are half bricks", remedy
@@ -220,7 +254,7 @@ class WallSettings(PlaneSettings):
         weight = load_path("hold", times, self.duration, self.unit_weight, 1, PRESETS, 1)
         driven = self.path("top_load")
         return Wall(
-            bricks=bonded(self.bond, self.bricks, self.courses, size),
+            bricks=self._bricks,
             element=(self.length / size[0], self.height / size[1]),
             young=self.young,
             poisson=self.poisson,
@@ -247,7 +281,8 @@ class WallSettings(PlaneSettings):
         if self.n_substructures == 1:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
         bond = "in running bond" if self.bond == "running" else "one above the other"
-        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}{pressed}"
+        hole = " round an opening" if self.opening else ""
+        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}{hole}{pressed}"
         rubs = bool(self.friction or self.law.cohesion)
         touch = "and rub on" if rubs else "and slide freely on"
         return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."

@@ -170,6 +170,7 @@ def wall_cases() -> list[Case]:
         case("one brick", bricks=1, courses=1),
         case("one course", courses=1),
         case("one column", bricks=1, bond="stack"),
+        case("an opening", bricks=6, opening=2, opening_height=2),
         case(bond="stack"),
         unsolved("12 x 12 bricks", bricks=12, courses=12, instants=11),
         case("young=1", young=1.0, pressure=1e-4, unit_weight=2e-6),

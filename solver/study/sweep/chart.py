@@ -36,22 +36,27 @@ def plainly(value: float, unit: str) -> str:
     return f"{value:.4g} {unit}".strip().replace("-", "−")
 
 
-def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plainly) -> Chart:
-    """Chart of the reading at a place, whatever has come of the plan so far, in SI."""
+def chart_of(
+    plan: Plan,
+    rows: Sequence[Row],
+    place: int = 0,
+    text: Text = plainly,
+    *,
+    logarithmic: bool | None = None,
+) -> Chart:
+    """Chart of the reading at a place, whatever has come of the plan so far, in SI.
+
+    Its values are on a logarithmic scale as is said, or where they go over several decades.
+    """
     across, *up = plan.axes
     runs, title = _runs(plan, rows, place, text), plan.readings[place].title
     if is_map(plan):
         z = _measure(plan, place)[0] * grid(plan, rows, place).T
-        return Map(
-            title,
-            _setting_axis(across),
-            _setting_axis(up[0]),
-            across.places,
-            up[0].places,
-            _reading_axis(plan, place, z),
-            z,
-            runs,
-        )
+        scale = _reading_axis(plan, place, z, logarithmic)
+        if scale.logarithmic:
+            z = np.where(z > 0.0, z, np.nan)
+        axes = _setting_axis(across), _setting_axis(up[0])
+        return Map(title, *axes, across.places, up[0].places, scale, z, runs)
     curves = []
     for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
         own = np.flatnonzero(runs.hues == hue)
@@ -59,7 +64,7 @@ def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, text: Text = plain
         own = own[np.argsort(runs.x[own])] if across.is_numeric else own[:0]
         y = np.where(runs.holds[own], runs.y[own], np.nan)
         curves.append(PanelCurve(label, runs.x[own], y, hue))
-    x_axis, y_axis = _setting_axis(across), _reading_axis(plan, place, runs.y)
+    x_axis, y_axis = _setting_axis(across), _reading_axis(plan, place, runs.y, logarithmic)
     x_axis = replace(x_axis, limits=_limits(across.places, x_axis))
     y_axis = replace(y_axis, limits=_limits(runs.y, y_axis))
     return Panel(title, x_axis, y_axis, tuple(curves), runs)
@@ -111,7 +116,7 @@ def _filled(chart: Map) -> Map:
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     """Ends of an axis: all values with a margin, from zero where that is as near."""
-    known = values[np.isfinite(values)]
+    known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
         return (0.0, 1.0)
     low, high = float(known.min()), float(known.max())
@@ -165,10 +170,13 @@ def _setting_axis(axis: Varied) -> PanelAxis:
     return PanelAxis(axis.title, axis.unit, axis.logarithmic, names=axis.names)
 
 
-def _reading_axis(plan: Plan, place: int, values: Array) -> PanelAxis:
-    """Axis of a reading: of decades, where it goes over several."""
-    wide = is_wide(values[np.isfinite(values)])
-    return PanelAxis(plan.readings[place].title, _measure(plan, place)[1], wide)
+def _reading_axis(plan: Plan, place: int, values: Array, logarithmic: bool | None) -> PanelAxis:
+    """Axis of a reading; nothing that is zero or less stands on a logarithmic one."""
+    known = values[np.isfinite(values)]
+    if logarithmic is None:
+        logarithmic = is_wide(known)
+    is_logarithmic = logarithmic and bool((known > 0.0).any())
+    return PanelAxis(plan.readings[place].title, _measure(plan, place)[1], is_logarithmic)
 
 
 def _measure(plan: Plan, place: int) -> tuple[float, str]:
