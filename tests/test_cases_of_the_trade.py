@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,6 +14,8 @@ from solver.scenes import CATALOGUE
 from solver.study.cases.case import Case, all_cases, case_from_file
 from solver.study.proof import report
 from solver.study.proof.case import known_case, rows_of
+from solver.study.quantities import reading
+from solver.study.quantities.finished import finished_run
 
 CASES = all_cases()
 OWN = """scene = "bar"
@@ -47,6 +50,34 @@ def written(folder: Path, **changes: str) -> Path:
 def test_the_known_number_of_a_case_comes_out(case: Case) -> None:
     (row,) = rows_of(known_case(case))
     assert row.holds, (row.exact, row.found)
+
+
+CHANGED: list[tuple[str, dict[str, Any], str, float, float]] = [
+    ("lap-joint", {"peak": 4e3}, "dissipation@2", 0.1249 * 56.44e-3, 0.1251 * 56.44e-3),
+    ("lap-joint", {"pressure": 1.2e6}, "dissipation@2", 0.0, 0.51 * 56.44e-3),
+    ("press-fit", {"friction": 0.099}, "slipped_share", 0.98, 1.0),
+    ("shakedown", {"peak": 10.4e3}, "dissipation@5", 1e-3, 1.0),
+    ("cattaneo", {"friction": 0.4}, "dissipation@1", 0.0, 0.4),
+    ("broken-wire", {"pressure": 2500}, "recovery_length", 0.398, 0.402),
+    ("rope-clamp", {"curvature": 0.016}, "wire_slip", 0.0, 0.0),
+    ("rope-clamp", {"curvature": 0.018}, "wire_slip", 1e-9, 1.0),
+    ("rail", {"temperature_load": "triangle"}, "peak_displacement", 17.0e-3, 17.1e-3),
+    ("pile", {"instants": 41, "elements": 200}, "axial_force", -1.131e6, -1.1e6),
+    ("tendon", {"friction": 0.05}, "axial_force@1", 0.0, 2.29e6),
+    ("pull-out", {"length": 0.6}, "peak_friction", 1.2 * 159.1e3, 1.27 * 159.1e3),
+    ("elastic-bond", {"cohesion": 0.84e6}, "slipped_share", 0.0, 0.0),
+    ("elastic-bond", {"cohesion": 0.8e6}, "slipped_share", 1e-9, 1.0),
+    ("crate", {"height": 0.7}, "peak_friction", 0.399 * 840, 0.401 * 840),
+    ("fault", {"shear_stress": 4.8e6}, "slipped_share", 0.51, 1.0),
+]
+"""What the cases say of their first changes: settings, quantity, and both ends of its value."""
+
+
+@pytest.mark.parametrize(("name", "changes", "quantity", "low", "high"), CHANGED)
+def test_the_first_change_does_what_a_case_says(name, changes, quantity, low, high):
+    (case,) = [case for case in CASES if case.name == name]
+    run = finished_run(case.settings.replace(**changes), errors=False, indicators=False)
+    assert low <= reading(quantity)(run) <= high
 
 
 def test_they_join_the_proof() -> None:
