@@ -175,12 +175,12 @@ class CurveDialog:
     def __init__(self, name: str, state: PageState) -> None:
         self._name, self._state = name, state
         definition = state.settings.definitions()[name]
-        self._columns = definition.abscissa, definition.ordinate
+        self._columns, is_path = definition.columns, definition.is_path
         self._is_updating = False
         self.source = ColumnDataSource({"x": [], "y": []})
         self.source.on_change("data", lambda attribute, old, new: self._on_drag())
         self.text = pmui.TextAreaInput(
-            label="Points, or a table pasted here",
+            label=f"{'Points' if is_path else 'Rows'}, or a table pasted here",
             rows=8,
             max_length=1_000_000,
             sizing_mode="stretch_width",
@@ -190,11 +190,14 @@ class CurveDialog:
         self._file = pmui.FileInput(label="Open a table (.csv)", accept=TABLES)
         self._file.param.watch(lambda event: self._take(event.new, self._file.filename), "value")
         self._message = pn.pane.Markdown("", margin=(0, 5))
-        self._figure = self._plot()
-        self.view = dialog(
-            f"{about(definition).title}: points",
+        self._figure = self._plot() if is_path else None
+        plot = (
             pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),
             "Drag a point; tap to add one, tap it and press Backspace to take it away.",
+        )
+        self.view = dialog(
+            f"{about(definition).title}: {'points' if is_path else 'rows'}",
+            *(plot if is_path else ()),
             self.text,
             self._file,
             self._message,
@@ -208,16 +211,18 @@ class CurveDialog:
         points = points_of(settings, self._name) if isinstance(value, str) else value
         units = settings.curve_units(self._name)
         self._units = units_of_points(settings.scene, self._name, units)
-        x, y = np.array(points).T / np.array([[unit.factor] for unit in self._units])
-        is_short = len(x) <= MOST_DRAGGED
+        table = pd.DataFrame(np.array(points) / [unit.factor for unit in self._units])
+        is_short = len(table) <= MOST_DRAGGED
         self._is_updating = True
-        self.source.data = {"x": x, "y": y}
-        self._points.visible = is_short
-        self._figure.toolbar.active_tap = self._tool if is_short else None
-        self._fit(x, y)
+        if self._figure is not None:
+            x, y = table.to_numpy().T
+            self.source.data = {"x": x, "y": y}
+            self._points.visible = is_short
+            self._figure.toolbar.active_tap = self._tool if is_short else None
+            self._fit(x, y)
         self.text.param.update(
-            value=self._table(pd.DataFrame({"x": x, "y": y})) if is_short else "",
-            placeholder="" if is_short else f"{len(x)} points, of a file",
+            value=self._table(table) if is_short else "",
+            placeholder="" if is_short else f"{len(table)} points, of a file",
             error_state=False,
             helper_text="",
         )

@@ -36,7 +36,8 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
     limits = refusal.allowed
     if isinstance(definition, CurveParameter) and limits == allowed(definition):
         # As its widget offers it.
-        table = f"a table of {definition.abscissa} and {definition.ordinate}"
+        *others, last = definition.columns
+        table = f"a table of {', '.join(others)} and {last}"
         limits = f"{', '.join(definition.presets)}, or {table}"
     limits = _in_titles(settings, _in_unit(limits, si, unit))
     refused = _written(refusal.value, unit)

@@ -68,8 +68,8 @@ def unit_of(definition: Parameter) -> Unit:
 
 
 @cache
-def units_of_points(scene: str, name: str, units: tuple[str, str]) -> tuple[Unit, Unit]:
-    """The units in which the points of a path are read, by the scene's defaults.
+def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit, ...]:
+    """The units in which the columns of a table are read, by the scene's defaults.
 
     Those of SI are as the other settings have them (`Settings.curve_units`).
     """
@@ -78,7 +78,7 @@ def units_of_points(scene: str, name: str, units: tuple[str, str]) -> tuple[Unit
     sizes = [max(map(abs, column)) for column in columns]
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)
-    return unit_for(sizes[0], units[0]), unit_for(sizes[1], units[1])
+    return tuple(unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))
 
 
 def typed(text: str, unit: Unit, si: str) -> float:

@@ -121,10 +121,10 @@ class Checked(param.Parameterized):
         """New settings with one changed, and those that could not stand beside it."""
         return self.replace(**{name: value})
 
-    def curve_units(self, name: str) -> tuple[str, str]:
-        """Units of a curve's abscissa and ordinate under the present values."""
+    def curve_units(self, name: str) -> tuple[str, ...]:
+        """Units of the columns of a curve under the present values."""
         # Of the class: param copies what is read of an instance to it, and no pipe takes that.
-        units: tuple[str, str] = type(self).param[name].units
+        units: tuple[str, ...] = type(self).param[name].units
         return units
 
     def applies(self, name: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import Table, read_table
 
-_BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment"}
+_BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment", "N/m": "force"}
 """Quantities of settings whose ordinate is called value."""
 _SETTINGS = {
     name
@@ -34,7 +34,7 @@ class GivenCurve:
     Attributes
     ----------
     points
-        Abscissa and ordinate in the units of the setting.
+        Abscissa and ordinate, or rows of a table, in the units of the setting.
     message
         What was understood.
     """
@@ -47,7 +47,7 @@ def curve_of(
     table: Table,
     definition: CurveParameter,
     name: str,
-    units: tuple[str, str],
+    units: Sequence[str],
 ) -> GivenCurve:
     """Choose the columns of a curve, and read its points.
 
@@ -63,20 +63,20 @@ def curve_of(
     Raises
     ------
     SettingError
-        If no two columns can be chosen, for another unit, what is no number, or an abscissa that
+        If its columns cannot be chosen, for another unit, what is no number, or an abscissa that
         does not increase.
     """
     columns = _chosen(table, definition, name, units)
     sizes = [column.size(unit, table.refuse) for column, unit in zip(columns, units, strict=True)]
     numbers = table.numbers(columns)
     falls = np.flatnonzero(np.diff(numbers[0]) <= 0.0)
-    if len(falls):
+    if definition.is_path and len(falls):
         line = table.rows[falls[0] + 1][0]
         remedy = f"line {line}: {definition.abscissa} must increase from row to row"
         loop = "; of a loop, as force over displacement, give the time of every row"
         raise table.refuse(remedy + (loop if definition.abscissa == "time" else ""))
-    names = definition.abscissa, definition.ordinate
-    message = table.message(columns, names, units, numbers)
+    each = "points" if definition.is_path else "rows"
+    message = table.message(columns, definition.columns, units, numbers, each)
     return GivenCurve((numbers.T * sizes).tolist(), message)
 
 
@@ -84,16 +84,19 @@ def _chosen(
     table: Table,
     definition: CurveParameter,
     name: str,
-    units: tuple[str, str],
-) -> tuple[TableColumn, TableColumn]:
-    """Choose the columns of abscissa and ordinate."""
+    units: Sequence[str],
+) -> Sequence[TableColumn]:
+    """Choose the columns of abscissa and ordinate, or of a table."""
     columns = table.columns
     if not any(c.is_known for c in columns) and not _SETTINGS.intersection(c.key for c in columns):
-        if len(columns) != 2:
-            both = f"{definition.abscissa} and {definition.ordinate}"
-            raise table.refuse(f"it has {len(columns)} columns: name {both} in its first line")
-        return columns[0], columns[1]
+        *others, last = definition.columns
+        if len(columns) != len(others) + 1:
+            names = f"{', '.join(others)} and {last}"
+            raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
+        return columns
     likely = [column for column in columns if column.key == name or column.key not in _SETTINGS]
+    if not definition.is_path:
+        return _each(table, definition.columns, units)
     kinds: Collection[str] = TableColumn(0, name=definition.ordinate).quantities[0]
     kinds = kinds or {_BY_UNIT[unit] for unit in units[1].split(" or ")}
     names = ", ".join(repr(column.name) for column in columns)
@@ -113,6 +116,19 @@ def _chosen(
         remedy = f"its head names no {wanted} (it has {names}): name one of them {name}"
         raise table.refuse(remedy)
     return first, second
+
+
+def _each(table: Table, names: Sequence[str], units: Sequence[str]) -> Sequence[TableColumn]:
+    """Choose a column of every name."""
+    chosen = []
+    for name, unit in zip(names, units, strict=True):
+        rest = [column for column in table.columns if column not in chosen]
+        column = table.find(rest, {name}, unit)
+        if column is None:
+            has = ", ".join(repr(column.name) for column in table.columns)
+            raise table.refuse(f"its head names no {name} (it has {has}): add that column")
+        chosen.append(column)
+    return chosen
 
 
 def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -> dict[str, Table]:

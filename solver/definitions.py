@@ -9,7 +9,7 @@ import copy
 import difflib
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
@@ -19,6 +19,7 @@ import param
 from solver.refusal import RefusedError, plain
 
 Pairs = tuple[tuple[float, float], ...]
+Rows = tuple[tuple[float, ...], ...]
 Parameter = param.Parameter[Any]
 FAR = 1e6
 """Numbers from here on are no limits to anybody's problem, but to the digits of a computer."""
@@ -59,25 +60,42 @@ class About:
 class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
-    `units` are those of both, empty for a pure number.
+    With more than two columns it is a table, whose rows stand in any order. `units` are those of
+    the columns, empty for a pure number; `bounds` their ends, of integers for whole numbers, or
+    empty.
     """
 
-    __slots__ = ["abscissa", "ordinate", "presets", "units"]
+    __slots__ = ["bounds", "columns", "presets", "units"]
 
     def __init__(
         self,
         default: str,
         presets: Iterable[str],
-        abscissa: str,
-        ordinate: str,
-        units: tuple[str, str],
+        columns: Sequence[str],
+        units: Sequence[str],
+        bounds: Sequence[tuple[float, float]] = (),
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
         self.presets = tuple(presets)
-        self.abscissa = abscissa
-        self.ordinate = ordinate
-        self.units = units
+        self.columns = tuple(columns)
+        self.units = tuple(units)
+        self.bounds = tuple(bounds)
+
+    @property
+    def abscissa(self) -> str:
+        """What the first column has."""
+        return str(self.columns[0])
+
+    @property
+    def ordinate(self) -> str:
+        """What the second column has."""
+        return str(self.columns[1])
+
+    @property
+    def is_path(self) -> bool:
+        """Whether it has an abscissa, which increases, and one value."""
+        return len(self.columns) == 2
 
 
 def about(parameter: Parameter) -> About:
@@ -129,7 +147,20 @@ def curve(
     **record: Any,
 ) -> CurveParameter:
     """Path: a preset's name or a table of points."""
-    return CurveParameter(default, presets, abscissa, ordinate, units, **_common(doc, record))
+    columns = abscissa, ordinate
+    return CurveParameter(default, presets, columns, units, **_common(doc, record))
+
+
+def table(
+    default: str,
+    presets: Iterable[str],
+    columns: Mapping[str, tuple[str, tuple[float, float]]],
+    doc: str,
+    **record: Any,
+) -> CurveParameter:
+    """Table: a preset's name or rows, with unit and bounds of each column."""
+    units, bounds = zip(*columns.values(), strict=True)
+    return CurveParameter(default, presets, [*columns], units, bounds, **_common(doc, record))
 
 
 def redefined(
@@ -152,8 +183,12 @@ def redefined(
 def allowed(definition: Parameter) -> str:
     """Words on which values a setting takes."""
     if isinstance(definition, CurveParameter):
-        pairs = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
-        return f"{', '.join(definition.presets)}, or {pairs}"
+        rows = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
+        if not definition.is_path:
+            units = (f" in {unit}" if unit else "" for unit in definition.units)
+            heads = map("".join, zip(definition.columns, units, strict=True))
+            rows = f"rows [[{', '.join(heads)}], ...]"
+        return f"{', '.join(definition.presets)}, or {rows}"
     if isinstance(definition, param.Boolean):
         return "true or false"
     if isinstance(definition, param.Selector):
@@ -218,28 +253,48 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
 
 def _checked_curve(
     definition: CurveParameter, value: object, refuse: Callable[[str], SettingError]
-) -> str | Pairs:
+) -> str | Rows:
     if isinstance(value, str):
         if value not in definition.presets:
             raise refuse("choose a preset, or give a table of points")
         return value
     if not isinstance(value, list | tuple) or not value:
-        raise refuse("give at least one pair")
-    pairs = []
-    for row, pair in enumerate(value, start=1):
-        if not isinstance(pair, list | tuple) or len(pair) != 2:
-            raise refuse(f"row {row} must be a pair of numbers")
-        if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in pair):
-            raise refuse(f"row {row} has an entry that is not a number")
-        if not all(math.isfinite(entry) for entry in pair if isinstance(entry, float)):
-            raise refuse(f"row {row} has an entry that is not finite")
-        if any(abs(entry) > 1e15 for entry in pair):
-            raise refuse(f"row {row} has an entry beyond {plain(1e15)} in size")
-        pairs.append((float(pair[0]), float(pair[1])))
-    for row, (before, after) in enumerate(pairwise(pairs), start=2):
-        if after[0] <= before[0]:
-            raise refuse(f"row {row}: {definition.abscissa} must increase from row to row")
-    return tuple(pairs)
+        raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
+    rows, size = [], len(definition.columns)
+    for number, row in enumerate(value, start=1):
+        if not isinstance(row, list | tuple) or len(row) != size:
+            what = "a pair of numbers" if definition.is_path else f"{size} numbers"
+            raise refuse(f"row {number} must be {what}")
+        if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in row):
+            raise refuse(f"row {number} has an entry that is not a number")
+        if not all(math.isfinite(entry) for entry in row if isinstance(entry, float)):
+            raise refuse(f"row {number} has an entry that is not finite")
+        if definition.bounds:
+            _check_row(definition, number, row, refuse)
+        elif any(abs(entry) > 1e15 for entry in row):
+            raise refuse(f"row {number} has an entry beyond {plain(1e15)} in size")
+        rows.append(tuple(map(float, row)))
+    for number, (before, after) in enumerate(pairwise(rows), start=2):
+        if definition.is_path and after[0] <= before[0]:
+            raise refuse(f"row {number}: {definition.abscissa} must increase from row to row")
+    return tuple(rows)
+
+
+def _check_row(
+    definition: CurveParameter,
+    number: int,
+    row: Sequence[float],
+    refuse: Callable[[str], SettingError],
+) -> None:
+    """Refuse an entry beyond the bounds of its column, and a share of what is counted."""
+    for name, unit, (low, high), entry in zip(
+        definition.columns, definition.units, definition.bounds, row, strict=True
+    ):
+        is_counted = isinstance(low, int)
+        if not low <= entry <= high or (is_counted and entry != int(entry)):
+            kind = "a whole number" if is_counted else "a number"
+            ends = " to ".join(f"{plain(end)} {unit}".strip() for end in (low, high))
+            raise refuse(f"row {number}: {name} is {plain(entry)}, give {kind} from {ends}")
 
 
 def parse(text: str) -> object:

@@ -56,10 +56,12 @@ class Table:
         names: Sequence[str],
         units: Sequence[str],
         numbers: Array,
+        each: str = "points",
     ) -> str:
         """Describe what was understood of columns, with names and units for those that lack them.
 
-        `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named.
+        `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named. `each`
+        is what its lines are called.
         """
         parts = [
             column.message(name, unit)
@@ -70,7 +72,7 @@ class Table:
         ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
         others = [repr(column.name) for column in self.columns if column not in columns]
         passed = f"; passed over: {', '.join(others)}" if others else ""
-        return f"{', '.join(parts)}, {numbers.shape[1]} points, {ends}{passed}"
+        return f"{', '.join(parts)}, {numbers.shape[1]} {each}, {ends}{passed}"
 
     def find(
         self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""

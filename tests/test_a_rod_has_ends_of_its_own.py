@@ -13,6 +13,8 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
+from solver.study.quantities import QUANTITIES
+from solver.study.quantities.finished import finished_run
 
 SOFTER = 1e7
 """Bond of a rod, N/m^2."""
@@ -74,6 +76,14 @@ def test_a_pile_is_dragged_down_to_its_neutral_plane():
     assert 20.0 * (1.0 - (deepest + 0.5) / 800) == pytest.approx(18.069, abs=0.03)
     _, _, along = answer(bar(**PILE, elements=200, instants=41))
     assert along[:, -1].min() < 1.05 * axial[deepest, -1]
+
+
+def test_what_friction_does_not_carry_comes_to_the_other_end():
+    """The reaction of a clamp, and of a spring, is the pull less all friction."""
+    for left in ({"left_end": "held"}, {"left_end": "spring", "left_spring": 1e5}):
+        run = finished_run(bar(peak=2000.0, load="ramp", **left))
+        assert QUANTITIES["left_force"](run) == pytest.approx(-500.0, rel=0.04)
+        assert QUANTITIES["right_force"](run) == 2000.0
 
 
 @pytest.mark.parametrize("left", ["free", "held"])

@@ -49,7 +49,6 @@ GOOD = Outcome(
     behaviour=1e-9,
     error_displacement=1e-9,
     error_force=1e-8,
-    finite=True,
 )
 
 
@@ -68,9 +67,8 @@ def changed(**changes):
         (changed(ending=Ending.STALLED), Verdict.RIGHT),
         (changed(error_force=math.nan), Verdict.WRONG),
         (changed(error_displacement=math.nan), Verdict.WRONG),
-        (changed(finite=False, ending=Ending.DIVERGED), Verdict.WRONG),
         (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
-        (changed(doubt="it is one of several", finite=False), Verdict.WRONG),
+        (changed(doubt="it is one of several", ending=BROKEN), Verdict.WRONG),
         (Outcome(REFUSED, "load = 1 is refused"), Verdict.REFUSED),
         (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG),
         (changed(error_force=0.5, certified=True, residual=1e-13), Verdict.WRONG),

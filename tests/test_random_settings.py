@@ -91,6 +91,20 @@ def paired(values, extent):
     )
 
 
+def of_each(count):
+    """Factors on mu of so many interfaces."""
+    factors = st.lists(sizes(1e-3, 1e3) | st.just(0.0), min_size=count, max_size=count)
+    return factors.map(lambda each: [[n, factor] for n, factor in enumerate(each, start=1)])
+
+
+def lengths(count):
+    """Shares of so many layers, one of them 1."""
+    shares = st.lists(st.floats(1e-3, 1.0), min_size=count - 1, max_size=count - 1)
+    return shares.flatmap(lambda own: st.permutations([1.0, *own])).map(
+        lambda each: [[n, share] for n, share in enumerate(each, start=1)]
+    )
+
+
 def strengths(extent):
     """Points of any factors over slip, the first (0, 1)."""
     slips = st.lists(st.floats(1e-6, 1.0), min_size=1, max_size=5, unique=True).map(sorted)
@@ -103,11 +117,26 @@ def strengths(extent):
     )
 
 
+def constructions():
+    """Rows of a strand of one's own, of any wires."""
+    layer = st.tuples(st.integers(1, 6), sizes(1e-6, 1.0), st.floats(-75.0, 75.0), sizes(1.0, 1e18))
+    core = st.tuples(st.just(1), sizes(1e-6, 1.0), st.just(0.0), sizes(1.0, 1e18))
+    return st.tuples(core, st.lists(layer, min_size=1, max_size=2)).map(
+        lambda rows: [rows[0], *rows[1]]
+    )
+
+
 def values_of(name, definition, extents):
     if isinstance(definition, CurveParameter):
+        if not definition.is_path:
+            return st.sampled_from(definition.presets) | constructions()
         extent = extents[definition.abscissa]
         if name == "strength":
             return st.sampled_from(definition.presets) | strengths(extent)
+        if name == "layer_lengths":
+            return st.sampled_from(definition.presets) | lengths(extent)
+        if name == "friction_factors":
+            return st.sampled_from(definition.presets) | of_each(extent)
         is_section = name == "section_profile"
         points = paired(sizes(*SECTION), extent) if is_section else tables(definition, extent)
         return st.sampled_from(definition.presets) | points
@@ -132,6 +161,8 @@ def with_others(draw, definitions, chosen):
         "position": chosen.get("length", definitions["length"].default),
         "time": chosen.get("duration", definitions["duration"].default),
         "slip": 1e-3,
+        "layer": chosen.get("layers", 1),
+        "interface": chosen.get("layers", 1) - ("construction" not in definitions),
     }
     for name in sorted(some - chosen.keys()):
         chosen[name] = draw(values_of(name, definitions[name], extents))

@@ -22,7 +22,7 @@ from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.study.comparison import Comparison, OtherResults
-from solver.study.quantities.cycles import Fate, cycles_of, ends_of, fate_of, slips_of
+from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of
 from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 
 if TYPE_CHECKING:
@@ -129,23 +129,27 @@ def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
         "energy": floats(found.energy),
         "slip": floats(found.slip[points, -1]),
         "work": floats(found.work[points, -1] / sampler.lengths(name)),
-        "text": _fate_text(fate_of(found)) if slipped else "nothing slips",
+        "text": _fate_text(found) if slipped else "nothing slips",
     }
 
 
-def _fate_text(fate: Fate | None) -> str:
-    if fate is None:
-        return "not settled yet"
-    energy = unit_for(abs(fate.energy), "J")(fate.energy)
-    match fate.word:
+def _fate_text(cycles: LoadCycles) -> str:
+    energy = unit_for(abs(cycles.energy[-1]), "J")(cycles.energy[-1])
+    most = cycles.slip.max(axis=0)
+    match fate_of(cycles):
+        case None:
+            return "not settled yet"
         case "elastic shakedown":
-            return f"elastic shakedown: nothing slips from cycle {fate.since} on"
+            since = len(np.trim_zeros(most, "b")) + 1
+            return f"elastic shakedown: nothing slips from cycle {since} on"
         case "shakedown with slip that dies":
-            return f"slip dies: the last cycle slips {percent(fate.ratio)} of the one before"
+            ratio = percent(most[-1] / most[-2])
+            return f"slip dies: the last cycle slips {ratio} of the one before"
         case "steady slip":
             return f"steady slip: every cycle takes {energy}"
         case _:
-            net = unit_for(abs(fate.net), "m")(abs(fate.net))
+            left = float(np.abs(cycles.net[:, -1]).max())
+            net = unit_for(left, "m")(left)
             return f"ratcheting: every cycle takes {energy} and leaves {net} of slip"
 
 

@@ -99,7 +99,7 @@ class Sampler:
     ) -> Frame:
         """What is shown of an iterate, with the extras that views need."""
         solution = Solution(iterate, list(history), status or CANCELLED)
-        run = FinishedRun(self.settings, solution, bool(self.run.reference), self.loop)
+        run = FinishedRun(self.settings, solution, self.loop)
         kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
         scalars = {n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS}
         return Frame(

@@ -7,7 +7,7 @@ Poisson's effect; K.-O. Papailiou, IEEE Trans. Power Delivery 12, 1997).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -112,6 +112,25 @@ class CrossSection:
             outer += layer.diameter
         return tuple(radii)
 
+    def least_radius(self, layer: int) -> float:
+        """Radius of the helix on which the wires of a layer would touch each other, m.
+
+        Cut across the strand a wire is an ellipse, wider by 1 / cos(alpha) (Costello, chapter 2).
+        """
+        one = self.layers[layer]
+        if one.wires == 1:
+            return 0.0
+        beside = np.tan(0.5 * np.pi - np.pi / one.wires) / np.cos(one.lay)
+        return float(0.5 * one.diameter * np.sqrt(1.0 + beside**2))
+
+    @property
+    def rows(self) -> tuple[tuple[float, float, float, float], ...]:
+        """Wires, diameter, m, lay angle, in degrees, and Young's modulus, Pa, inside out."""
+        return tuple(
+            (float(one.wires), one.diameter, float(f"{np.degrees(one.lay):.12g}"), one.young)
+            for one in (self.core, *self.layers)
+        )
+
     @property
     def diameter(self) -> float:
         """Of the whole strand, m."""
@@ -186,6 +205,26 @@ class CrossSection:
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 
+    def friction_bounds(self, tension: Array, friction: float, factors: Array | None) -> Array:
+        """Friction that the wires of every layer can take, from below and from above.
+
+        Parameters
+        ----------
+        tension
+            Of the strand, shape (n_instants,), N.
+        friction, factors
+            mu, and that of every layer on what it lies on over it, shape (n_layers,); None is 1.
+
+        Returns
+        -------
+        Shape (n_layers, n_instants), N per metre of wire.
+        """
+        below, above = self.line_pressures(tension)
+        if factors is not None:
+            below = factors[:, None] * below
+            above = np.append(factors[1:], 1.0)[:, None] * above
+        return friction * (below + above)
+
 
 def seven_wire() -> CrossSection:
     """Seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
@@ -235,6 +274,15 @@ def conductor() -> CrossSection:
             WireLayer(16, aluminium, ALUMINIUM, third),
         ),
     )
+
+
+def laid(rows: Sequence[Sequence[float]]) -> CrossSection:
+    """Strand of one's own, of rows as `CrossSection.rows` has them."""
+    core, *layers = (
+        WireLayer(int(wires), diameter, young, float(np.radians(lay)))
+        for wires, diameter, lay, young in rows
+    )
+    return CrossSection(core, tuple(layers))
 
 
 CONSTRUCTIONS: Mapping[str, Callable[[int], CrossSection]] = {

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete.cut_rods import substructure_sizes
 from solver.discrete.elements import edge_mass, elastic_matrix
 from solver.discrete.plane import Condensed, Rectangle
@@ -20,6 +21,11 @@ Place = tuple[int, int, int]
 """Column and row of a substructure in its body, and the body."""
 
 
+def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
+    """Where substructures end along bodies, in elements: at the cuts, and where a body ends."""
+    return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
+
+
 class CutStack:
     """The bodies of a stack, cut into substructures.
 
@@ -28,9 +34,11 @@ class CutStack:
     stack
         The bodies.
     nodes
-        Number of every node, shape (bodies, nodes up, nodes along).
+        Number of every node, shape (nodes up, nodes along) for each body.
     positions
         Of all nodes, shape (n_nodes, 2), in lengths of a body.
+    columns
+        Number of substructures along every body.
     parts
         All substructures by their place, body by body and row by row. Equal ones share what is
         condensed; their rows are still to be numbered.
@@ -38,38 +46,49 @@ class CutStack:
 
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
-        columns, rows = (stack.order * number for number in stack.elements)
-        shape = stack.bodies, rows + 1, columns + 1
-        self.nodes = np.arange(np.prod(shape)).reshape(shape)
-        height = stack.height / stack.length
-        x = np.linspace(0.0, 1.0, columns + 1)
-        y = np.arange(stack.bodies)[:, None] * height + np.linspace(0.0, height, rows + 1)
-        everywhere = np.broadcast_arrays(x, y[:, :, None])
-        self.positions = np.stack(everywhere, axis=-1).reshape(-1, 2)
-        self._across, self._up = (
-            stack.order * np.concatenate([[0], np.cumsum(substructure_sizes(number, cuts))])
-            for number, cuts in zip(stack.elements, stack.substructures, strict=True)
-        )
+        (along, up), cuts = stack.elements, stack.substructures
+        spans = [along] * stack.bodies if stack.spans is None else stack.spans
+        height, rows = stack.height / stack.length, stack.order * up
+        x = np.linspace(0.0, 1.0, stack.order * along + 1)
+        self.nodes: list[Indices] = []
+        positions, first = [], 0
+        for body, span in enumerate(spans):
+            y = body * height + np.linspace(0.0, height, rows + 1)
+            everywhere = np.meshgrid(x[: stack.order * span + 1], y)
+            positions.append(np.stack(everywhere, axis=-1).reshape(-1, 2))
+            shape = everywhere[0].shape
+            self.nodes.append(first + np.arange(shape[0] * shape[1]).reshape(shape))
+            first += shape[0] * shape[1]
+        self.positions = np.concatenate(positions)
+        ends = ends_along(along, cuts[0], spans)
+        self.columns = [int(np.searchsorted(ends, span)) + 1 for span in spans]
+        self._across = stack.order * np.append(0, ends)
+        self._up = stack.order * np.append(0, np.cumsum(substructure_sizes(up, cuts[1])))
         self._outlines: dict[tuple[int, int, float], Condensed] = {}
         self._kept: dict[tuple[object, ...], Condensed] = {}
         self.parts = {
             (column, row, body): self._part((column, row, body))
             for body in range(stack.bodies)
             for row in range(stack.substructures[1])
-            for column in range(stack.substructures[0])
+            for column in range(self.columns[body])
         }
 
     def neighbour(self, place: Place, side: str) -> str | Place:
-        """What lies beyond a side: a substructure, "support", or the name of an outer side."""
+        """What lies beyond a side: a substructure, "support", or the name of an outer side.
+
+        That of the end of a shorter body is "end".
+        """
         column, row, body = place
-        columns, rows = self.stack.substructures
+        rows = self.stack.substructures[1]
         if side in ("left", "right"):
             beyond = column + (1 if side == "right" else -1)
-            return (beyond, row, body) if 0 <= beyond < columns else side
+            if 0 <= beyond < self.columns[body]:
+                return beyond, row, body
+            return "end" if 0 < beyond < max(self.columns) else side
         step = 1 if side == "top" else -1
         if 0 <= row + step < rows:
             return column, row + step, body
-        if 0 <= body + step < self.stack.bodies:
+        if 0 <= body + step < self.stack.bodies and column < self.columns[body + step]:
             return column, 0 if step > 0 else rows - 1, body + step
         return "support" if side == "bottom" and self.stack.support is not None else side
 
@@ -104,7 +123,7 @@ class CutStack:
             self._kept[kind] = keep(self._outlines[shape], traces.values())
         return Part(
             condensed=self._kept[kind],
-            nodes=self.nodes[body, y : top + 1, x : right + 1],
+            nodes=self.nodes[body][y : top + 1, x : right + 1],
             body=body,
             traces=traces,
             modulus=shape[2],
@@ -125,13 +144,15 @@ class CutStack:
             return Trace(side, (0,))
         if beyond == "support" or (not isinstance(beyond, str) and beyond[2] != place[2]):
             first = place[0] == 0 and stack.sides["left"].y.prescribed
-            last = place[0] == stack.substructures[0] - 1 and stack.sides["right"].y.prescribed
+            last = place[0] == max(self.columns) - 1 and stack.sides["right"].y.prescribed
             ends = 1 if first else 0, -1 if last else None
             return Trace(side, (0, 1), *ends, has_macro=beyond != "support")
         if not isinstance(beyond, str):
             return Trace(side, has_macro=True)
         if beyond == "right" and stack.spring is not None:
             return Trace(side, (0, 1), 0, 1) if place[1:] == (0, 0) else None
+        if beyond == "end":
+            return None
         sides = enumerate(stack.sides[beyond])
         held = tuple(component for component, given in sides if given.prescribed)
         return Trace(side, held) if held else None

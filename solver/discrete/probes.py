@@ -69,13 +69,14 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
 
 
 def end_rotation(problem: Problem, side: str = "right") -> Probe:
-    """Rotation of the ends of all bodies, counter-clockwise, their mean.
+    """Rotation of the ends of all bodies that reach the side, counter-clockwise, their mean.
 
-    It is what a moment that all bodies share works on, spread over each of them as a linear
+    It is what a moment that they share works on, spread over each of them as a linear
     traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height t.
     """
     inside = _inside(problem)
     first, second, bodies = _edges(inside, side)
+    _, bodies = np.unique(bodies, return_inverse=True)
     y = inside.nodes[:, 1]
     count = int(bodies.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Literal, Self, cast
+from typing import Literal, Self
 
 import numpy as np
 
@@ -20,6 +20,7 @@ SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Where a body force that changes along the rods is shown, and the pressure where anything rubs."""
 SEVERAL = 8
 """Wires up to which the load of each is shown."""
+Side = Literal["left", "right"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,20 +246,8 @@ class Rods:
         Where no end is: what a right end does, or the force that holds it, over what drives.
         """
         side = self.driven_end or "right"
-        end, node = (self.left, 0) if side == "left" else (self.right, -1)
-        rows = problem.interfaces[SIDES[side]].rows
-        weights = np.full(len(rows), 1.0 / len(rows))
-        settled = 0.0 if self.settlement is None else self.settlement[node]
-        moved = Probe(problem.row_dofs[rows], weights, settled)
-        force: Array | Callable[[LoopFields], Array]
-        if end.is_prescribed:
-            held = reaction(problem, SIDES[side])
-            force = lambda fields: held(fields.displacement) / len(rows)  # noqa: E731
-        elif end.displacement is not None:
-            stretched, spring = end.displacement, end.spring
-            force = lambda fields: spring * (stretched - moved(fields.displacement))  # noqa: E731
-        else:
-            force = self.load if side == "right" else np.asarray(end.force)
+        end, moved = self._end(side), self._moved(problem, side)
+        force = self.end_force(problem, side)
         drive = self._drive
         if self.driven_end is None and drive is not None:
             title, unit, values = drive
@@ -270,12 +259,35 @@ class Rods:
         of, up = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
         return Loop((f"{of} displacement", "m"), (up, "N"), moved, force)
 
+    def end_force(self, problem: Problem, side: Side) -> Array | Callable[[LoopFields], Array]:
+        """Mean axial force at the ends of a side, N, positive to the right; or what finds it."""
+        end, rows = self._end(side), problem.interfaces[SIDES[side]].rows
+        if end.is_prescribed:
+            held = reaction(problem, SIDES[side])
+            return lambda fields: held(fields.displacement) / len(rows)
+        if end.displacement is not None:
+            given, spring, moved = end.displacement, end.spring, self._moved(problem, side)
+            return lambda fields: spring * (given - moved(fields.displacement))
+        return np.zeros(len(self.instants)) if end.force is None else end.force
+
+    def _end(self, side: Side) -> End:
+        return self.left if side == "left" else self.right
+
+    def _moved(self, problem: Problem, side: Side) -> Probe:
+        """Mean displacement of the ends of a side, which stand on no support, m."""
+        rows = problem.interfaces[SIDES[side]].rows
+        node = 0 if side == "left" else -1
+        settled = 0.0 if self.settlement is None else self.settlement[node]
+        return Probe(problem.row_dofs[rows], np.full(len(rows), 1.0 / len(rows)), settled)
+
     @property
-    def driven_end(self) -> Literal["left", "right"] | None:
+    def driven_end(self) -> Side | None:
         """The end that is pulled or moved, the right one before the left one, or None."""
-        for side, end in (("right", self.right), ("left", self.left)):
+        sides: tuple[Side, ...] = "right", "left"
+        for side in sides:
+            end = self._end(side)
             if np.any(end.force) if end.displacement is None else np.any(end.displacement):
-                return cast(Literal["left", "right"], side)
+                return side
         return None
 
     @property

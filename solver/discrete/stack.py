@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -91,16 +91,20 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """Equal rectangular bodies on each other; one metre thick.
+    """Rectangular bodies on each other, equally thick; one metre wide.
 
     Attributes
     ----------
     length, height
-        Of one body, m.
+        Of one body, the longest, m.
     bodies
         Their number.
     elements, substructures
-        Of one body, along and up.
+        Of the longest body, along and up.
+    spans
+        Elements along every body, from the left on, of which the longest has `elements[0]`; None
+        where all are as long. What is given on the right holds for the longest, and on top and
+        bottom for all that lies open; there is no support then.
     order
         Of the elements: 1 bilinear, 2 biquadratic.
     macro_degree
@@ -110,7 +114,8 @@ class Stack:
     stiffness
         Young's modulus of every body over `young`, shape (bodies,), where they differ.
     friction
-        Coefficient mu between the bodies, or that of the nodes along them, shape (nodes along,).
+        Coefficient mu between the bodies, that of the nodes along them, shape (nodes along,), or
+        that of each interface, shape (bodies - 1, 1) or (bodies - 1, nodes along).
     support
         Below the lowest body, or None.
     sides
@@ -149,12 +154,30 @@ class Stack:
     spring: Spring | None = None
     tilt: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
+    spans: Sequence[int] | None = None
 
     def __post_init__(self) -> None:
         """Leave free what is not given."""
         free = Given(False, np.zeros_like(self.instants))
         others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
         object.__setattr__(self, "sides", {**self.sides, **others})
+
+    @property
+    def reach(self) -> Array:
+        """Length of every body over that of the longest, shape (bodies,)."""
+        if self.spans is None:
+            return np.ones(self.bodies)
+        return np.asarray(self.spans) / self.elements[0]
+
+    @property
+    def longest(self) -> int:
+        """Number of bodies that reach the right side."""
+        return int(np.count_nonzero(self.reach == 1.0))
+
+    @property
+    def end_force(self) -> Array:
+        """Transverse force of what is given on the right as a traction, (n_instants,), N."""
+        return np.asarray(self.sides["right"].y.mean * self.longest * self.height)
 
     def modulus(self, body: int) -> float:
         """Young's modulus of a body over `young`."""
@@ -172,6 +195,8 @@ class Stack:
             return _shear(self, problem)
         if self.sides["right"].y.prescribed:
             return _deflection(problem)
+        if np.any(self.sides["right"].y.mean):
+            return _deflection(problem, self.end_force)
         rotation, moment = end_rotation(problem), _moment(self)
         return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
 
@@ -192,12 +217,23 @@ class Stack:
             if name == "bottom" and self.support is not None:
                 continue
             for component, given in enumerate(side):
-                yield _given(given, name, component)
+                act = _given(given, name, component)
+                yield act if self.spans is None else replace(act, places=self._open(act))
         if self.body_force is not None:
             size = np.hypot(*self.body_force)
             towards = self.body_force / np.where(size > 0.0, size, 1.0)
             weight = size * self.length * (self.bodies * self.height)
             yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), weight, "N")
+
+    def _open(self, act: Act) -> Array:
+        """Places of what acts on a side, where bodies of other lengths lie open to it."""
+        places, side = act.places.copy(), act.where.partition(" ")[0]
+        for place in places:
+            there = np.flatnonzero(self.reach >= place[0])
+            low, high = there[0] / self.bodies, (there[-1] + 1) / self.bodies
+            ends = {"top": (high, high), "bottom": (low, low)}.get(side, (low, high))
+            place[1] = ends[0] + place[1] * (ends[1] - ends[0])
+        return places
 
     def _holds(self) -> Iterator[Hold]:
         if self.support is not None:
@@ -257,14 +293,16 @@ def _shear_force(fields: LoopFields) -> Array:
     return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
 
 
-def _deflection(problem: Problem) -> Loop:
-    held = reaction(problem, "right")
-    return Loop(
-        ("Deflection of the end", "m"),
-        ("Transverse force", "N"),
-        side_mean(problem, "right", 1),
-        lambda fields: held(fields.displacement),
-    )
+def _deflection(problem: Problem, given: Array | None = None) -> Loop:
+    """Transverse force at the end over its deflection; the force is given, or that which holds."""
+    force: Array | Callable[[LoopFields], Array]
+    if given is None:
+        held = reaction(problem, "right")
+        force = lambda fields: held(fields.displacement)  # noqa: E731
+    else:
+        force = given
+    end = side_mean(problem, "right", 1)
+    return Loop(("Deflection of the end", "m"), ("Transverse force", "N"), end, force)
 
 
 def _moment(stack: Stack) -> Array:
@@ -273,6 +311,6 @@ def _moment(stack: Stack) -> Array:
     A linear traction of an extreme over a height h has the moment extreme h^2 / 6.
     """
     given = stack.sides["right"].x
-    several = stack.bodies * stack.height**2
+    several = stack.longest * stack.height**2
     size = several if given.each_body else stack.bodies * several
     return np.broadcast_to(-size / 6.0 * given.slope, stack.instants.shape)

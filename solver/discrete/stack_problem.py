@@ -95,7 +95,8 @@ def _name(place: Place) -> str:
 
 def _contact(cut: CutStack, body: int) -> Contact:
     """Law of a body on the one below it, or of the lowest on its support."""
-    stack, (columns, rows) = cut.stack, cut.stack.substructures
+    stack, rows = cut.stack, cut.stack.substructures[1]
+    columns = min(cut.columns[max(body - 1, 0) : body + 1])
     above = [cut.parts[column, 0, body] for column in range(columns)]
     upper, weights, macro = lined_up(above, "bottom", stack.macro_degree)
     lower, below = None, np.inf
@@ -104,7 +105,8 @@ def _contact(cut: CutStack, body: int) -> Contact:
         lower = np.concatenate([part.rows["top"] for part in under])
         below = stack.modulus(body - 1)
     spans = [part.nodes[0, part.traces["bottom"].span] for part in above]
-    node = np.concatenate(spans) - cut.nodes[body, 0, 0]
+    node = np.concatenate(spans) - cut.nodes[body][0, 0]
+    x = np.linspace(0.0, stack.length, stack.order * stack.elements[0] + 1)
     touching, points = np.unique(node, return_inverse=True)
     support = None if body else stack.support
     gap = np.zeros(len(node)) if support is None else support.gap[node] / stack.length
@@ -119,7 +121,8 @@ def _contact(cut: CutStack, body: int) -> Contact:
         friction = law.at(along, areas, scales, known=known)
     else:
         mu = stack.friction if support is None else support.friction
-        mu = np.broadcast_to(mu, cut.nodes.shape[2])[node]
+        along_each = np.broadcast_to(mu, (max(stack.bodies - 1, 1), len(x)))
+        mu = along_each[max(body - 1, 0), node]
         friction = law.at(along, areas, scales, friction=mu)
         # Nothing is bonded across a gap.
         friction = replace(friction, bound=friction.bound * (gap <= 0.0)[:, None])
@@ -131,7 +134,7 @@ def _contact(cut: CutStack, body: int) -> Contact:
         normal=normal,
         tangential=friction,
         points=points,
-        positions=np.linspace(0.0, stack.length, cut.nodes.shape[2])[touching],
+        positions=x[touching],
         weights=areas,
         around=Bodies(moduli=(stack.modulus(body), below), depth=stack.height),
         macro=None if lower is None else macro,

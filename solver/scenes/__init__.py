@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from solver.definitions import Pairs
+from solver.definitions import Rows
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop, LoopFields, Structure
 from solver.laws import FrictionLaw
@@ -90,12 +90,12 @@ def exact_of(
     return list(_of_scene(settings).exact(problem, solution))
 
 
-def points_of(settings: Settings, name: str) -> Pairs:
+def points_of(settings: Settings, name: str) -> Rows:
     """Points that stand for the preset of a curve setting: where a table of one's own begins.
 
-    They are linear in between.
+    They are linear in between; or rows, of a table of more columns.
     """
-    return _of_scene(settings).points(name)
+    return _of_scene(settings).rows(name)
 
 
 def left_out(settings: Settings) -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, about, choice, count, curve, quantity
+from solver.definitions import Pairs, Rows, SettingError, about, choice, count, curve, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
 from solver.laws import FrictionLaw, Strength
@@ -251,6 +251,11 @@ class SceneSettings(Settings):
         return Features()
 
     @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces of which each may have its own mu."""
+        return 1
+
+    @property
     def n_nodes(self) -> int:
         """Number of nodes of all bodies."""
         raise NotImplementedError
@@ -358,6 +363,8 @@ class SceneSettings(Settings):
             return (0.0, 1.0), (self.slip_length, last)
         if not isinstance(own, str):
             return own
+        if name == "friction_factors":
+            return tuple((float(number), 1.0) for number in range(1, self.n_interfaces + 1))
         if name.endswith("_profile"):
             return tuple((x * self.length, factor) for x, factor in self.PROFILES[own])
         even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
@@ -366,6 +373,10 @@ class SceneSettings(Settings):
         values = self._along(name, times)
         kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
         return as_points(times[kept], values[kept])
+
+    def rows(self, name: str) -> Rows:
+        """Rows of a table, or points of a curve, or those that stand for its preset."""
+        return self.points(name)
 
     def _along(self, name: str, instants: Array) -> Array:
         curve: str | Pairs = getattr(self, name)

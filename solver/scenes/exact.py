@@ -16,7 +16,12 @@ from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.broken_wire import broken_wire
-from solver.reference.closed_forms.elastic_bodies import HalfPlane, cantilever
+from solver.reference.closed_forms.elastic_bodies import (
+    HalfPlane,
+    TwoLeaves,
+    cantilever,
+    leaf_spring,
+)
 from solver.reference.closed_forms.masing import masing
 from solver.reference.closed_forms.pulled_bar import (
     closed_form,
@@ -180,7 +185,15 @@ def exact_layers(
     given = body.sides["right"].y
     if body.state != "stress" or (body.stiffness is not None and np.ptp(body.stiffness)):
         return
-    if not given.prescribed:
+    if not given.prescribed and not np.any(given.mean):
+        return
+    leaves = _two_leaves(body)
+    if leaves is not None:
+        if given.prescribed:
+            yield ExactCurve("loop", given.mean, masing(given.mean, leaves.force))
+        else:
+            grown = masing(body.end_force, leaves.deflection)
+            yield ExactCurve("loop", grown, body.end_force)
         return
     law = body.friction_law
     apart = law == replace(FrictionLaw(), strength=law.strength) and not np.any(body.friction)
@@ -189,6 +202,42 @@ def exact_layers(
             return
         if any(solution.contact(name).status.any() for name in problem.rubbing):
             return
-    beams, height = (body.bodies, body.height) if apart else (1, body.bodies * body.height)
+    beams, height = (1.0 * body.bodies, body.height) if apart else (1.0, body.bodies * body.height)
+    if body.spans is not None:
+        graduated = _leaves(body) if apart else None
+        if graduated is None:
+            return
+        beams = graduated
     stiffness = beams * cantilever(body.length, height, body.young, body.poisson)
-    yield ExactCurve("loop", given.mean, stiffness * given.mean)
+    if given.prescribed:
+        yield ExactCurve("loop", given.mean, stiffness * given.mean)
+    else:
+        yield ExactCurve("loop", body.end_force / stiffness, body.end_force)
+
+
+def _two_leaves(body: Stack) -> TwoLeaves | None:
+    """Closed form of two equal leaves under a pressure that stays while they are bent."""
+    bent, given = body.sides["right"].y.mean, body.sides["top"].y
+    acts = np.flatnonzero(bent)
+    is_plain = body.friction_law == FrictionLaw() and np.any(body.friction) and not given.prescribed
+    if body.bodies != 2 or body.spans is not None or not is_plain or not len(acts):
+        return None
+    pressure, mu = -given.mean[max(acts[0] - 1, 0) :], np.asarray(body.friction)
+    if np.ptp(pressure) or np.ptp(mu) or pressure[0] <= 0.0:
+        return None
+    size = body.length, body.height, body.young, body.poisson
+    return TwoLeaves(*size, float(mu.flat[0] * pressure[0]))
+
+
+def _leaves(body: Stack) -> float | None:
+    """Stiffness of a leaf spring over that of its longest leaf; None where no closed form is known.
+
+    Leaves grow shorter the way they are bent, and nothing else presses them together.
+    """
+    bent, steps = body.sides["right"].y.mean, np.diff(body.reach)
+    grows = np.all(steps < 0.0) and np.all(bent >= 0.0)
+    falls = np.all(steps > 0.0) and np.all(bent <= 0.0)
+    pressed = any(not body.sides[side].y.is_zero for side in ("top", "bottom"))
+    if pressed or not (grows or falls):
+        return None
+    return leaf_spring(np.sort(body.length * body.reach)[::-1])

@@ -9,7 +9,17 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import choice, count, curve, quantity, redefined
+from solver.arrays import Array
+from solver.definitions import (
+    Pairs,
+    SettingError,
+    choice,
+    count,
+    curve,
+    quantity,
+    redefined,
+)
+from solver.discrete.cut_stack import ends_along
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
 from solver.discrete.structure import LoopFields
@@ -25,7 +35,7 @@ class LayersSettings(PlaneSettings):
     """Settings of the stack; by default it is pressed, then its end is bent up and down."""
 
     scene = "layers"
-    LOADS: ClassVar = ("deflection", "moment")
+    LOADS: ClassVar = ("deflection", "moment", "force")
     PEAKS: ClassVar = {"pressure_load": "pressure", "pull_load": "pull"}
     PATH = "bend_load"
     across = "thickness"
@@ -72,9 +82,10 @@ class LayersSettings(PlaneSettings):
     )
     bending = choice(
         "deflection",
-        ["deflection", "moment"],
+        ["deflection", "moment", "force"],
         "What bends the stack at its right end. deflection: a given transverse displacement. "
-        "moment: a given moment, which all layers share.",
+        "moment: a given moment, force: a transverse force, which all layers that reach there "
+        "share.",
         group="Load",
         title="Bending",
     )
@@ -98,16 +109,27 @@ class LayersSettings(PlaneSettings):
         unit="N·m/m",
         applies=lambda settings: settings.bends_by("moment"),
     )
+    force = quantity(
+        1e3,
+        (-1e15, 1e15),
+        (-1e4, 1e4),
+        "Largest force on the right end, up, for a metre of thickness.",
+        group="Load",
+        title="Force at the end",
+        unit="N/m",
+        applies=lambda settings: settings.bends_by("force"),
+    )
     bend_load = curve(
         "delayed",
         PRESETS,
         "time",
         "value",
-        ("s", "m or N·m/m"),
-        "Deflection or moment over time: a preset, or points (s, m or N·m/m).",
+        ("s", "m or N·m/m or N/m"),
+        "Deflection, moment or force over time: a preset, or points (s, m or N·m/m or N/m).",
         group="Load",
         title="Path of the bending",
     )
+    friction_factors = shared.friction_factors("between two layers, from the lowest on")
     layers = count(
         4,
         (2, 50),
@@ -119,6 +141,19 @@ class LayersSettings(PlaneSettings):
     length = shared.size(0.5, (0.05, 5.0), "Length", "Length of the stack.", "Body")
     thickness = shared.size(
         0.01, (0.001, 0.1), "Thickness of a layer", "Thickness of one layer.", "Body"
+    )
+    layer_lengths = curve(
+        "equal",
+        ("equal", "graduated"),
+        "layer",
+        "share",
+        ("", ""),
+        "Length of each layer, from the lowest on, as a share of the length, to the nearest "
+        "element. equal: 1. graduated: each is shorter than the one below it by the same step, as "
+        "in a leaf spring. Or points (layer, share), one for each. What is given at the right end "
+        "holds for the longest; pressure acts on all that lies open.",
+        group="Body",
+        title="Length of each layer",
     )
     contrast = quantity(
         1.0,
@@ -139,10 +174,67 @@ class LayersSettings(PlaneSettings):
         return self.layers
 
     @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces between the layers."""
+        return self.layers - 1
+
+    @property
+    def spans(self) -> tuple[int, ...] | None:
+        """Elements along every layer; None where all are as long."""
+        if self.layer_lengths == "equal":
+            return None
+        shares = np.array([share for _, share in self.points("layer_lengths")])
+        return tuple(np.maximum(np.rint(shares * self.elements), 1).astype(int).tolist())
+
+    def points(self, name: str) -> Pairs:
+        """Points of a curve setting, or those that stand for its preset."""
+        if name != "layer_lengths" or not isinstance(self.layer_lengths, str):
+            return super().points(name)
+        count, falls = self.layers, self.layer_lengths == "graduated"
+        return tuple((layer + 1.0, 1.0 - falls * layer / count) for layer in range(count))
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all layers."""
+        if self.spans is None:
+            return super().n_nodes
+        return sum(self.order * span + 1 for span in self.spans) * self.nodes[1]
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures in all."""
+        if self.spans is None:
+            return super().n_substructures
+        ends = ends_along(self.elements, self.substructures, self.spans)
+        columns = sum(int(np.count_nonzero(ends <= span)) for span in self.spans)
+        return columns * int(self.substructures_up)
+
+    @property
     def features(self) -> Features:
         """The loop of a moment is over a rotation."""
         is_over_displacement = self.bending != "moment"
         return super().features._replace(loop_is_over_displacement=is_over_displacement)
+
+    def _factors(self) -> Array | None:
+        return shared.factors_of(self, self.n_interfaces)
+
+    def check_together(self) -> None:
+        """Refuse lengths and factors on mu that are not one for each layer or interface, too."""
+        self._check_lengths()
+        super().check_together()
+        self._factors()
+
+    def _check_lengths(self) -> None:
+        if isinstance(self.layer_lengths, str):
+            return
+        shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
+        if shares.min() <= 0.0 or shares.max() != 1.0:
+            raise SettingError(
+                "layer_lengths",
+                self.layer_lengths,
+                "shares above 0, the largest of them 1",
+                "give each length over that of the longest layer",
+            )
 
     def bends_by(self, kind: str) -> bool:
         """Whether the end is bent so, as far as a preset and not a table says."""
@@ -150,37 +242,44 @@ class LayersSettings(PlaneSettings):
 
     def _behind(self) -> Mapping[str, str]:
         end = "moment" if self.bending == "moment" and self.moment else "pull"
-        own = {"right x": end, "right y": "deflection"}
+        across = "force" if self.bending == "force" else "deflection"
+        own = {"right x": end, "right y": across}
         return {"top y": "pressure", "bottom y": "pressure", **own}
 
-    def curve_units(self, name: str) -> tuple[str, str]:
+    def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values."""
         if name != "bend_load":
             return super().curve_units(name)
-        return "s", "m" if self.bending == "deflection" else "N·m/m"
+        return "s", {"deflection": "m", "moment": "N·m/m", "force": "N/m"}[self.bending]
 
     def size_of(self, path: str) -> float:
         """Largest value that a preset of a path over time reaches."""
         if path == "bend_load":
-            return float(self.moment if self.bending == "moment" else self.deflection)
+            return float(getattr(self, self.bending))
         return super().size_of(path)
 
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""
-        rest = np.zeros(self.n_instants)
+        rest, stack = np.zeros(self.n_instants), self.stack()
+        factors, friction = self._factors(), stack.friction
+        stack = replace(stack, spans=self.spans)
         held, free = Given(True, rest), Given(False, rest)
         pressing = self.path("pressure_load")
         pull = self.path("pull_load")
         if self.bending == "deflection":
             bent = Given(True, self.path("bend_load"))
             right = Side(Given(False, pull), bent)
+        elif self.bending == "force":
+            traction = self.path("bend_load") / (stack.longest * self.thickness)
+            right = Side(Given(False, pull), Given(False, traction))
         else:
             # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
             moment = self.path("bend_load")
-            extreme = -6.0 * moment / (self.layers * self.thickness**2)
+            extreme = -6.0 * moment / (stack.longest * self.thickness**2)
             right = Side(Given(False, pull, extreme, each_body=True), free)
         return replace(
-            self.stack(),
+            stack,
+            friction=friction if factors is None else factors[:, None] * friction,
             stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
             sides={
                 "left": Side(held, held),
@@ -197,7 +296,8 @@ class LayersSettings(PlaneSettings):
     def sentence(self) -> str:
         """The stack in a sentence."""
         kind = "steel" if is_steel(self.young) else "elastic"
-        layers = f"{counted(self.layers).capitalize()} {kind} layers"
+        lengths = "" if self.layer_lengths == "equal" else " of different lengths"
+        layers = f"{counted(self.layers).capitalize()} {kind} layers{lengths}"
         pressed = "are pressed together and rub" if self.pressure else "lie on each other"
         bent, pull = self.path("bend_load"), self.path("pull_load")
         ends = acting(bent, "bent up", "bent down", "bent up and down")

@@ -10,8 +10,8 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection
+from solver.definitions import Rows, SettingError, choice, count, curve, quantity, table
+from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.helical_wire import HelicalWire, RopeWire
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope
@@ -20,9 +20,18 @@ from solver.laws import FrictionLaw
 from solver.loads import PRESETS, PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
+from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.words import acting, counted
+
+TIGHT = 1.01
+"""Radius that wires beside each other need, over that of their helix, up to which they fit: those
+of real strands touch each other, and are pressed a little out of round."""
+LEAST_LAY = 0.1
+"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of diameters."""
+MOST_WIRES = 1000
+"""Of a construction of one's own."""
 
 
 class RopeSettings(SceneSettings):
@@ -33,12 +42,20 @@ class RopeSettings(SceneSettings):
     PEAKS: ClassVar = {"load": "curvature", "tension_load": "tension"}
     BEHIND: ClassVar = {"right y": "curvature", "right x": "tension"}
 
-    construction = choice(
+    construction = table(
         "mooring",
-        list(CONSTRUCTIONS),
+        CONSTRUCTIONS,
+        {
+            "wires": ("", (1, 500)),
+            "diameter": ("m", (1e-6, 1.0)),
+            "lay angle": ("°", (-75.0, 75.0)),
+            "modulus": ("Pa", (1.0, 1e18)),
+        },
         "mooring: a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire. "
         "seven-wire: prestressing strand of 15.7 mm. conductor: an overhead conductor of 28 mm, 26 "
-        "aluminium wires on 7 of steel (Drake).",
+        "aluminium wires on 7 of steel (Drake). Or rows, inside out: wires, their diameter (m), "
+        "lay angle (°, negative the other way round) and Young's modulus (Pa); the first row is "
+        "the core, 1 wire of 0°.",
         group="Strand",
         title="Construction",
     )
@@ -132,6 +149,9 @@ class RopeSettings(SceneSettings):
     friction = shared.friction(
         "mu of the wires on what they lie on; those beside each other do not rub"
     )
+    friction_factors = shared.friction_factors(
+        "between a layer and what it lies on, from the core outwards"
+    )
     elements = count(
         60,
         (2, 20_000),
@@ -159,7 +179,13 @@ class RopeSettings(SceneSettings):
     @cached_property
     def section(self) -> CrossSection:
         """The strand's cross-section."""
-        return CONSTRUCTIONS[self.construction](self.layers)
+        if isinstance(self.construction, str):
+            return CONSTRUCTIONS[self.construction](self.layers)
+        return _section_of(self.construction)
+
+    def rows(self, name: str) -> Rows:
+        """Rows of the construction, or points of a curve, or those that stand for its preset."""
+        return self.section.rows if name == "construction" else super().rows(name)
 
     @property
     def is_clamped(self) -> bool:
@@ -176,6 +202,14 @@ class RopeSettings(SceneSettings):
     def n_substructures(self) -> int:
         """Number of substructures in all."""
         return self.n_wires * int(self.substructures)
+
+    @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces between layers, and of the first with the core."""
+        return len(self.section.layers)
+
+    def _factors(self) -> Array | None:
+        return shared.factors_of(self, self.n_interfaces)
 
     @property
     def n_nodes(self) -> int:
@@ -198,6 +232,7 @@ class RopeSettings(SceneSettings):
         """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
         super().check_together()
         shared.refuse_negative(self, "tension_load", "tension", " N")
+        self._factors()
         if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
             raise SettingError(
                 "fall_off",
@@ -220,8 +255,7 @@ class RopeSettings(SceneSettings):
         there is.
         """
         curvature, tension = self.path("load"), self.path("tension_load")
-        below, above = self.section.line_pressures(tension)
-        bounds = self.friction * (below + above)
+        bounds = self.section.friction_bounds(tension, self.friction, self._factors())
         if self.tension_load == "steady":
             bounds = bounds[:, :1]
         wires = [
@@ -282,9 +316,11 @@ class RopeSettings(SceneSettings):
         """Closed form of a strand that is bent alike all along, under a tension that stays."""
         tension = self.path("tension_load")
         is_known = not self.is_clamped and self.law == FrictionLaw()
-        if not is_known or np.ptp(tension) or not tension[0] or not self.friction:
+        factors = self._factors()
+        rubs = self.friction and (factors is None or factors.all())
+        if not is_known or np.ptp(tension) or not tension[0] or not rubs:
             return None
-        return BentStrand(self.section, self.friction, float(tension[0]))
+        return BentStrand(self.section, self.friction, float(tension[0]), factors)
 
     def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
         """Moment over the curvature, where a closed form is known."""
@@ -292,6 +328,41 @@ class RopeSettings(SceneSettings):
         if strand is not None:
             curvature = self.path("load")
             yield ExactCurve("loop", curvature, strand.along(curvature))
+
+
+def _section_of(rows: Rows) -> CrossSection:
+    """Cross-section of one's own.
+
+    Raises
+    ------
+    SettingError
+        For what is no core in a layer of wires or more, and wires that have no room.
+    """
+
+    def refuse(remedy: str) -> SettingError:
+        allowed = "rows (wires, diameter, lay angle, modulus) from the core outwards"
+        return SettingError("construction", rows, allowed, remedy)
+
+    if rows[0][0] != 1 or rows[0][2]:
+        raise refuse("row 1 is the core: give it 1 wire and a lay angle of 0°")
+    if len(rows) == 1:
+        raise refuse("it has a core alone: add a row for a layer of wires around it")
+    wires = sum(int(count) for count, *_ in rows)
+    if wires > MOST_WIRES:
+        raise refuse(f"it has {wires} wires: give at most {MOST_WIRES}")
+    for row, (_, _, lay, _) in enumerate(rows[1:], start=2):
+        if abs(lay) < LEAST_LAY:
+            raise refuse(f"row {row}: give a lay angle of {plain(LEAST_LAY)}° or more in size")
+    section = laid(rows)
+    for layer, radius in enumerate(section.radii):
+        needed, (count, diameter, lay, _) = section.least_radius(layer), rows[layer + 1]
+        if needed > TIGHT * radius:
+            raise refuse(
+                f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do not fit beside "
+                f"each other on a circle of {2.0 * np.pi * radius:.3g} m, they need "
+                f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more inside"
+            )
+    return section
 
 
 ROPE = Entry(

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 
+import numpy as np
 import param
 
+from solver.arrays import Array
 from solver.definitions import CurveParameter, SettingError, count, curve, quantity
 from solver.discrete.rods import Rods
 from solver.discrete.rope import Rope
@@ -91,6 +93,21 @@ def friction_profile(body: str, presets: Iterable[str] = PROFILES) -> CurveParam
     )
 
 
+def friction_factors(which: str) -> CurveParameter:
+    """Define how mu varies from interface to interface."""
+    return curve(
+        "same",
+        ("same",),
+        "interface",
+        "factor",
+        ("", ""),
+        f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
+        "each, numbered from 1 on.",
+        group="Contact",
+        title="μ of each interface",
+    )
+
+
 def pressure(which: str, slider: float) -> param.Number[float]:
     """Define the pressure of rods, per length, up to that value on its slider."""
     return quantity(
@@ -140,6 +157,48 @@ def refuse_negative(settings: Settings, name: str, what: str, unit: str = "") ->
     if not isinstance(table, str) and min(value for _, value in table) < 0.0:
         allowed = f"{what}s of at least 0{unit}"
         raise SettingError(name, table, allowed, f"raise the negative {what}")
+
+
+def factors_of(settings: Settings, count: int) -> Array | None:
+    """Factor on mu of so many interfaces, shape (count,); None where mu is the same.
+
+    Raises
+    ------
+    SettingError
+        For a table that lacks an interface, or has others, and for factors below zero.
+    """
+    name = "friction_factors"
+    if isinstance(getattr(settings, name), str):
+        return None
+    refuse_negative(settings, name, "factor")
+    return of_each(settings, name, count, "interface")
+
+
+def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
+    """Values of a table that has one for each of so many, shape (count,).
+
+    Parameters
+    ----------
+    settings, name
+        Whose, and which of its tables.
+    count, what
+        Their number, and what they are.
+
+    Raises
+    ------
+    SettingError
+        For a table that lacks one, or has others.
+    """
+    table = getattr(settings, name)
+    numbers, values = np.array(table).T
+    if not np.array_equal(numbers, np.arange(1, count + 1)):
+        raise SettingError(
+            name,
+            table,
+            f"{count} pairs, one for each {what}",
+            f"there are {len(table)}: number each {what} from 1 to {count}",
+        )
+    return np.asarray(values)
 
 
 def ever_coarser(structure: S | None) -> Iterator[S]:

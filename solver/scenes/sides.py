@@ -128,7 +128,7 @@ class SideSettings(PlaneSettings):
         mean = sign * self.path(f"{side}_{component}_load")
         return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
 
-    def curve_units(self, name: str) -> tuple[str, str]:
+    def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values: those of a side are as it is given."""
         side, _, component = name.removesuffix("_load").partition("_")
         if side not in LOADED_SIDES:

@@ -204,7 +204,7 @@ class WallSettings(PlaneSettings):
         driven = "displacement" if self.top == "moved" else "traction"
         return {"top x": driven, "top y": "pressure", "body": "unit_weight"}
 
-    def curve_units(self, name: str) -> tuple[str, str]:
+    def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values."""
         if name != "top_load":
             return super().curve_units(name)

@@ -85,17 +85,21 @@ class BentStrand:
         Coefficient of friction mu, above 0.
     tension
         N, above 0.
+    factors
+        On mu of every layer and what it lies on, shape (n_layers,), above 0; None where it is the
+        same.
     """
 
     section: CrossSection
     friction: float
     tension: float
+    factors: Array | None = None
 
     @cached_property
     def layers(self) -> tuple[BentWire, ...]:
         """One wire of each layer, inside out."""
-        below, above = self.section.line_pressures(np.array([self.tension]))
-        bounds = self.friction * (below + above)[:, 0]
+        tension = np.array([self.tension])
+        bounds = self.section.friction_bounds(tension, self.friction, self.factors)[:, 0]
         return tuple(
             BentWire(self.section.helix(number), float(bound))
             for number, bound in enumerate(bounds)

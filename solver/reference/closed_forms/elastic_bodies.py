@@ -113,3 +113,86 @@ def cantilever(length: float, height: float, young: float, poisson: float) -> fl
     bending = length**3 / (3.0 * young * height**3 / 12.0)
     shear = length / (SHEAR_FACTOR * height * young / (2.0 * (1.0 + poisson)))
     return 1.0 / (bending + shear)
+
+
+@dataclass(frozen=True)
+class TwoLeaves:
+    """Two equal leaves, clamped at one end and pressed together evenly, under a force at the other.
+
+    Shear between beams that stick is the same all along, so all slips at once. (L. E. Goodman, J.
+    H. Klumpp, J. Appl. Mech. 23, 421, 1956.)
+
+    Attributes
+    ----------
+    length, height
+        Of a leaf, m.
+    young, poisson
+        E, Pa, and nu, in plane stress.
+    strength
+        Friction mu p between them, Pa.
+    """
+
+    length: float
+    height: float
+    young: float
+    poisson: float
+    strength: float
+
+    @property
+    def first_slip(self) -> float:
+        """Force at which they slip as they are first bent, N/m."""
+        return 4.0 / 3.0 * self.strength * self.height
+
+    @property
+    def stiffnesses(self) -> tuple[float, float]:
+        """Force for a unit of deflection, as one beam and as two, N/m for a metre."""
+        given = self.young, self.poisson
+        one = cantilever(self.length, 2.0 * self.height, *given)
+        return one, 2.0 * cantilever(self.length, self.height, *given)
+
+    def deflection(self, force: float) -> float:
+        """Deflection under a force that has grown from zero, m."""
+        (stuck, apart), stick = self.stiffnesses, min(force, self.first_slip)
+        return stick / stuck + (force - stick) / apart
+
+    def force(self, deflection: float) -> float:
+        """Force under a deflection that has grown from zero, N/m."""
+        stuck, apart = self.stiffnesses
+        stick = min(deflection, self.first_slip / stuck)
+        return stick * stuck + (deflection - stick) * apart
+
+    def energy(self, peak: float) -> float:
+        """What friction takes in a cycle between -peak and peak of the force, J/m."""
+        stuck, apart = self.stiffnesses
+        slips = max(peak - self.first_slip, 0.0)
+        return 4.0 * self.first_slip * slips * (1.0 / apart - 1.0 / stuck)
+
+
+def leaf_spring(lengths: Array) -> float | None:
+    """End force of graduated leaves for a unit of deflection, over that of the longest alone.
+
+    Leaves are clamped together, and lie on each other without friction or pressure. Each longer
+    one presses on the end of the next alone, as long as the force bends it that way: beams whose
+    deflections agree there (S. Timoshenko, Strength of Materials II, 1956, on leaf springs).
+
+    Parameters
+    ----------
+    lengths
+        The longest first, each shorter than the one before, shape (n_leaves,), m.
+
+    Returns
+    -------
+    None where two leaves come apart, so that others touch.
+    """
+    ends = np.append(lengths, 0.0)
+    # Deflections, times E I, of a leaf under a force at its end: there, and where the next ends.
+    own = ends[:-1] ** 3 / 3.0
+    beside = ends[1:] ** 2 * (3.0 * ends[:-1] - ends[1:]) / 6.0
+    # At the end of each but the first: of the leaf above, less of its own.
+    matrix = np.diag(2.0 * own[1:]) - np.diag(beside[1:-1], 1) - np.diag(beside[1:-1], -1)
+    pushed = np.zeros(len(lengths) - 1)
+    pushed[:1] = beside[0]
+    forces = np.linalg.solve(matrix, pushed)
+    if np.any(forces < 0.0):
+        return None
+    return float(own[0] / (own[0] - np.sum(forces[:1]) * beside[0]))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import chain
 from pathlib import Path
@@ -31,13 +31,10 @@ class Finding:
         One sentence with the numbers in it.
     holds
         Whether they bear out the claim.
-    values
-        Numbers by name.
     """
 
     text: str
     holds: bool
-    values: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,11 +62,6 @@ class PaperFigure:
     def heading(self) -> str:
         """Number and title."""
         return f"Fig. {self.number}: {self.title}"
-
-    @property
-    def values(self) -> dict[str, float]:
-        """All numbers of the findings, by name."""
-        return dict(chain.from_iterable(finding.values.items() for finding in self.findings))
 
     @property
     def verdict(self) -> str:

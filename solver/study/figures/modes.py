@@ -75,7 +75,6 @@ def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
         f"Modes that leave at most 10/1/0.1 % of a substructure's friction force: {words}. All "
         f"would be {len(parts[0].values)}.",
         3 * max(one_percent[:2]) <= min(one_percent[2:]),
-        {f"modes_{number}": count for number, count in enumerate(one_percent, start=1)},
     )
 
 
@@ -87,7 +86,6 @@ def _as_a_front(parts: Sequence[Decomposition]) -> Finding:
         f"In substructures 3 to 5 the singular values 1 to 5, over the first, are {low:.2f} to "
         f"{high:.2f} times 1/(2n − 1), that of a front of constant speed.",
         low >= 0.5 and high <= 1.5,
-        {"front_low": low, "front_high": high},
     )
 
 
@@ -110,12 +108,11 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
         )
         for order in (1, 3, 5)
     )
-    values = {order: float(np.abs(alike[order - 1])) for order in (1, 3, 5)}
-    words = ", ".join(f"{value:.3f}" for value in values.values())
+    values = [float(np.abs(alike[order - 1])) for order in (1, 3, 5)]
+    words = ", ".join(f"{value:.3f}" for value in values)
     likeness = Finding(
         f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}.",
-        min(values.values()) >= ALIKE,
-        {f"likeness_{order}": value for order, value in values.items()},
+        min(values) >= ALIKE,
     )
     return PaperFigure(
         6,
@@ -159,8 +156,6 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
         f"displacement; 1 % takes {counts[0]} modes, where the friction force takes {counts[1]} of "
         f"its {len(force.values)}.",
         left[3] <= 0.01,
-        {f"left_by_{rank}": share for rank, share in left.items()}
-        | {"modes_displacement": counts[0], "modes_force": counts[1]},
     )
     return PaperFigure(
         7,
@@ -193,8 +188,8 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
         "With sorting and downsizing, the first three PGD modes of the displacement correlate well "
         "with the first three SVD modes.",
         (
-            _correlation(exact, sorted_, "sorted", "orthonormalised in order"),
-            _correlation(exact, kept, "kept", "as the iteration keeps them"),
+            _correlation(exact, sorted_, "orthonormalised in order"),
+            _correlation(exact, kept, "as the iteration keeps them"),
             _reduced_errors(runs),
         ),
         f"5 substructures, PGD at its default settings, iterate {last.number}; dotted: the SVD "
@@ -223,14 +218,13 @@ def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
     return curves
 
 
-def _correlation(exact: Decomposition, modes: Array, name: str, words: str) -> Finding:
+def _correlation(exact: Decomposition, modes: Array, words: str) -> Finding:
     """Correlation of modes, shape (n_points, n), with the SVD modes of the same order."""
     values = np.abs(exact.correlations(modes))
     shown = ", ".join(f"{value:.3f}" for value in values)
     return Finding(
         f"Correlation of PGD with SVD modes 1, 2, 3, {words}: {shown}.",
         bool(values.min() >= ALIKE),
-        {f"{name}_{order}": float(value) for order, value in enumerate(values, start=1)},
     )
 
 
@@ -248,9 +242,4 @@ def _reduced_errors(runs: PaperRuns) -> Finding:
         f"{last.error_force:.1%}. In substructure {len(modes)} an SVD takes {best} modes for "
         f"10/1/0.1 % of the displacement alone, {best_force} for the friction force alone.",
         last.error_displacement <= 0.01,
-        {
-            "largest_basis": max(modes),
-            "error_displacement": last.error_displacement,
-            "error_force": last.error_force,
-        },
     )

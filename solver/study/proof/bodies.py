@@ -8,7 +8,12 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.contact_groups import NO_SLIP
-from solver.reference.closed_forms.elastic_bodies import HalfPlane, cantilever
+from solver.reference.closed_forms.elastic_bodies import (
+    HalfPlane,
+    TwoLeaves,
+    cantilever,
+    leaf_spring,
+)
 from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     slip_under_growing_strength,
@@ -25,6 +30,11 @@ PILE = (
     "Eng. 12, 1978: a pile slides where friction ends, and tips about its toe"
 )
 BEAM = "J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997, section 12: Timoshenko's beam"
+GOODMAN = (
+    "L. E. Goodman, J. H. Klumpp, Analysis of slip damping with reference to turbine-blade "
+    "vibration, J. Appl. Mech. 23, 421-429, 1956"
+)
+LEAVES = "From first principles: beams whose deflections agree where the shorter ones end"
 DEFLECTION = 1e-4
 STEPS = 6
 """Instants of a quarter of a cycle of shear."""
@@ -83,6 +93,8 @@ def body_cases() -> list[KnownCase]:
         KnownCase(caught, SLOPE, 1e-7, "incline", slope, _tilted),
         _leaves(are_glued=False),
         _leaves(are_glued=True),
+        _two_leaves(),
+        _graduated(),
         _shoe(),
         *map(_driven_by_fluid, (0.1, 0.3, 0.5, 0.7, 0.9)),
         _growing_strength(),
@@ -170,6 +182,47 @@ def _leaves(*, are_glued: bool) -> KnownCase:
 
     title = "three layers that friction glues" if are_glued else "three layers without friction"
     return KnownCase(title, BEAM, 5e-3, "layers", values, numbers)
+
+
+def _two_leaves() -> KnownCase:
+    """Two leaves under a force that goes to twice that of first slip, back and forth."""
+    leaves = TwoLeaves(0.5, 0.01, 210e9, 0.0, 0.3 * 2e6)
+    peak = 2.0 * leaves.first_slip
+    values = {
+        **{"layers": 2, "length": 0.5, "thickness": 0.01, "plane": "stress", "poisson": 0.0},
+        **{"elements": 32, "instants": 41, "pressure_load": [[0.0, 2e6]], "bending": "force"},
+        "bend_load": [[0.0, 0.0], [0.2, peak], [0.6, -peak], [1.0, peak]],
+    }
+
+    def numbers(answer: Answer) -> Iterator[Number]:
+        loop = loop_of(answer.settings, answer.problem)
+        bent, cycle = loop.displacement(answer.fields.displacement), answer.settings.times() >= 0.2
+        force = answer.settings.path("bend_load")
+        energy = abs(float(np.trapezoid(force[cycle], bent[cycle])))
+        yield "energy of a cycle", "J/m", leaves.energy(peak), energy
+        yield "largest deflection", "m", leaves.deflection(peak), float(bent.max())
+
+    return KnownCase("spring of two leaves", GOODMAN, 1e-2, "layers", values, numbers)
+
+
+def _graduated() -> KnownCase:
+    """Three leaves of which each is shorter, on each other without friction or pressure."""
+    values = {
+        **{"layers": 3, "length": 0.5, "thickness": 0.005, "plane": "stress", "friction": 0.0},
+        **{"layer_lengths": "graduated", "pressure": 0.0, "elements": 48, "instants": 3},
+        **{"bending": "force", "force": 100.0, "bend_load": "ramp"},
+    }
+
+    def numbers(answer: Answer) -> Iterator[Number]:
+        factor = leaf_spring(np.array([3.0, 2.0, 1.0]))
+        assert factor is not None
+        exact = factor * cantilever(0.5, 0.005, answer.settings.young, answer.settings.poisson)
+        loop = loop_of(answer.settings, answer.problem)
+        bent = float(loop.displacement(answer.fields.displacement)[-1])
+        yield "stiffness", "N/m", exact, 100.0 / bent
+
+    title = "leaf spring whose leaves touch at their ends"
+    return KnownCase(title, LEAVES, 5e-3, "layers", values, numbers)
 
 
 def _shoe() -> KnownCase:

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
+from solver.discrete.rods import Rods, Side
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
-from solver.scenes import features_of, kind_of, law_of
+from solver.scenes import features_of, kind_of, law_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
@@ -74,6 +75,31 @@ def axial_force(run: FinishedRun, at: float | None) -> float:
         return axial_force_at(run, int(np.abs(times - at * times[-1]).argmin()))
     force = AxialForce(run.problem)(run.iterate.displacement)
     return float(force.flat[np.abs(force).argmax()])
+
+
+def _end_force(run: FinishedRun, side: Side) -> float:
+    """Largest axial force at an end of a rod, N, positive to the right."""
+    rods = structure_of(run.settings)
+    assert isinstance(rods, Rods)
+    given = rods.end_force(run.problem, side)
+    force = given if isinstance(given, np.ndarray) else given(run.iterate)
+    return float(force[np.abs(force).argmax()])
+
+
+def _is_rod(settings: Settings) -> bool:
+    return kind_of(settings) == "rod"
+
+
+@quantity("Largest force at the left end", "N", applies=_is_rod)
+def left_force(run: FinishedRun) -> float:
+    """Largest force that pulls or holds the left end, N, positive to the right."""
+    return _end_force(run, "left")
+
+
+@quantity("Largest force at the right end", "N", applies=_is_rod)
+def right_force(run: FinishedRun) -> float:
+    """Largest force that pulls or holds the right end, N, positive to the right."""
+    return _end_force(run, "right")
 
 
 @quantity("Largest slip", "m")

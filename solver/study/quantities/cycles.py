@@ -64,8 +64,6 @@ class LoadCycles:
     ----------
     ends
         Instants at which they begin, and the last one ends, n_cycles + 1 of them.
-    energy
-        What friction takes in each, shape (n_cycles,), J.
     slip
         That of every point in each, all to and fro added up while it is in contact, shape
         (n_points, n_cycles), m.
@@ -80,7 +78,6 @@ class LoadCycles:
     """
 
     ends: list[int]
-    energy: Array
     slip: Array
     net: Array
     work: Array
@@ -89,6 +86,11 @@ class LoadCycles:
 
     def __len__(self) -> int:
         return len(self.energy)
+
+    @property
+    def energy(self) -> Array:
+        """What friction takes in each, shape (n_cycles,), J."""
+        return np.asarray(self.work.sum(axis=0))
 
 
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
@@ -101,13 +103,11 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     slip, work = np.concatenate(slips), np.concatenate(works)
     rubbed = np.where(np.abs(iterate.status) == 1, np.abs(slip), 0.0)
     first = ends[0] if ends else iterate.problem.n_instants - 1
-    works_of_cycles = _summed(work, ends)
     return LoadCycles(
         ends=ends,
-        energy=works_of_cycles.sum(axis=0),
         slip=_summed(rubbed, ends),
         net=_summed(slip, ends),
-        work=works_of_cycles,
+        work=_summed(work, ends),
         before=rubbed[:, : first + 1].sum(axis=1),
         is_repeated=_is_repeated(settings, ends),
     )
@@ -194,34 +194,8 @@ def _summed(values: Array, ends: list[int]) -> Array:
     return np.stack(parts, axis=-1) if parts else np.zeros((*values.shape[:-1], 0))
 
 
-@dataclass(frozen=True)
-class Fate:
-    """What becomes of slip.
-
-    Attributes
-    ----------
-    word
-        For it.
-    since
-        First cycle from which on nothing slips, from 1; None where slip goes on.
-    ratio
-        Largest slip of any point in the last cycle over that in the cycle before; NaN where nothing
-        slipped then.
-    net
-        Slip that the last cycle leaves, at the point where it leaves most, m.
-    energy
-        What friction takes in the last cycle, J.
-    """
-
-    word: Word
-    since: int | None
-    ratio: float
-    net: float
-    energy: float
-
-
-def fate_of(cycles: LoadCycles) -> Fate | None:
-    """What becomes of slip.
+def fate_of(cycles: LoadCycles) -> Word | None:
+    """What becomes of slip, in a word.
 
     None where that is not settled: with fewer than three cycles, cycles that are not alike, slip
     that still changes, or no slip ever.
@@ -231,28 +205,14 @@ def fate_of(cycles: LoadCycles) -> Fate | None:
     most = cycles.slip.max(axis=0)
     if not most.any() and not cycles.before.any():
         return None
-    slipping = np.flatnonzero(most)
-    ceased = int(slipping[-1]) + 2 if len(slipping) else 1
-    since = ceased if ceased <= len(cycles) else None
-    word = "elastic shakedown" if since is not None else _word(cycles, most)
-    if word is None:
-        return None
-    ratio = most[-1] / most[-2] if most[-2] else np.nan
-    place = np.abs(cycles.net[:, -1]).argmax()
-    net, energy = cycles.net[place, -1], cycles.energy[-1]
-    return Fate(word, since, float(ratio), float(net), float(energy))
-
-
-def _word(cycles: LoadCycles, most: Array) -> Word | None:
-    """Word for slip that goes on in the last cycle."""
+    if not most[-1]:
+        return "elastic shakedown"
     net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
     if np.abs(net[-1]) > ONE_WAY * most[-1] and _settled(net[None]):
         return "ratcheting"
     if most[-1] <= DIES * most[-2] and _limit(most[-3:]) <= TENDS * most[-3]:
         return "shakedown with slip that dies"
-    if _settled(cycles.slip):
-        return "steady slip"
-    return None
+    return "steady slip" if _settled(cycles.slip) else None
 
 
 def _settled(values: Array) -> bool:

@@ -41,8 +41,6 @@ class FinishedRun:
 
     Attributes
     ----------
-    has_errors
-        Whether its records hold distances to a reference.
     loop
         As the scene shows it, where that is at hand: in the plane it takes a solution to make one.
     was_warm
@@ -51,7 +49,6 @@ class FinishedRun:
 
     settings: Settings
     solution: Solution
-    has_errors: bool
     loop: Loop | None = None
     was_warm: bool = False
 
@@ -128,7 +125,7 @@ def finished_run(
         if reference is not None and reference.converged.all():
             distance = distance_to(reference, problem)
     if before is not None and (near := neighbour(problem, settings, before)) is not None:
-        return FinishedRun(settings, near, has_errors=False, was_warm=True)
+        return FinishedRun(settings, near, was_warm=True)
     solution = solve(
         problem,
         method_of(settings),
@@ -137,7 +134,7 @@ def finished_run(
         spent=spent,
         cancelled=cancelled,
     )
-    return FinishedRun(settings, solution, distance is not None)
+    return FinishedRun(settings, solution)
 
 
 def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:

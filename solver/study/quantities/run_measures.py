@@ -36,12 +36,13 @@ def _until(column: str, title: str, unit: str, field: str, words: str) -> Quanti
     """What a run spends until an error is as small as it is asked to be."""
 
     def of(run: FinishedRun, at: float | None) -> float:
-        if not run.has_errors:
+        errors = [(entry, getattr(entry, f"error_{field}")) for entry in run.solution.records]
+        if all(math.isnan(error) for _, error in errors):
             return math.nan
-        iterates = (entry for entry in run.solution.records if not entry.is_answer)
-        reached = (entry for entry in iterates if getattr(entry, f"error_{field}") <= (at or 0.0))
-        first = next(reached, None)
-        return math.inf if first is None else float(getattr(first, column))
+        for entry, error in errors:
+            if error <= (at or 0.0) and not entry.is_answer:
+                return float(getattr(entry, column))
+        return math.inf
 
     name = f"{'iterations' if column == 'iteration' else column}_to_{field}"
     full = f"{title} to an error of the {words} of"

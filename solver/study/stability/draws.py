@@ -17,7 +17,7 @@ from numpy.random import Generator
 
 from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, points_of
 from solver.settings import Settings
 from solver.study.stability.case import NOT_WRONG, Case
 from solver.study.stability.random_loads import LOADS
@@ -49,6 +49,8 @@ AS_THEY_ARE = {"wall": {"pressure_load"}}
 """Those of a scene that stay at their defaults: bricks that are lifted hang on nothing."""
 INSTANTS_A_CYCLE = 4
 """At least, of what is drawn: more cycles take more instants than there is room for."""
+COUNTED = "layers", "wires", "construction"
+"""Settings that say how many interfaces there are."""
 NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
 CHANGED = 0.15
@@ -134,6 +136,13 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         often = _often(name, about(definition).group, mixed)
         if generator.random() < often:
             values[name] = _drawn(name, definition, generator)
+    if "friction_factors" in values:
+        some = {name: values[name] for name in COUNTED if name in values}
+        each = points_of(kind.checked(some), "friction_factors")
+        values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
+    if "layer_lengths" in values and generator.random() < 0.5:
+        shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
+        values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
     if "elements_up" in definitions:
         _stretch(kind.across, values, definitions, generator)
     defaults = {name: definition.default for name, definition in definitions.items()}
@@ -210,6 +219,8 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
             return _strength(generator)
         if definition.abscissa == "position" and generator.random() < 0.4:
             return _profile(name, generator)
+        if not definition.is_path and generator.random() < 0.4:
+            return _construction(generator)
         return str(generator.choice(definition.presets))
     if isinstance(definition, param.Boolean):
         return bool(generator.random() < 0.5)
@@ -244,6 +255,20 @@ SPECIAL: dict[str, Callable[[Generator], float]] = {
     "accuracy": lambda generator: log_uniform(generator, 1e-5, 0.1),
     "tolerance": lambda generator: log_uniform(generator, 1e-12, 1.0),
 }
+
+
+def _construction(generator: Generator) -> list[list[float]]:
+    """A core, and a layer or two of wires around it with room to spare."""
+    rows = [[1, float(generator.uniform(2e-3, 8e-3)), 0.0, 2e11]]
+    around = rows[0][1]
+    for _ in range(int(generator.integers(1, 3))):
+        diameter, lay = generator.uniform(0.3, 1.0) * rows[-1][1], generator.uniform(5.0, 30.0)
+        room = np.pi * (around + diameter) * np.cos(np.radians(lay))
+        most = max(int(0.95 * room / diameter), 1)
+        wires, sign = int(generator.integers(1, most + 1)), generator.choice([-1.0, 1.0])
+        rows.append([wires, float(diameter), float(sign * lay), log_uniform(generator, 1e9, 1e12)])
+        around += 2.0 * diameter
+    return rows
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:

@@ -59,8 +59,6 @@ class Outcome:
         thickness have one of 3e-7. Measured where that of a certified solution is above rounding.
     doubt
         Why the reference is not the one solution, or empty.
-    finite
-        Whether all fields are.
     """
 
     ending: str
@@ -76,7 +74,6 @@ class Outcome:
     residual: float = math.nan
     floor: float = 0.0
     doubt: str = ""
-    finite: bool = True
 
 
 def run(scene: str, values: Mapping[str, object]) -> Outcome:
@@ -100,7 +97,7 @@ def _measured(problem: Problem, solution: Solution) -> Outcome:
     """Compare a solution with the reference, and with the equations if it is certified."""
     iterate, status = solution.iterate, solution.status
     if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
-        return Outcome(status.ending, status.advice, iterations=iterate.number, finite=False)
+        return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
     reference, doubt = _reference(problem)
     distance = None if reference is None else distance_to(reference, problem)
     residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
@@ -148,7 +145,7 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Ver
     force, displacement
         Errors of contact force and displacement up to which the answer is right.
     """
-    if outcome.ending == BROKEN or not outcome.finite or not outcome.advice:
+    if outcome.ending == BROKEN or not outcome.advice:
         return Verdict.WRONG
     if outcome.ending == REFUSED:
         return Verdict.REFUSED

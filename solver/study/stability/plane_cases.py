@@ -88,16 +88,25 @@ def layers_cases() -> list[Case]:
         **{"layers": 3, "instants": 17, "max_iterations": 600},
     }
     case, unsolved = cases_with("layers", common), cases_with("layers", common, UNSOLVED)
+    force = {"bending": "force", "force": 1e4}
+    leaves = {**force, "layer_lengths": "graduated"}
+    one_element = {**force, "layer_lengths": ((1.0, 0.04), (2.0, 1.0), (3.0, 0.5))}
+    greased = ((1.0, 33.0), (2.0, 0.0))
     return [
         unsolved("as it is", quick=True),
         unsolved(contrast=1e6, quick=True),
         unsolved(contrast=1e-6),
         unsolved(friction=0.0),
         case(friction=10.0, expected=UNCLEAR),
+        case("friction 10, and none above", UNCLEAR, friction_factors=greased),
         unsolved("thickness / length 0.001", thickness=5e-4),
         case(layers=2),
         unsolved(layers=20, elements=12, instants=9),
         unsolved(bending="moment", moment=1e3),
+        unsolved(**force),
+        unsolved("leaves that are pressed", quick=True, **leaves),
+        unsolved("leaves that come apart", pressure=0.0, **leaves),
+        unsolved("a leaf of one element", **one_element),
         unsolved(pressure=0.0),
         unsolved(young=1.0, pressure=1e-5),
         unsolved(young=1e18, pressure=1e13),

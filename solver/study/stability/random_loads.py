@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from solver.discrete.cross_section import CONSTRUCTIONS
+from solver.scenes.rope import RopeSettings
 from solver.scenes.sides import AT_REST, COMPONENTS, LOADED_SIDES, PRESCRIBED
 
 SMALLEST, LARGEST = 0.03, 10.0
@@ -96,8 +96,9 @@ def layers_loads(values: Values, generator: Generator) -> Sizes:
         "pressure_load": pressure,
         "deflection": bent * _share(generator),
         "moment": moment * _share(generator),
+        "force": carried * height / 1.5 * _share(generator),
     }
-    loads["bend_load"] = loads["deflection" if values["bending"] == "deflection" else "moment"]
+    loads["bend_load"] = loads[values["bending"]]
     if generator.random() < 0.3:
         loads["pull"] = carried * length / height * _share(generator)
     return loads
@@ -105,7 +106,8 @@ def layers_loads(values: Values, generator: Generator) -> Sizes:
 
 def rope_loads(values: Values, generator: Generator) -> Sizes:
     """The tension of the rope, and how far it is bent: by where its outer wires slip first."""
-    section = CONSTRUCTIONS[values["construction"]](values["layers"])
+    given = {name: values[name] for name in ("construction", "layers")}
+    section = RopeSettings.checked(given).section
     tension = section.stiffness * 10.0 ** generator.uniform(-4.0, -2.0)
     helix = section.helix(len(section.layers) - 1)
     strain = tension / section.stiffness

@@ -16,6 +16,11 @@ from solver.study.stability.case import (
 )
 
 RAMP = {"load": "ramp"}
+OWN_ROPE = (
+    *((1.0, 2e-3, 0.0, 1e9), (3.0, 3e-3, 45.0, 2e11), (20.0, 1e-3, -10.0, 7e10)),
+    (1.0, 4e-3, 60.0, 1e12),
+)
+"""A soft core, layers with room beside their wires, and a wire that is wound about them."""
 FREE = {"left_end": "free", "right_end": "free"}
 MOVED = {"left_end": "free", "right_end": "spring", "right_displacement": 0.01}
 JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
@@ -150,6 +155,7 @@ def rope_cases() -> list[Case]:
         case(friction=0.0),
         unsolved(friction=1e-9),
         case(friction=1e6),
+        unsolved("none on the core", layers=2, friction_factors=((1.0, 0.0), (2.0, 1.0))),
         case(tension=0.0, fall_off=0.2),
         case(tension=1e12, fall_off=0.2),
         case("tension shaken", tension_load="shaken"),
@@ -159,6 +165,7 @@ def rope_cases() -> list[Case]:
         case("bent within 1e-4 of the length", fall_off=6e-5),
         case("bent within a thousand lengths", fall_off=600.0),
         unsolved("aluminium on steel", construction="conductor", bending="uniform"),
+        unsolved("a rope of one's own", quick=True, construction=OWN_ROPE),
         case("91 wires", layers=5, instants=11),
         unsolved(substructures=1),
         case("substructures as many as elements", substructures=32),

@@ -212,7 +212,7 @@ def sweep(
             for future in wait(under_way, PATIENCE, FIRST_COMPLETED).done:
                 number = under_way.pop(future)
                 try:
-                    row = _row(future, number, len(plan.readings))
+                    row = _row(future, number, len(plan.of))
                 except BrokenProcessPool:
                     tries[number] += 1
                     if tries[number] > TRIES:
