@@ -163,7 +163,7 @@ def known_case(case: Case) -> KnownCase:
 
     def numbers(answer: Answer) -> Iterator[Number]:
         assert answer.solution is not None
-        found = asked(FinishedRun(answer.settings, answer.solution, has_errors=False))
+        found = asked(FinishedRun(answer.settings, answer.solution))
         yield asked.title, asked.unit or "-", case.known, found
 
     settings, source = case.settings, f"{case.formula}. {case.how} {case.source}"
