@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import panel as pn
 import pytest
 
 from app.cases import CasePanel
 from app.frame import Frame
-from app.lessons.catalogue import CASES, PENDING, settings_of
+from app.lessons.catalogue import CASES, LESSONS, PENDING, readings_of, settings_of
+from app.lessons.panel import LessonPanel
 from app.live import Card
 from app.messages import Needs
 from app.state import PageState, default_settings
@@ -76,7 +79,21 @@ def test_the_runs_own_number_stands_beside_the_known_one(frame: Frame) -> None:
     assert "known before the change **56.44 mJ**, this run **…**" in words_of(panel)
 
 
-def test_another_scene_or_a_lesson_ends_the_case() -> None:
+def test_a_page_is_in_a_lesson_or_in_a_case() -> None:
+    state = PageState(default_settings("bar"))
+    player: Any = SimpleNamespace(play=lambda until: None, stop=lambda: None)
+    lessons = LessonPanel(state, player, lambda: None, lambda: None)
+    cases = panel_of(state)
+    for _ in range(2):
+        lessons.open("leaf-spring")
+        assert (state.case, cases.view.visible) == ("", False)
+        assert state.readings == readings_of(LESSONS["leaf-spring"])
+        cases.open(NAME)
+        assert (state.lesson, lessons.view.visible) == ("", False)
+        assert state.readings == [CASES[NAME].quantity.name]
+
+
+def test_another_scene_ends_the_case() -> None:
     state = PageState(settings_of(CASES[NAME]), case=NAME)
     panel = panel_of(state)
     state.choose_scene("rope")

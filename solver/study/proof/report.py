@@ -22,7 +22,7 @@ from solver.study.proof.case import (
 )
 from solver.study.proof.rods import rod_cases
 
-HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<28} {'deviation':>9} {'allowed':>8}"
+HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<52} {'deviation':>9} {'allowed':>8}"
 COLUMNS = (
     *("holds", "part", "case", "solver", "quantity", "unit", "known", "ours", "deviation"),
     *("allowed", "mesh", "source", "address"),
@@ -50,7 +50,7 @@ def cases() -> list[KnownCase]:
 def line(row: ProofRow) -> str:
     """One row of the console's table."""
     return (
-        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.quantity:<28} "
+        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.quantity:<52} "
         f"{row.deviation:9.1e} {row.case.allowed:8.0e}"
     )
 
