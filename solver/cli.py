@@ -27,10 +27,10 @@ from solver.files import (
     summary,
 )
 from solver.latin import Ending, Solution, solve, solve_in_slabs
-from solver.latin.run_cost import RunCost, run_cost
-from solver.reference.choice import reference_of
+from solver.latin.cost import RunCost, run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
 from solver.remarks import print_tables, remarks_before, warn

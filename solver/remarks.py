@@ -14,7 +14,7 @@ from solver.discrete.rigid_stack import is_upright
 from solver.discrete.small_strain import beyond_small_strain
 from solver.discrete.stack import Stack
 from solver.latin import Iterate
-from solver.latin.run_cost import run_cost
+from solver.latin.cost import run_cost
 from solver.laws import OPEN
 from solver.scenes import discretise, left_out, structure_of
 from solver.scenes.method import method_of

@@ -13,7 +13,7 @@ from solver.definitions import SettingError
 from solver.disk import read_bytes, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
-from solver.latin.run_cost import run_cost
+from solver.latin.cost import run_cost
 from solver.lessons.lesson import check
 from solver.lessons.reading import lesson_from_file
 from solver.remarks import prepared, print_tables

@@ -9,8 +9,8 @@ import numpy as np
 
 from solver.discrete.rods import End
 from solver.latin import iterations, solve
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

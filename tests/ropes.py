@@ -6,8 +6,8 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.discrete.rope import Rope
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.bent_strand import BentStrand
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes.rope import RopeSettings
 

@@ -16,7 +16,6 @@ from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.latin import Auto, Ending, Latin, Stop, solve
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     fronts,
@@ -24,6 +23,7 @@ from solver.reference.closed_forms.fluid_driven_slip import (
     spread,
     stress_ahead,
 )
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise, exact_of
 from solver.scenes.fault import FaultSettings

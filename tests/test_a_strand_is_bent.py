@@ -18,10 +18,9 @@ from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import CutWires, cut_at, stress_at, stress_ranges, wire_stresses
 from solver.files import result_arrays
 from solver.latin import Auto, Latin, Stop
-from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.closed_forms.bent_strand import BentWire
 from solver.reference.contact import IncrementalContact
-from solver.reference.incremental import IncrementalRod
+from solver.reference.incremental import IncrementalRod, incremental_solver, reference_of
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of

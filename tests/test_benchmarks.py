@@ -13,8 +13,8 @@ from benchmarks.sparse_newton import SparseNewton
 
 from solver.discrete.problem import Problem
 from solver.latin import iterations, solve
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

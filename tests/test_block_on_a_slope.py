@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from solver.definitions import SettingError
 from solver.latin import solve
 from solver.laws import Component, Contact, Unilateral
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise, loop_of
 from solver.scenes.incline import InclineSettings
 from solver.scenes.method import method_of

@@ -13,7 +13,7 @@ from solver.discrete.plane_parts import Part, Trace, keep, lined_up, number_rows
 from solver.discrete.problem import Scales
 from solver.latin import Ending
 from solver.laws import Bodies, Component, Contact, Dirichlet, FrictionLaw, Unilateral
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 
 SIZE, TIMES = 0.25, np.linspace(0.0, 1.0, 5)
 PIER, LINTEL = (2, 4), (10, 2)

@@ -16,10 +16,9 @@ from contact_problems import (
 )
 
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import determinate_forces
-from solver.reference.incremental import Interrupted
+from solver.reference.incremental import Interrupted, reference_of
 
 SMALL = 1e-10
 

@@ -9,8 +9,8 @@ import pytest
 
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings

@@ -11,7 +11,7 @@ from refusals import assert_names, refusal
 from ropes import exact_of, moment_of, settings_of, solved
 
 from solver.files import settings_from_command
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 
 LAYERS: dict[str, Any] = {"elements": 16, "instants": 17, "layers": 4}

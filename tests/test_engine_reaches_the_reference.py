@@ -11,8 +11,8 @@ from bars import SMALL, options, relative, sample, table
 
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import latin_indicator
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 

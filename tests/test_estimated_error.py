@@ -26,8 +26,8 @@ from solver.latin import (
     status,
     stop,
 )
-from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from plane import lengths, solved
 
-from solver.reference.choice import reference_of
+from solver.reference.assembly import jumps
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
-from solver.reference.glued import jumps
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 

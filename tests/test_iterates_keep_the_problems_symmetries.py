@@ -11,7 +11,7 @@ from bars import SMALL, boundary_of, options, relative, sample, table
 from solver.latin import Iterate, iterations
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Contact, Dirichlet, Neumann
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

@@ -9,10 +9,11 @@ import pytest
 from bars import measured
 
 from solver.latin import Ending, directions, iterations
-from solver.latin.directions import CALM, TRIAL, sliding_share
+from solver.latin.automatic_k import sliding_share
+from solver.latin.directions import CALM, TRIAL
 from solver.loads import PRESETS
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -128,11 +129,9 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
 
 
 @pytest.mark.parametrize("harm", [1.0, 1e-9])
-@pytest.mark.parametrize("acceleration", ["none", "anderson"])
-def test_a_run_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, acceleration, harm):
+def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, harm):
     monkeypatch.setattr(directions, "SLIDING", harm * directions.SLIDING)
-    monkeypatch.setattr("solver.latin.anderson.MEMORY", 4)
-    chosen = updating(**{**FAST, "acceleration": acceleration})
+    chosen = updating(**{**FAST, "acceleration": "none"})
     problem = discretise(chosen)
     straight = sample(chosen, CALM + TRIAL + 20)
     for place in (2, CALM, CALM + 1, CALM + TRIAL):

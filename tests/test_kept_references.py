@@ -13,9 +13,8 @@ from small_scenes import SMALL
 
 from app.worker.references import ReferenceCache
 from solver.discrete import Problem
-from solver.reference.choice import reference_of
-from solver.reference.fingerprint import fingerprint
-from solver.reference.incremental import Reference
+from solver.reference.incremental import Reference, reference_of
+from solver.reference.solution import fingerprint
 from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 

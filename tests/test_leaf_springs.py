@@ -15,8 +15,8 @@ from solver.definitions import SettingError
 from solver.discrete.cut_stack import CutStack
 from solver.discrete.stack import Stack
 from solver.files import settings_from_command
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.elastic_bodies import TwoLeaves, cantilever, leaf_spring
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, exact_of, loop_of, structure_of
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of

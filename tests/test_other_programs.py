@@ -12,8 +12,8 @@ import pytest
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
-from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings

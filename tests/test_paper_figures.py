@@ -17,8 +17,8 @@ from solver import report_commands
 from solver.cli import main
 from solver.latin import Ending, iterations, solve
 from solver.reduction.svd import against_front
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

@@ -11,8 +11,8 @@ from solver.definitions import SettingError
 from solver.latin import Ending, solve
 from solver.loads import PRESSURES
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.fluid_driven_slip import spread
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, left_out, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.base import EVERY_POINT, THINNED

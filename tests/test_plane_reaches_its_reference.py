@@ -13,8 +13,8 @@ from plane import whole_force_error
 from solver.discrete.stack import Given, Side
 from solver.latin import iterations
 from solver.laws import OPEN
-from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from solver import Latin, solve
 from solver.discrete.rods import Rods
 from solver.latin import Paper, Stop
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.contact import IncrementalContact
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings

@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 
 from solver.definitions import CurveParameter, SettingError
 from solver.latin import Ending, solve
-from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 

@@ -32,8 +32,8 @@ from solver.latin import (
 )
 from solver.latin.blocks import Blocks
 from solver.latin.iteration import Iteration
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings

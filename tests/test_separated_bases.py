@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from solver.latin import Ending, Solution, iterations, solve
 from solver.reduction.basis import SeparatedBasis
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

@@ -19,8 +19,8 @@ from solver.latin import (
     solve,
 )
 from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 

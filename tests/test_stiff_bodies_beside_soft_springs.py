@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings
@@ -135,7 +135,7 @@ def course_of(values, n):
     """Error of the contact force, iteration by iteration."""
     problem = discretise(values)
     distance = distance_to(reference_of(problem), problem)
-    found = islice(iterations(problem, method_of(values), resumable=False), n)
+    found = islice(iterations(problem, method_of(values)), n)
     return np.array([distance.of_friction_force(one) for one in found])
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from solver.definitions import SettingError
 from solver.latin import Ending, solve
-from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings

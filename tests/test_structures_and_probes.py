@@ -13,7 +13,7 @@ from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
 from solver.discrete.probes import reaction, side_mean
 from solver.latin import Iterate, iterations
-from solver.reference.fingerprint import fingerprint
+from solver.reference.solution import fingerprint
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.discrete.wall import Wall, bonded, with_opening
+from solver.discrete.bricks import bonded, with_opening
+from solver.discrete.wall import Wall
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import FrictionLaw, Strength
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
 from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE
@@ -148,6 +149,8 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
         found = reference_of(made.discretise())
         assert bool(found.converged[-1]) is stands
         assert found.converged[:5].all()
+    collapse = collapse_of(made.discretise())
+    assert collapse.tips is (limit < friction)
 
 
 @pytest.mark.parametrize(

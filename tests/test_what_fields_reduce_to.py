@@ -21,7 +21,7 @@ from solver.reduction.svd import (
     friction_spectra,
     front_decay,
 )
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 from solver.scenes import discretise, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of

@@ -15,8 +15,8 @@ import pytest
 
 from app.link import read as read_address
 from solver.cli import main
-from solver.reference.choice import reference_of
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings

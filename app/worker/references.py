@@ -8,10 +8,9 @@ from contextlib import suppress
 from dataclasses import replace
 
 from solver.discrete import Problem
-from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
-from solver.reference.fingerprint import fingerprint
-from solver.reference.solution import Reference
+from solver.reference.incremental import reference_of
+from solver.reference.solution import Reference, fingerprint
 from solver.scenes import features_of
 from solver.settings import Settings
 

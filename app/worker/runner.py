@@ -12,7 +12,7 @@ from app.messages import WHOLE, Needs, Start
 from app.worker.references import ReferenceCache, has_reference
 from app.worker.sampling import Sampler
 from solver.latin import Ending, Iterate, Record, Status, judged, record
-from solver.latin.run_cost import RunCost, run_cost
+from solver.latin.cost import RunCost, run_cost
 from solver.latin.status import collapses
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted
@@ -87,7 +87,7 @@ class Runner:
         self.status: Status | None = None
         self.has_news = False
         self.pacing = Pacing(start.pace, start.steps)
-        self._iterates = judged(problem, latin, spent=spent, resumable=False)
+        self._iterates = judged(problem, latin, spent=spent)
         self._references, self._interrupted = references, interrupted
         self._is_compared = False
         self._distance: Distance | None = None
@@ -143,7 +143,7 @@ class Runner:
         if reference is not None and reference.collapse is not None:
             self.sampler.collapse(reference.collapse)
             if self.status is None or self.status.ending is not Ending.CONVERGED:
-                self.status = collapses(reference.collapse.time)
+                self.status = collapses(reference.collapse)
             return
         self.sampler.complete(reference)
         if reference is not None:

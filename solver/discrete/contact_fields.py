@@ -40,18 +40,10 @@ class ContactFields:
 def contact_fields(
     problem: Problem, name: str, force: Array, displacement: Array, status: NDArray[np.int8]
 ) -> ContactFields:
-    """Take the fields of one interface out of those of a whole structure.
+    """Fields of one interface, out of those of a whole structure.
 
-    Parameters
-    ----------
-    problem, name
-        Which interface.
-    force
-        Stacked contact forces, N, as `Problem.sum_of_contact` says, (n_forces, n_instants).
-    displacement
-        W of all rows, scaled, shape (n_rows, n_instants).
-    status
-        Shape (n_points, n_instants).
+    `force` is stacked as `Problem.sum_of_contact` says, (n_forces, n_instants), N; W is that
+    of all rows, `displacement`, scaled, (n_rows, n_instants).
     """
     law, places = problem.rubbing[name], problem.contact_places[name]
     scale = problem.scales.displacement

@@ -18,19 +18,12 @@ NO_SLIP = 1e-9
 class ContactGroup:
     """Interfaces with one law, put one after the other.
 
-    Parameters
-    ----------
-    laws
-        Of all interfaces with friction, in their order.
-    numbers
-        Which of them these are, ascending.
-
     Attributes
     ----------
     law
         The law of all of them; if there are several, without macro basis.
     numbers
-        As above, shape (n_interfaces,).
+        Which of all interfaces with friction these are, ascending, shape (n_interfaces,).
     points
         Places of its points among those of all interfaces, shape (n_points,).
     """

@@ -162,13 +162,7 @@ class CrossSection:
         return self.slipping_bending + float(sum(together))
 
     def helix(self, layer: int, wire: int = 0) -> HelicalWire:
-        """A wire; the first of each layer begins at the outermost fibre.
-
-        Parameters
-        ----------
-        layer, wire
-            Numbers from 0 on, inside out, and the way that theta grows.
-        """
+        """A wire by numbers from 0 on, inside out and as theta grows; the first is outermost."""
         one = self.layers[layer]
         start = 2.0 * np.pi * wire / one.wires
         return HelicalWire(one.stiffness, self.radii[layer], one.lay, start)
@@ -182,16 +176,8 @@ class CrossSection:
         """What presses the wires of every layer on what is below, and on it from above.
 
         A wire presses with N sin^2(alpha) / R per length. What a layer and all outside it press is
-        spread over the wires below; each layer passes it on.
-
-        Parameters
-        ----------
-        tension
-            Of the strand, shape (n_instants,), N.
-
-        Returns
-        -------
-        Inner and outer faces, shape (n_layers, n_instants) each, N per metre of wire.
+        spread over the wires below; each layer passes it on. Inner and outer faces, shape
+        (n_layers, n_instants) each, N per metre of wire, under the tension, (n_instants,), N.
         """
         below, above = [], []
         passed = np.zeros_like(tension)

@@ -31,8 +31,6 @@ class CutStack:
 
     Attributes
     ----------
-    stack
-        The bodies.
     nodes
         Number of every node, shape (nodes up, nodes along) for each body.
     positions
@@ -133,8 +131,6 @@ class CutStack:
     def _trace(self, place: Place, side: str) -> Trace | None:
         """Rows of a side: all at an interface, or those of prescribed components, or None.
 
-        A spring has those of one node.
-
         A contact has none at an end where the left or right side prescribes the normal
         displacement: any pressing force would be a solution there, and so would any friction up to
         it. A support of known bound has the component along it, everywhere.
@@ -158,10 +154,7 @@ class CutStack:
         return Trace(side, held) if held else None
 
     def _nodal_force(self, place: Place, mesh: Rectangle) -> Array | None:
-        """Nodal forces of tractions and body forces, scaled, (2 n_nodes, n), or None.
-
-        Tractions vary linearly along a side, body forces are constant; both are work equivalent.
-        """
+        """Forces of tractions and weight on all nodes, (2 n_nodes, n_instants); None without."""
         stack, order = self.stack, self.stack.order
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
         for side in SIDES:

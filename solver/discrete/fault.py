@@ -73,18 +73,10 @@ class Fault:
 
 
 def sheared(stress: float, modulus: float, height: float, count: int) -> dict[str, Side]:
-    """What is prescribed along the sides of the quarter, over so many instants.
+    """What is prescribed along the sides of the quarter, of a height, m, over so many instants.
 
-    The top is moved as far as the stress takes, and holds the body where all of the fault slips.
-
-    Parameters
-    ----------
-    stress, modulus
-        Shear stress, and shear modulus G, Pa.
-    height
-        Of the quarter, m.
-    count
-        Number of instants.
+    The top is moved as far as the shear stress takes, with the shear modulus, Pa both, and holds
+    the body where all of the fault slips.
     """
     none, whole = np.zeros(count), np.ones(count)
     level, free = Given(True, none), Given(False, none)

@@ -53,17 +53,8 @@ class HelicalWire:
 
         It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the wire
         included, in differences of the elements' forces: equilibrium holds exactly on the mesh.
-
-        Parameters
-        ----------
-        arc
-            Arc lengths of the nodes, shape (n_nodes,), m.
-        curvature
-            Of the strand, 1/m, shape (n_instants,) where it is uniform, or (n_nodes, n_instants).
-
-        Returns
-        -------
-        Shape (n_nodes, n_instants), N/m.
+        Shape (n_nodes, n_instants), N/m, from the arc lengths of the nodes, m, and the curvature of
+        the strand, 1/m, of shape (n_instants,) where it is uniform, or (n_nodes, n_instants).
         """
         stuck = self.stuck_force(arc, curvature)
         middles = 0.5 * (stuck[1:] + stuck[:-1])

@@ -11,23 +11,14 @@ from solver.arrays import Array, Indices
 
 if TYPE_CHECKING:
     from solver.discrete.plane_parts import Part
+    from solver.discrete.problem import Scales
 
 
 class Inside:
     """What lies inside condensed substructures, found when somebody looks.
 
-    Parameters
-    ----------
-    parts
-        All substructures, in order.
-    positions
-        Coordinates of all nodes, shape (n_nodes, 2), scaled.
-    skeleton
-        Degrees of freedom of the problem among those of all nodes.
-    length, young
-        One scaled unit of length, m, and of stress, Pa.
-    n_instants
-        Number of instants.
+    Made of all substructures in order, the scaled positions of all nodes, (n_nodes, 2), and the
+    degrees of freedom of the problem among those of all nodes.
 
     Attributes
     ----------
@@ -47,12 +38,11 @@ class Inside:
         parts: Sequence[Part],
         positions: Array,
         skeleton: Indices,
-        *,
-        length: float,
-        young: float,
+        scales: Scales,
         n_instants: int,
     ) -> None:
-        self._parts, self._length, self._young = parts, length, young
+        length = scales.displacement
+        self._parts, self._length, self._young = parts, length, scales.force / length
         self._size = len(skeleton), n_instants
         self._dofs = [np.searchsorted(skeleton, part.dofs) for part in parts]
         self.nodes: Array = positions * length
@@ -64,15 +54,7 @@ class Inside:
         self.components: Indices = skeleton % 2
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
-        """Displacement of all nodes, shape (n_nodes, 2, n), m.
-
-        Parameters
-        ----------
-        skeleton
-            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
-        instants
-            Which of them.
-        """
+        """Displacement of all nodes, (n_nodes, 2, n), m, by that of the degrees of freedom, m."""
         chosen = skeleton[:, instants] / self._length
         whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
         for part, dofs in zip(self._parts, self._dofs, strict=True):
@@ -83,15 +65,8 @@ class Inside:
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
         """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
 
-        Parameters
-        ----------
-        weights
-            Shape (n_nodes, 2).
-
-        Returns
-        -------
-        Weights of the problem's degrees of freedom, shape (n_dofs,), and what loads inside add,
-        shape (n_instants,), m.
+        Weights of the problem's degrees of freedom, (n_dofs,), from those of the nodes,
+        (n_nodes, 2); and what loads inside add, (n_instants,), m.
         """
         total, constant = np.zeros(self._size[0]), np.zeros(self._size[1])
         # Substructures share the nodes on their cuts.

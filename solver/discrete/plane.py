@@ -21,11 +21,9 @@ from solver.discrete.elements import (
 )
 
 LONG_SIDES = 0.6
-"""Factor on the macro degree of a side, times the root of its length over the depth behind it.
-Measured on layers of macro degree 2, 10 to 1000 times as long as thick, and a column of degree 1:
-1 % of the contact force takes at most 45 iterations, 50 with 0.4 and 42 with 1. Without it, layers
-that are uncut along or cut in two up take more than 150, and so does a column that is cut into
-parts 200 times as high as wide (19)."""
+"""Factor on the macro degree of a side, times the root of its length over the depth behind it. Of
+layers 10 to 1000 times as long as thick 1 % of the contact force takes at most 45 iterations, 50
+with 0.4, 42 with 1, and more than 150 without (measured)."""
 HIGHEST_DEGREE = 10
 """To which a long side may raise its macro degree. With 6, layers of 200 times their thickness cut
 in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25 (measured)."""
@@ -120,16 +118,9 @@ class Rectangle:
         return weights
 
     def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at the centres of the cells.
+        """Stresses (xx, yy, xy) at the centres of the cells, (n_cells, 3), scaled.
 
-        Parameters
-        ----------
-        displacement
-            Of all nodes, shape (n_nodes, 2).
-
-        Returns
-        -------
-        Shape (n_cells, 3), scaled. The incompatible modes have no strain at the centre.
+        From the displacement of all nodes, (n_nodes, 2); incompatible modes have no strain there.
         """
         own = displacement[self.elements].reshape(self.rows, self.columns, -1)
         stresses = np.empty((self.rows, self.order, self.columns, self.order, 3))
@@ -173,19 +164,12 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
 
 
 class SchurComplement:
-    """A stiffness seen from some of its degrees of freedom, and what happens at the others.
-
-    Parameters
-    ----------
-    whole
-        Shape (n, n), symmetric, sparse or dense.
-    kept
-        Numbers of those that are kept.
+    """A symmetric stiffness, sparse or dense, seen from some of its degrees of freedom.
 
     Attributes
     ----------
     stiffness
-        Shape (n_kept, n_kept), dense, symmetric.
+        Of what is kept, shape (n_kept, n_kept), dense, symmetric.
 
     Raises
     ------
@@ -275,15 +259,7 @@ class Condensed:
         return force
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of all nodes, shape (n_nodes, 2, n), from that of what is kept.
-
-        Parameters
-        ----------
-        kept
-            Shape (n_kept, n).
-        force
-            Nodal forces, shape (2 n_nodes, n), or None.
-        """
+        """Displacement of all nodes, (n_nodes, 2, n), by that of what is kept, under forces."""
         forces = [force]
         for step in self._steps[:-1]:
             forces.append(None if forces[-1] is None else step.condense(forces[-1]))

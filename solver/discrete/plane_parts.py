@@ -32,7 +32,7 @@ class Trace:
     first, last
         Nodes of the side that have rows, as a slice.
     has_macro
-        Whether macro forces are to balance there.
+        Whether macro forces are to balance there; parts that differ in it share no operator.
     """
 
     side: str
@@ -147,19 +147,10 @@ def _substructure(
 def lined_up(
     parts: Sequence[Part], name: str, degree: int
 ) -> tuple[Indices, Array, sparse.csr_array]:
-    """Traces of one name that follow each other, as one side.
+    """Traces of one name that follow each other, as one side, with a macro basis of a degree.
 
-    Parameters
-    ----------
-    parts, name
-        Whose, and which.
-    degree
-        Of the macro basis (`side_basis`).
-
-    Returns
-    -------
-    Rows, shape (n_points, n_components), the length that belongs to each point, shape (n_points,),
-    scaled, and the macro basis of one component, shape (n_points, n_macro).
+    Rows, (n_points, n_components), the length that belongs to each point, scaled, and the macro
+    basis of one component, (n_points, n_macro).
     """
     rows = [part.rows[name] for part in parts]
     weights = [part.traces[name].weights(part.rectangle) for part in parts]
@@ -175,19 +166,10 @@ def lined_up(
 def rigid_motions(
     positions: Array, components: Indices, bodies: Indices, fixed: Indices
 ) -> Array | None:
-    """Independent rigid motions that move nothing prescribed, or None if there are none.
+    """Independent rigid motions that move nothing prescribed, (n_dofs, n_motions), or None.
 
-    Parameters
-    ----------
-    positions, components, bodies
-        Of every degree of freedom: its place, shape (n_dofs, 2), in units of a body's length; 0
-        where it moves along x, 1 along y; and its body, shape (n_dofs,).
-    fixed
-        Degrees of freedom with prescribed displacement.
-
-    Returns
-    -------
-    Shape (n_dofs, n_motions).
+    Of degrees of freedom at positions, (n_dofs, 2), in units of a body's length, along x or y, the
+    components 0 or 1, of bodies by number; `fixed` are those with prescribed displacement.
     """
     motions = []
     for body in np.unique(bodies):
@@ -229,24 +211,17 @@ def problem_of(
         As of `Problem`.
     """
     shared: dict[tuple[Hashable, ...], Elasticity] = {}
-    places, length = positions[skeleton // 2], scales.displacement
+    places = positions[skeleton // 2]
     bodies = np.empty(len(positions), dtype=np.intp)
     for part in parts:
         bodies[part.nodes] = part.body
     problem = Problem(
         substructures=tuple(_substructure(part, skeleton, shared) for part in parts),
         interfaces=interfaces,
-        positions=places * length,
+        positions=places * scales.displacement,
         instants=instants,
         scales=scales,
-        inside=Inside(
-            parts,
-            positions,
-            skeleton,
-            length=length,
-            young=scales.force / length,
-            n_instants=len(instants),
-        ),
+        inside=Inside(parts, positions, skeleton, scales, len(instants)),
         rest=rest,
     )
     fixed = problem.prescribed[0]

@@ -47,16 +47,9 @@ def constant(values: Array) -> Probe:
 
 
 def side_mean(problem: Problem, side: str, component: int) -> Probe:
-    """Mean displacement along a whole outer side of the stack, m.
+    """Mean displacement along a whole outer side of bodies in the plane, m.
 
-    Parameters
-    ----------
-    problem
-        One with an inside.
-    side
-        "left", "right", "bottom" or "top".
-    component
-        0 along x, 1 along y.
+    The side is "left", "right", "bottom" or "top"; the component 0 along x, 1 along y.
     """
     inside = _inside(problem)
     first, second, _ = _edges(inside, side)

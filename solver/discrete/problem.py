@@ -333,10 +333,9 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         replace(part, body_force=during(part.body_force), free_force=during(part.free_force))
         for part in problem.substructures
     )
-    interfaces = {
-        name: _begun(law.during(some), start.get(name) if start else None)
-        for name, law in problem.interfaces.items()
-    }
+    interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
+    for name, before in (start or {}).items():
+        interfaces[name] = problem.rubbing[name].during(some).begun(before)
     return replace(
         problem,
         substructures=parts,
@@ -345,7 +344,3 @@ def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         rest=during(problem.rest),
         carried=during(problem.carried),
     )
-
-
-def _begun(law: Interface, start: Array | None) -> Interface:
-    return law.begun(start) if isinstance(law, Contact) and start is not None else law

@@ -128,10 +128,7 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
 
 
 def _without_slip(stack: Stack, pressing: Array) -> Array:
-    """Friction that may hold the body under a pressing force, before slip, N; of its shape.
-
-    Where mu varies the whole force may press where it is largest.
-    """
+    """Friction that may hold the body before slip, N, of the shape of what presses."""
     assert stack.support is not None
     mu = float(np.max(stack.support.friction))
     rubbed = mu * pressing if mu else np.zeros_like(pressing)
@@ -192,18 +189,11 @@ def rigid_slide(stack: Stack, spring: Spring) -> Array:
 
 
 def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
-    """Find motions a with sum over points of shape * max(-(gap + shape' a), 0) = wanted.
+    """Motions a with sum over points of shape * max(-(gap + shape' a), 0) = wanted.
 
     They make a convex energy least. Newton's step goes as far as that falls. Where the points that
     press leave a motion free, as one point leaves a rotation, and the loads push that way, the body
-    moves on until others touch.
-
-    Parameters
-    ----------
-    gap, shapes
-        At every point: the opening before, and what each motion adds to it, shape (n, n_points).
-    wanted
-        Shape (n, n_instants).
+    moves on until others touch. `gap` is (n_points,), `shapes` what motions add to it.
     """
     products = shapes[:, None] * shapes[None]
     sizes = np.abs(wanted).max(axis=0)
@@ -227,14 +217,7 @@ def _farthest(opening: Array, way: Array, work: Array) -> Array:
     """How far the energy of the bedding and of the loads falls along a way, (n_instants,).
 
     Its slope grows with the distance t, by straight lines between the places where points begin or
-    end to touch: work + sum over those that do of way (opening + t way).
-
-    Parameters
-    ----------
-    opening, way
-        Of the points at t = 0, and what t adds to it, shape (n_points, n_instants).
-    work
-        Of the loads, against the way, (n_instants,).
+    end to touch: `work` of the loads, and the sum over those that do of way (opening + t way).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         changes = -opening / way

@@ -18,19 +18,11 @@ AT_ONCE = 2_000_000
 
 
 def largest_strain(structure: Structure, problem: Problem, displacement: Array) -> float:
-    """Return the largest strain or slope of a solution: the largest derivative of displacement.
+    """Largest strain or slope of a solution: the largest derivative of displacement.
 
     A motion without rotation counts for nothing. Along rods it is that of an element; in the plane
     the mean over an element, rotation included; of wires the axial strain and that of bending.
-
-    Parameters
-    ----------
-    structure
-        What was discretised.
-    problem
-        Its discrete problem.
-    displacement
-        Of its degrees of freedom, shape (n_dofs, n_instants), m.
+    `displacement` is that of the problem's degrees of freedom, (n_dofs, n_instants), m.
     """
     if isinstance(structure, Rope):
         return _of_wires(structure, displacement)

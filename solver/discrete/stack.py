@@ -306,10 +306,7 @@ def _deflection(problem: Problem, given: Array | None = None) -> Loop:
 
 
 def _moment(stack: Stack) -> Array:
-    """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m.
-
-    A linear traction of an extreme over a height h has the moment extreme h^2 / 6.
-    """
+    """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
     given = stack.sides["right"].x
     several = stack.longest * stack.height**2
     size = several if given.each_body else stack.bodies * several

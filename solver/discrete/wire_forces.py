@@ -63,18 +63,8 @@ def cut_at(rope: Rope, place: float) -> CutWires:
 def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
     """Forces in the elements of all wires: their tension and what bending adds.
 
-    Parameters
-    ----------
-    rope
-        The strand.
-    displacement
-        Of the problem's degrees of freedom, shape (n_dofs, n_instants), m.
-    columns
-        Numbers of the instants.
-
-    Returns
-    -------
-    Shape (n_wires, n_elements, n_columns), N.
+    Shape (n_wires, n_elements, n_columns), N, from the displacement of the problem's degrees of
+    freedom, (n_dofs, n_instants), m, at some of the instants.
     """
     slips = np.split(displacement[:, columns], len(rope.wires))
     forces = []

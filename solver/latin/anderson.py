@@ -9,8 +9,8 @@ from scipy.linalg.lapack import dposv
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks, at_once, in_a_row
-from solver.latin.linear_stage import LinearStage
+from solver.latin.blocks import Blocks, in_a_row
+from solver.latin.linear_stage import Group, LinearStage
 from solver.refusal import check_range
 
 MEMORY = 15
@@ -18,21 +18,18 @@ MEMORY = 15
 number of iterations but for two on bar, strand, block and layers, and 1e-4 from 55 to 63 on layers,
 39 to 45 on strands (measured)."""
 GROWTH_ON_SUPPORT = 2.0
-"""Growth of the residual from which the memory is given up, in contact with a rigid support. A
-block that tilts until it lifts off needs 1.2 or more: with 1 its rocking takes thousands of
-iterations, not 50."""
+"""Growth of the residual from which the memory is given up, in contact with a rigid support: with 1
+the rocking of a block that tilts until it lifts off takes thousands of iterations, not 50."""
 GROWTH_BETWEEN_BODIES = 1.1
 """The same in contact between two bodies. Layers 200 times as long as thick: 1e-6 of the contact
-force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1; layers 1000 times as long
-wander for hundreds with 2 before they come within 1 % (25 with 1.1; measured)."""
+force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1 (measured)."""
 MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
-A block of 768 x 384 elements and 51 instants keeps 8 differences and stays below 2 GB; on 384 x 192
-1e-4 of the contact force takes 38 iterations with 15 differences, 39 with 8, 41 with 5."""
+On 384 x 192 elements 1e-4 takes 38 iterations with 15 differences, 39 with 8, 41 with 5
+(measured)."""
 SAMPLE = 300_000
 """Values of a residual that the weights of the mixture are found from; all, if it has no more. On
-384 x 192 elements, a fourth of all: 38 iterations to 1e-4 of the contact force, and 67 with
-tractions on top; 38 and 73 with all; 38 and 74 with 100 000, 40 and 79 with 20 000 (measured)."""
+384 x 192 elements 1e-4 takes 38 iterations with that and with all, 40 with 20 000 (measured)."""
 REGULAR = 1e-10
 """Added to the diagonal of the small normal equations, whose own diagonal is scaled to 1."""
 
@@ -58,80 +55,42 @@ class Anderson:
     def __post_init__(self) -> None:
         check_range(self, "memory", 1, 1000)
 
-    def begin(
-        self, problem: Problem, stage: LinearStage, motion: Array | None, blocks: Blocks
-    ) -> AndersonState | None:
-        """Prepare what a run remembers; None where the states of its linear stage are not mixed.
-
-        Parameters
-        ----------
-        problem, stage
-            What is solved, and the linear stage whose states are mixed.
-        motion
-            Of the rows, shape (n_rows,), which the local stage chooses anew whatever the state is.
-        blocks
-            Of instants, in which states are mixed.
-        """
-        weights = [group.weights(problem.time_weights) for group in stage.groups]
-        mixable = [part for part in weights if part is not None]
-        if len(mixable) < len(weights):
-            return None
-        growth = 1.0
-        if problem.opens:
-            is_held = any(law.is_on_support for law in problem.rubbing.values())
-            growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-        free = None
-        if motion is not None:
-            free = [
-                np.broadcast_to(motion[group.rows][:, :, None], group.target.shape)
-                for group in stage.groups
-            ]
-        return AndersonState(mixable, self.memory, growth, blocks, free)
-
 
 class AndersonState:
-    """What a run remembers of its states, and the mixture of them.
+    """What a run remembers of its states, which are in full, and the mixture of them.
 
-    The images g are kept whole; of large residuals no more than a sample is, drawn once.
-
-    Parameters
-    ----------
-    weights
-        Squared weights of the inner product, one array for each part of the state, of its shape.
-    memory
-        Differences that are remembered.
-    growth
-        Of the residual over the smallest so far, from which the memory is given up. Where the bound
-        of friction is known 1 is best (twice as much takes up to a third more iterations to 1e-6).
-    blocks
-        Of instants, the last axis of the parts, in which images are kept and mixed.
-    free
-        A motion, of the shapes of the weights, that the local stage chooses anew whatever the state
-        is: at every instant a residual counts for nothing along it. None where there is none.
-
-    Attributes
-    ----------
-    seen, count, smallest
-        States and differences since the memory was last given up, and the smallest residual.
+    The images g are kept whole; of large residuals no more than a sample is, drawn once. Residuals
+    are measured by k over boundary and time. They count for nothing along a motion of the rows,
+    (n_rows,), which the local stage chooses anew at every instant, whatever the state is.
     """
 
     def __init__(
         self,
-        weights: list[Array],
+        problem: Problem,
+        stage: LinearStage,
         memory: int,
-        growth: float = 1.0,
-        blocks: Blocks | None = None,
-        free: list[Array] | None = None,
+        motion: Array | None,
+        blocks: Blocks,
     ) -> None:
-        self._growth = growth
-        self._blocks = blocks or at_once(weights[0].shape[-1])
-        sizes = [part.size for part in weights]
+        # Where the bound of friction is known 1 is best; twice as much takes up to a third more
+        # iterations to 1e-6.
+        self._growth = 1.0
+        if problem.opens:
+            is_held = any(law.is_on_support for law in problem.rubbing.values())
+            self._growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
+        groups = self._groups = stage.groups
+        self._blocks = blocks
+        sizes = [group.target.size for group in groups]
         self._places = in_a_row(sizes)
         self._chosen = _sample(sizes)
-        sampled = [_flat(part)[chosen] for part, chosen in zip(weights, self._chosen, strict=True)]
+        weights = [group.k[:, None, None] * problem.time_weights for group in groups]
+        sampled = self._sampled(weights)
         self._samples = in_a_row([len(part) for part in sampled])
         self._root = np.sqrt(np.concatenate(sampled))
-        self._free = free and _Motion(free, self._chosen, self._root)
+        self._free = None
+        if motion is not None:
+            ways = self._sampled([motion[group.rows][:, :, None] for group in groups])
+            self._free = _Motion(groups, self._chosen, self._root * np.concatenate(ways))
         self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
         # Memory that nothing was written to costs nothing yet.
         self._images = np.zeros((self._memory + 1, sum(sizes)))
@@ -139,35 +98,24 @@ class AndersonState:
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
         self._start, self._residual, self._residual_before = np.zeros((3, len(self._root)))
-        self.restore((0, 0, np.inf))
+        self._forget()
 
-    @property
-    def memory(self) -> tuple[int, int, float]:
-        """What it counts: `seen`, `count` and `smallest`."""
-        return self.seen, self.count, self.smallest
+    def _forget(self) -> None:
+        self._count, self._smallest = 0, np.inf
 
-    def restore(self, memory: tuple[int, int, float]) -> None:
-        """Count on from there."""
-        self.seen, self.count, self.smallest = memory
-
-    @property
-    def remembered(self) -> int:
-        """States whose images shape what comes next."""
-        return min(self.seen, self._memory + 1)
-
-    def start(self, state: list[Array]) -> None:
+    def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
-        self._take(state, self._start)
+        self._take(self._start)
 
-    def __call__(self, state: list[Array]) -> None:
-        """Replace g(y) by the mixture, in place."""
-        if self.observe(state) and self.seen > 1:
-            self._mix(state)
+    def mix(self) -> None:
+        """Replace g(y) by the mixture, in place, once there is one."""
+        if self._observe() and self._count:
+            self._mix()
 
-    def observe(self, state: list[Array]) -> bool:
-        """Read g(y); return whether to mix."""
+    def _observe(self) -> bool:
+        """Read g(y); whether it is of use."""
         residual = self._residual
-        self._take(state, residual)
+        self._take(residual)
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
         if self._free:
@@ -175,28 +123,28 @@ class AndersonState:
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
             return False
-        if size > self._growth * self.smallest:
-            self.restore((0, 0, np.inf))
-        self.smallest = min(self.smallest, size)
-        if self.seen:
+        if size > self._growth * self._smallest:
+            self._forget()
+        if np.isfinite(self._smallest):  # there is an image before
             self._remember()
-        image = self._images[self._place_of(self.count)]
+        self._smallest = min(self._smallest, size)
+        image = self._images[self._place_of(self._count)]
 
         def keep(instants: slice) -> None:
-            for part, place in zip(state, self._places, strict=True):
+            for group, place in zip(self._groups, self._places, strict=True):
+                part = group.state
                 image[_within(place, part, instants)] = _flat(part[..., instants])
 
         self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
-        self.seen += 1
         return True
 
     def _remember(self) -> None:
-        place = self.count % self._memory
+        place = self._count % self._memory
         newest = self._residuals[place]
         np.subtract(self._residual, self._residual_before, out=newest)
-        self.count += 1
-        used = min(self.count, self._memory)
+        self._count += 1
+        used = min(self._count, self._memory)
         row = self._residuals[:used] @ newest
         self._products[place, :used] = row
         self._products[:used, place] = row
@@ -204,8 +152,8 @@ class AndersonState:
         self._wanted[:used] += row
         self._wanted[place] = newest @ self._residual
 
-    def _mix(self, state: list[Array]) -> None:
-        used = min(self.count, self._memory)
+    def _mix(self) -> None:
+        used = min(self._count, self._memory)
         gram = self._products[:used, :used]
         scale = 1.0 / np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
         scaled = gram * scale * scale[:, None]
@@ -216,7 +164,8 @@ class AndersonState:
         shares = self._shares(scale * gamma)
 
         def mix(instants: slice) -> None:
-            for part, place in zip(state, self._places, strict=True):
+            for group, place in zip(self._groups, self._places, strict=True):
+                part = group.state
                 images = self._images[: used + 1, _within(place, part, instants)]
                 np.matmul(shares, images, out=_flat(part[..., instants]))
 
@@ -225,8 +174,8 @@ class AndersonState:
     def _shares(self, gamma: Array) -> Array:
         """The weights of the images, which add up to one, from those of their differences."""
         shares = np.zeros(len(gamma) + 1)
-        shares[self._place_of(self.count)] = 1.0
-        for number in range(self.count - len(gamma), self.count):
+        shares[self._place_of(self._count)] = 1.0
+        for number in range(self._count - len(gamma), self._count):
             share = gamma[number % self._memory]
             shares[self._place_of(number + 1)] -= share
             shares[self._place_of(number)] += share
@@ -235,22 +184,31 @@ class AndersonState:
     def _place_of(self, number: int) -> int:
         return number % (self._memory + 1)
 
-    def _take(self, state: list[Array], out: Array) -> None:
-        parts = zip(state, self._chosen, self._samples, strict=True)
-        for part, chosen, place in parts:
-            out[place] = _flat(part)[chosen]
+    def _take(self, out: Array) -> None:
+        for group, chosen, place in zip(self._groups, self._chosen, self._samples, strict=True):
+            out[place] = _flat(group.state)[chosen]
+
+    def _sampled(self, fields: list[Array]) -> list[Array]:
+        """Fields of the groups at the places of the sample."""
+        return [
+            _flat(np.broadcast_to(field, group.target.shape))[chosen]
+            for field, group, chosen in zip(fields, self._groups, self._chosen, strict=True)
+        ]
 
 
 class _Motion:
-    """A motion that residuals are blind to, at the places of a sample."""
+    """A motion that residuals are blind to, weighted, at the places of a sample."""
 
-    def __init__(self, free: list[Array], chosen: list[slice | Indices], root: Array) -> None:
-        places = [np.arange(part.size)[places] for part, places in zip(free, chosen, strict=True)]
-        pairs = list(zip(free, places, strict=True))
-        self._way = root * np.concatenate([_flat(part)[place] for part, place in pairs])
-        instants = np.concatenate([place * part.shape[-1] // part.size for part, place in pairs])
-        size = np.bincount(instants, self._way**2)
-        self._dual = self._way / np.where(size > 0.0, size, 1.0)[instants]
+    def __init__(self, groups: list[Group], chosen: list[slice | Indices], way: Array) -> None:
+        sizes, count = [group.target.size for group in groups], groups[0].target.shape[-1]
+        instants = np.concatenate(
+            [
+                np.arange(size)[places] * count // size
+                for size, places in zip(sizes, chosen, strict=True)
+            ]
+        )
+        self._way, size = way, np.bincount(instants, way**2)
+        self._dual = way / np.where(size > 0.0, size, 1.0)[instants]
         # In order of memory an instant is a run of places, in every part.
         self._first = np.flatnonzero(np.diff(instants, prepend=-1))
         self._lengths = np.diff(self._first, append=len(instants))

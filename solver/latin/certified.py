@@ -26,25 +26,15 @@ def finished(
     seconds: float = 0.0,
     searched: Reduction | None = None,
 ) -> Iterate:
-    """The iterate that a certified solution is.
+    """The iterate that a certified solution is, of this number after so many seconds.
 
-    Its linear and its local stage are the same fields, a fixed point of the method for every k.
-
-    Parameters
-    ----------
-    problem, certificate
-        What is solved, and the solution.
-    k
-        Search direction of the rows, shape (n_rows,), scaled, read-only.
-    number, seconds
-        As in `Iterate`.
-    searched
-        The separated bases of the search, if it had any, which the solution goes beyond.
+    Its linear and its local stage are the same fields, a fixed point of the method for every k, of
+    the rows, (n_rows,), read-only. `searched` are the bases of the search, if it had any.
     """
-    scales = problem.scales
-    deformation = certificate.deformation / scales.displacement
-    force = row_forces(problem, deformation, certificate.contact_force / scales.force)
-    moved = (certificate.displacement / scales.displacement)[problem.row_dofs]
+    scales, solution = problem.scales, certificate.solution
+    deformation = solution.deformation / scales.displacement
+    force = row_forces(problem, deformation, solution.contact_force / scales.force)
+    moved = (solution.displacement / scales.displacement)[problem.row_dofs]
     stretched = force / k[:, None]
     fields = moved + stretched, moved - stretched, moved, force
     outgoing, incoming, local, force = (read_only(np.asfortranarray(field)) for field in fields)
@@ -72,10 +62,8 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
 
     Parameters
     ----------
-    problem
-        Of which displacement and contact forces are the solution.
-    displacement
-        But for rigid motions, shape (n_dofs, n_instants), scaled.
+    problem, displacement
+        What is solved, and how it deforms, shape (n_dofs, n_instants), scaled.
     contact_force
         Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), scaled.
 
@@ -116,10 +104,7 @@ def known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArray
 
 
 def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, Array]:
-    """What sums the rows of every boundary point of a substructure, and what it needs there.
-
-    Shapes (n, n_rows) and (n, n_instants).
-    """
+    """What sums the rows of every boundary point, (n, n_rows), and the force that it needs."""
     rows, places, needed, size = [], [], [], 0
     for part in problem.substructures:
         points, place, stiffness = part.elasticity.boundary
@@ -135,10 +120,7 @@ def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, A
 
 
 def _smallest(system: sparse.csr_array, right: Array) -> Array:
-    """The smallest x with A x = b, by conjugate gradients on A A^T, all columns together.
-
-    Rows of A meet only around a point, so that A A^T has few different eigenvalues.
-    """
+    """The smallest x with A x = b, by conjugate gradients on A A^T, all columns together."""
     solution = np.zeros((system.shape[1], right.shape[1]))
     rest, way, before = right.copy(), solution, 1.0
     enough = ENOUGH * float(np.abs(right).max(initial=0.0))

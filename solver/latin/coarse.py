@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
@@ -30,7 +30,7 @@ class CoarseProblem:
     """
 
     def __init__(
-        self, problem: Problem, groups: Sequence[Group[Any]], blocks: Blocks | None = None
+        self, problem: Problem, groups: Sequence[Group], blocks: Blocks | None = None
     ) -> None:
         basis, load = problem.macro
         self._blocks = blocks or at_once(problem.n_instants)
@@ -58,30 +58,21 @@ class CoarseProblem:
 
     def add_multiplier(self) -> None:
         """Add W~ to the targets of all groups."""
-        self._blocks.each(self._add_multiplier)
 
-    def _add_multiplier(self, instants: slice) -> None:
-        forces = [member.macro_forces(instants) for member in self._members]
-        stacked = np.concatenate(forces) if len(forces) > 1 else forces[0]
-        multiplier = self._solve(stacked, instants)
-        for member, place in zip(self._members, self._places, strict=True):
-            member.add(multiplier[place], instants)
+        def work(instants: slice) -> None:
+            forces = [member.macro_forces(instants) for member in self._members]
+            stacked = np.concatenate(forces) if len(forces) > 1 else forces[0]
+            multiplier = self._solve(stacked, instants)
+            for member, place in zip(self._members, self._places, strict=True):
+                member.add(multiplier[place], instants)
+
+        self._blocks.each(work)
 
 
 class _Member:
-    """A group, and the part of the macro basis that its substructures see.
+    """A group, and the part of the macro basis that its substructures see, as `_local_basis`."""
 
-    Parameters
-    ----------
-    group, rows
-        The group, and the places of its rows that carry macro quantities, ascending.
-    local
-        The basis on these, shape (n_carrying, n_local).
-    forces
-        Macro forces of a target, shape (n_local, n_boundary).
-    """
-
-    def __init__(self, group: Group[Any], rows: Indices, local: Array, forces: Array) -> None:
+    def __init__(self, group: Group, rows: Indices, local: Array, forces: Array) -> None:
         self._group, self._local, self._forces = group, local, forces
         self.size = local.shape[1] * group.rows.shape[1]
         # Where they follow each other, adding to them copies nothing.
@@ -115,12 +106,9 @@ class _Member:
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:
     """Part of the macro basis that all members of a group see alike.
 
-    Returns
-    -------
-    Places of the rows that carry macro quantities, shape (n_carrying,); the basis on them, shape
-    (n_carrying, n_local); and what adds up the members' macro forces, (n_macro, n_members n_local).
-    Where members do not see the same, or a row has but one macro quantity, the local basis is the
-    identity.
+    Places of the rows that carry macro quantities, the basis on them, (n_carrying, n_local), and
+    what adds up the members' macro forces, (n_macro, n_members n_local). Where members do not see
+    the same, or a row has but one macro quantity, the local basis is the identity.
     """
     counts = np.diff(basis.indptr)[rows]
     carrying = np.flatnonzero(counts.any(axis=1))
@@ -147,10 +135,7 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
 
 
 def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
-    """Columns that some rows have entries in, shape (n,), and the basis there, dense.
-
-    In the order in which the rows meet them, which members of a group share if anything.
-    """
+    """Columns in which rows have entries, in the order of these, and the basis there."""
     starts = basis.indptr[rows.start : rows.stop + 1]
     entries = slice(starts[0], starts[-1])
     row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
@@ -165,17 +150,11 @@ def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
 
 def _diagonal(blocks: list[Array]) -> sparse.csr_array:
     """Set square blocks, stacked by size, shape (n, size, size), along a diagonal."""
-    columns, ends, first = [], [np.zeros(1, dtype=np.intp)], 0
-    for stack in blocks:
-        n, size, _ = stack.shape
-        starts = first + size * np.arange(n)
-        columns.append((starts[:, None, None] + np.arange(size)).repeat(size, axis=1).ravel())
-        ends.append(ends[-1][-1] + size * np.arange(1, n * size + 1))
-        first += n * size
-    entries = np.concatenate([stack.ravel() for stack in blocks])
-    return sparse.csr_array(
-        (entries, np.concatenate(columns), np.concatenate(ends)), shape=(first, first)
+    along = (
+        sparse.bsr_array((np.array(stack), np.arange(len(stack)), np.arange(len(stack) + 1)))
+        for stack in blocks
     )
+    return sparse.csr_array(sparse.block_diag(list(along)))
 
 
 def _solver(

@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.automatic_k import automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Checkpoint, UpdateProgress, read_only
 from solver.refusal import check_range
@@ -16,25 +17,17 @@ from solver.refusal import check_range
 Fields = tuple[Array, Array]
 """W and F of the linear stage, shape (n_rows, n_instants) each, scaled."""
 
-SOFTENING = 2.0
-"""k at least, over the slope by which a friction of known bound falls with slip: below once the
-slope the local stage has several solutions. Faults with friction_ratio 0.7 to 0.9: 1 % of the
-contact force takes 11 to 77 iterations, as many with 1.5 and 3, more than 300 with 1.1 (measured).
-"""
 LOOK = 3
-"""The iteration that tells whether bodies slip on each other anywhere. In the second one what will
-stick may still slip, at a tenth of all points and instants; in the third none does where none does
-in the end, and of 33 stacks all that slip at more than half a hundredth of points and instants
-showed it (measured)."""
+"""The iteration that tells whether bodies slip on each other anywhere. In the second what will
+stick may still slip; in the third none does where none does in the end, and of 33 stacks all that
+slip at more than half a hundredth of points and instants showed it (measured)."""
 SETTLED, CALM = 0.1, 25
-"""The status has settled when no larger share of all points and instants than this changed between
-stick, slip forward and slip backward, so many iterations on end. Sooner, 1 % is reached later; at
-a smaller share some loads wait past iteration 100."""
+"""The status has settled when no larger share of all points and instants than this changed, so many
+iterations on end. Sooner, 1 % is reached later; at a smaller share some loads wait past 100."""
 SLIDING = 0.3
 """Factor on the automatic k of a point that always slips; at a point that sticks for a share of the
-instants, this to the power of the other share. Measured with Anderson acceleration: of 0.03, 0.1,
-0.3 and 0.4 the one with the fewest iterations to 1e-6 of friction force; 0.1 takes more than no
-update at all, and so does a k that is larger where points slip."""
+instants, this to the power of the other share. Of 0.03, 0.1, 0.3 and 0.4 the one with the fewest
+iterations to 1e-6; 0.1 takes more than no update at all (measured)."""
 TRIAL = 20
 """Iterations after which the new k must have made the k-free indicator smaller, again and again."""
 
@@ -75,10 +68,6 @@ class SearchDirection(ABC):
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
         """Progress of a run that goes on from a checkpoint, if from any: k, and how it changes."""
         return UpdateProgress("returned", self.of(problem))
-
-    def is_due(self, progress: UpdateProgress) -> bool:
-        """Whether the next iteration is to begin with `update`."""
-        return False
 
     def observe(
         self, problem: Problem, progress: UpdateProgress, displacement: Array, incoming: Array
@@ -138,10 +127,6 @@ class Auto(SearchDirection):
         may_stick = start is None and any(law.opens and not law.is_on_support for law in laws)
         return UpdateProgress("first" if may_stick else "returned", self.of(problem))
 
-    def is_due(self, progress: UpdateProgress) -> bool:
-        """Whether the third iteration is done, and nothing slipped in it."""
-        return progress.phase == "first" and progress.count == LOOK
-
     def observe(
         self, problem: Problem, progress: UpdateProgress, displacement: Array, incoming: Array
     ) -> UpdateProgress:
@@ -149,12 +134,12 @@ class Auto(SearchDirection):
         if progress.phase != "first":
             return progress
         progress = replace(progress, count=progress.count + 1)
-        if not self.is_due(progress):
+        if progress.count < LOOK:
             return progress
         force = progress.k[:, None] * (displacement - incoming)
         between = (group for group in problem.contact_groups if not group.law.is_on_support)
         slips = any(np.any(np.abs(group.status(displacement, force)) == 1) for group in between)
-        return UpdateProgress("returned", progress.k) if slips else progress
+        return UpdateProgress("returned", progress.k) if slips else replace(progress, is_due=True)
 
     def update(
         self, problem: Problem, progress: UpdateProgress, fields: Fields
@@ -200,17 +185,13 @@ class FromStatus:
         progress = start.course if start else None
         return progress or UpdateProgress("first", self.of(problem))
 
-    def is_due(self, progress: UpdateProgress) -> bool:
-        """Whether the status has settled, or the new k has had its trial."""
-        wait = {"first": CALM, "updated": TRIAL}.get(progress.phase)
-        return wait is not None and progress.count >= wait
-
     def observe(
         self, problem: Problem, progress: UpdateProgress, displacement: Array, incoming: Array
     ) -> UpdateProgress:
         """Progress by what sticks and slips in a local stage, as `SearchDirection.observe`."""
         if progress.phase == "updated":
-            return replace(progress, count=progress.count + 1)
+            count = progress.count + 1
+            return replace(progress, count=count, is_due=count >= TRIAL)
         if progress.phase != "first":
             return progress
         groups, force = problem.contact_groups, None
@@ -224,7 +205,8 @@ class FromStatus:
             status[group.points] = group.status(displacement, force)
         before = progress.status
         is_calm = before is not None and float(np.mean(status != before)) <= SETTLED
-        return replace(progress, status=status, count=progress.count + 1 if is_calm else 0)
+        count = progress.count + 1 if is_calm else 0
+        return replace(progress, status=status, count=count, is_due=count >= CALM)
 
     def update(
         self, problem: Problem, progress: UpdateProgress, fields: Fields
@@ -235,7 +217,7 @@ class FromStatus:
             k = _profile(problem, progress)
             return UpdateProgress("updated", k, kept=fields, violation=violation), fields
         if violation < progress.violation:
-            return replace(progress, count=0, kept=fields, violation=violation), None
+            return UpdateProgress("updated", progress.k, kept=fields, violation=violation), None
         return UpdateProgress("returned", self.of(problem)), progress.kept
 
 
@@ -249,68 +231,3 @@ def _profile(problem: Problem, progress: UpdateProgress) -> Array:
             k[rows] *= SLIDING ** share[first + law.points]
         first += len(law.positions)
     return read_only(k)
-
-
-def automatic(problem: Problem, *, sticks: bool = False) -> Array:
-    """Search direction k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
-
-    It is that of bodies that slip on each other, or of bodies that nowhere do.
-
-    Where bodies rub it is what `solver.laws.around` says, and where contact gives way before it
-    slips that in series with its spring; elsewhere the paper's, times a factor. With the spring
-    left out, 1e-6 of friction force takes 52 iterations of the bar instead of 16, and 73 of the
-    strand instead of 15 (measured, geometric means over contact stiffnesses of 3 to 3000 and four
-    load paths). Where friction softens it is more than the slope by which it falls.
-    """
-    laws = list(problem.rubbing.values())
-    around = laws[0].around
-    k = problem.direction * around.elsewhere
-    for first, second in problem.cuts:
-        k[first] *= around.on_cuts
-        k[second] *= around.on_cuts
-    # Rods on supports of their own slide all alike; of those beside each other one slides far.
-    several = 1 if all(law.is_on_support for law in laws) else len(laws)
-    parts = several / sliding_share(problem)
-    for law in laws:
-        law.around.choose(law, k, parts)
-        if sticks:
-            law.around.stick(law, k)
-        if law.tangential.softens:
-            for rows in law.tangent.sides:
-                least = SOFTENING * len(law.tangent.sides) * law.tangential.steepest_fall
-                k[rows] = np.maximum(k[rows], least)
-        if law.tangential.softness is not None:
-            softness = law.in_parallel(law.tangential.softness)[law.points] / law.shares
-            for rows in law.tangent.sides:
-                k[rows] /= 1.0 + softness * k[rows]
-    return k
-
-
-def sliding_share(problem: Problem) -> float:
-    """Estimate the largest share of one frictional interface that ever slides.
-
-    It is that load over all that friction can carry then, between two points and all: the load
-    of one body over one interface, where there are several alike. Where displacements are
-    prescribed the load is not known beforehand: on a rigid support all may slide; bodies that rub
-    on each other carry no more than what the displacement alone makes of a rod, whose scaled
-    stiffness is 1. Bodies on supports of their own are taken to slide all along.
-    """
-    first, *others = problem.rubbing.values()
-    if others and all(law.is_on_support for law in problem.rubbing.values()):
-        return 1.0
-    capacity = first.tangential.bound.sum(axis=0)
-    smallest = min(2.0 / len(first.positions), 1.0)
-    load = np.zeros(problem.n_instants)
-    for pulled in problem.given_forces:
-        load += pulled.values.mean(axis=0)
-    for moved in problem.given_displacements:
-        if moved.values.any():
-            if first.is_on_support:
-                return 1.0
-            load += moved.values.mean(axis=0)
-    for part in problem.substructures:
-        if part.body_force is not None:
-            load += part.body_force.sum(axis=0)
-    if not capacity.all():
-        return 1.0
-    return float(np.clip((np.abs(load) / capacity).max(), smallest, 1.0))

@@ -100,11 +100,7 @@ def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> floa
 
 
 def _rounding(displacement: Array, force: Array) -> float:
-    """What rounding makes of W and F alike: a scaled structure has a compliance near 1.
-
-    It knows no k, so that the indicator sees none. Where friction holds every point that is loaded
-    nothing moves at all, and what little the iterate still moves is none either.
-    """
+    """What rounding makes of W and F alike; where all sticks, all that an iterate moves."""
     moved, pulled = float(np.abs(displacement).max()), float(np.abs(force).max())
     if moved <= STILL * pulled / len(force):
         return max(moved, ROUNDING * pulled)
@@ -112,11 +108,7 @@ def _rounding(displacement: Array, force: Array) -> float:
 
 
 def _share_of_friction(problem: Problem, force: Array) -> float:
-    """The share of the largest force that friction can carry beside the supports, at most 1.
-
-    It is 1 where there is no friction. Where friction grows with the load it is the share of what
-    contact carries, unless that is a thousandth or more.
-    """
+    """Share of the largest force that friction, or contact that may open, can carry; at most 1."""
     largest = float(np.abs(force).max())
     laws = [group.law for group in problem.contact_groups]
     carried = max(law.carried(force) for law in laws)

@@ -33,6 +33,8 @@ class UpdateProgress:
     count
         First: iterations on end with hardly a change of status. Updated: iterations since the last
         trial.
+    is_due
+        Whether the next iteration begins with an update, or the judgement of one.
     status
         Contact status of the iteration before, shape (n_points, n_instants), where k follows it;
         None after the first phase, and before the first iteration.
@@ -45,6 +47,7 @@ class UpdateProgress:
     phase: Literal["first", "updated", "returned"]
     k: Array
     count: int = 0
+    is_due: bool = False
     status: NDArray[np.int8] | None = None
     kept: tuple[Array, Array] | None = None
     violation: float = np.inf
@@ -52,7 +55,7 @@ class UpdateProgress:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """From where an iteration can go on exactly.
+    """From where an iteration can go on: exactly, but for an acceleration, which begins anew.
 
     Attributes
     ----------
@@ -62,10 +65,6 @@ class Checkpoint:
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
     reduction
         The separated bases that hold it, if any do.
-    history
-        The states before, oldest first, that an acceleration remembers.
-    memory
-        What it counts: states seen, differences, and the smallest residual.
     course
         How far the update of k has come; None where the fields are those of another run.
     """
@@ -74,8 +73,6 @@ class Checkpoint:
     seconds: float
     outgoing: Array
     reduction: Reduction | None = None
-    history: tuple[Array, ...] = ()
-    memory: tuple[int, int, float] | None = None
     course: UpdateProgress | None = None
 
 
@@ -102,8 +99,8 @@ class Iterate:
     reduction
         The separated bases that hold the linear stage, if any do; of a certified solution those of
         the search that led to it, which hold less than it is.
-    history, memory, course
-        Of an acceleration and of the update of k, as in `Checkpoint`.
+    course
+        How far the update of k has come.
     residual
         Of an iterate that is a certified solution (`solver.latin.certified`), its KKT residual
         relative to the contact force; None of all others.
@@ -124,8 +121,6 @@ class Iterate:
     local_displacement: Array
     local_incoming: Array
     reduction: Reduction | None = None
-    history: tuple[Array, ...] = ()
-    memory: tuple[int, int, float] | None = None
     course: UpdateProgress | None = None
     residual: float | None = None
     force: Array | None = None
@@ -138,24 +133,9 @@ class Iterate:
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What is needed to go on from here.
-
-        Raises
-        ------
-        ValueError
-            If the run was told that nobody would.
-        """
-        if self.memory is not None and self.memory[0] and not self.history:
-            raise ValueError("an accelerated run has checkpoints if it is made resumable")
-        return Checkpoint(
-            self.number,
-            self.seconds,
-            self.outgoing,
-            self.reduction if self.residual is None else None,
-            self.history,
-            self.memory,
-            self.course,
-        )
+        """What is needed to go on from here."""
+        bases = self.reduction if self.residual is None else None
+        return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
 
     @property
     def bases(self) -> tuple[Modes, ...]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -20,120 +20,6 @@ from solver.reduction.basis import Modes, Reduction, ReductionRecord
 if TYPE_CHECKING:
     from solver.latin.pgd import PGD
 
-State = TypeVar("State")
-Bases = dict[int, tuple[Modes, ReductionRecord]]
-"""Modes of substructures, and what the last iteration did to them, by number."""
-
-
-class LinearStage:
-    """Elasticity along the search direction E-, factored for one problem and one k.
-
-    With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
-    comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
-    relaxation mixes, and everything else follows from it. How y is held is the groups' business:
-    in full, or on separated bases.
-
-    Parameters
-    ----------
-    problem, k
-        What to solve; k has shape (n_rows,).
-    multiscale
-        Whether the coarse problem is part of it.
-    form
-        How fields are held.
-    blocks
-        Of instants, in which it works; None for all at once.
-
-    Attributes
-    ----------
-    groups
-        Of identical substructures with the same k.
-    """
-
-    def __init__(
-        self,
-        problem: Problem,
-        k: Array,
-        form: Full | PGD | None = None,
-        blocks: Blocks | None = None,
-        *,
-        multiscale: bool,
-    ) -> None:
-        form = form or Full()
-        responses = form.responses or Responses()
-        self.groups: list[Group[Any]] = [
-            form.group(problem, alike, k, responses) for alike in _alike(problem, k)
-        ]
-        if blocks is None or not form.is_local_in_time:
-            blocks = at_once(problem.n_instants)
-        self._blocks = blocks
-        self._coarse = (
-            CoarseProblem(problem, self.groups, self._blocks)
-            if multiscale and problem.has_cuts
-            else None
-        )
-        self._shape = (problem.n_rows, problem.n_instants)
-
-    def start(self, checkpoint: Checkpoint | None) -> list[Any]:
-        """State of a checkpoint, or that in which all is zero; one entry per group."""
-        return [group.start(checkpoint) for group in self.groups]
-
-    def reduction(self, state: list[Any]) -> Reduction | None:
-        """The separated bases of a state, if it has any."""
-        bases: Bases = {}
-        for group, part in zip(self.groups, state, strict=True):
-            bases |= group.bases(part)
-        if not bases:
-            return None
-        modes, records = zip(*(bases[number] for number in sorted(bases)), strict=True)
-        return Reduction(modes, records)
-
-    def outgoing(self, state: list[Any]) -> Array:
-        """W + F/k of a state, shape (n_rows, n_instants)."""
-        boundary = np.empty(self._shape, order="F")
-        for group, part in zip(self.groups, state, strict=True):
-            group.scatter(group.outgoing(part), boundary)
-        return boundary
-
-    def read(self, target: Array) -> None:
-        """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.gather(target, instants)
-
-        self._blocks.each(work)
-
-    def advance(self, state: list[Any], relaxation: float) -> None:
-        """Solve the linear stage and relax: the state becomes a mean of the new and the old.
-
-        Parameters
-        ----------
-        state
-            Changed in place.
-        relaxation
-            Share of the new one.
-        """
-        if self._coarse is not None:
-            self._coarse.add_multiplier()
-
-        def work(instants: slice) -> None:
-            for group, part in zip(self.groups, state, strict=True):
-                group.relax(part, relaxation, instants)
-
-        self._blocks.each(work)
-
-    def incoming(self, state: list[Any]) -> Array:
-        """W - F/k of a state, shape (n_rows, n_instants)."""
-        boundary = np.empty(self._shape, order="F")
-
-        def work(instants: slice) -> None:
-            for group, part in zip(self.groups, state, strict=True):
-                group.scatter(group.reflect(part, instants), boundary, instants)
-
-        self._blocks.each(work)
-        return boundary
-
 
 @dataclass(frozen=True)
 class Full:
@@ -145,27 +31,107 @@ class Full:
         What helps a run that does not converge, to begin a sentence with; nothing here.
     has_to_prove
         Whether a run ends by proof alone, whatever that costs.
-    is_local_in_time
-        Whether it may work on a few instants at a time.
     responses
         Factors of substructures that runs with one k share; None: each run has its own.
     """
 
     remedy: ClassVar[str] = ""
     has_to_prove: ClassVar[bool] = False
-    is_local_in_time: ClassVar[bool] = True
 
     responses: Responses | None = field(default=None, repr=False)
 
-    def group(
-        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
-    ) -> FullGroup:
+    def group(self, problem: Problem, parts: list[Substructure], k: Array) -> Group:
         """Group of identical substructures with the same k, shape (n_rows,)."""
-        return FullGroup(problem, parts, k, responses)
+        return Group(problem, parts, k, self.responses)
 
 
-class Group(ABC, Generic[State]):
-    """Identical substructures with the same k, which share one operator.
+class LinearStage:
+    """Elasticity along the search direction E-, factored for one problem and one k, (n_rows,).
+
+    With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
+    comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
+    relaxation mixes, and everything else follows from it. How y is held is the groups' business:
+    in full, block by block of instants, or on separated bases.
+
+    Attributes
+    ----------
+    groups
+        Of identical substructures with the same k.
+    is_full
+        Whether their states are y in full.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        k: Array,
+        form: Full | PGD = Full(),
+        blocks: Blocks | None = None,
+        *,
+        multiscale: bool,
+    ) -> None:
+        self.groups = [form.group(problem, alike, k) for alike in _alike(problem, k)]
+        self.is_full = isinstance(form, Full)
+        self._blocks = blocks if blocks and self.is_full else at_once(problem.n_instants)
+        self._coarse = None
+        if multiscale and problem.has_cuts:
+            self._coarse = CoarseProblem(problem, self.groups, self._blocks)
+        self._shape = (problem.n_rows, problem.n_instants)
+
+    def go_to(self, checkpoint: Checkpoint | None) -> None:
+        """Take on the state of a checkpoint, or that in which all is zero."""
+        for group in self.groups:
+            group.go_to(checkpoint)
+
+    def reduction(self) -> Reduction | None:
+        """The separated bases of the state, if it has any."""
+        bases = {number: basis for group in self.groups for number, *basis in group.bases()}
+        if not bases:
+            return None
+        modes, records = zip(*(bases[number] for number in sorted(bases)), strict=True)
+        return Reduction(modes, records)
+
+    def read(self, target: Array) -> None:
+        """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
+
+        def work(instants: slice) -> None:
+            for group in self.groups:
+                group.gather(target, instants)
+
+        self._blocks.each(work)
+
+    def advance(self, relaxation: float) -> None:
+        """Solve the linear stage: the state takes on so large a share of the new one."""
+        if self._coarse is not None:
+            self._coarse.add_multiplier()
+
+        def work(instants: slice) -> None:
+            for group in self.groups:
+                group.relax(relaxation, instants)
+
+        self._blocks.each(work)
+
+    def outgoing(self) -> Array:
+        """W + F/k, shape (n_rows, n_instants)."""
+        boundary = np.empty(self._shape, order="F")
+        for group in self.groups:
+            group.scatter(group.outgoing(), boundary)
+        return boundary
+
+    def incoming(self) -> Array:
+        """W - F/k, shape (n_rows, n_instants)."""
+        boundary = np.empty(self._shape, order="F")
+
+        def work(instants: slice) -> None:
+            for group in self.groups:
+                group.scatter(group.reflect(instants), boundary, instants)
+
+        self._blocks.each(work)
+        return boundary
+
+
+class Group:
+    """Identical substructures with the same k, which share one operator; their state is y in full.
 
     Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous in space.
 
@@ -181,15 +147,19 @@ class Group(ABC, Generic[State]):
         W_f, a field of the group, or None without body forces.
     target
         The field that the state is brought to.
+    state
+        y, a field of the group, changed in place.
     """
 
+    state: Array
+
     def __init__(
-        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
+        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses | None
     ) -> None:
         self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
-        self.response = responses.of(parts[0].elasticity, self.k)
+        self.response = (responses or Responses()).of(parts[0].elasticity, self.k)
         self.body: Array | None = None
         if any(part.body_force is not None for part in parts):
             self.body = self.field()
@@ -219,47 +189,20 @@ class Group(ABC, Generic[State]):
         else:
             np.take(flat, self._back, axis=1, out=field.T[instants], mode="clip")
 
-    @abstractmethod
-    def start(self, checkpoint: Checkpoint | None) -> State:
-        """State of a checkpoint, or that in which all is zero."""
-
-    @abstractmethod
-    def outgoing(self, state: State) -> Array:
-        """W + F/k of a state, a field of the group."""
-
-    @abstractmethod
-    def relax(self, state: State, relaxation: float, instants: slice = ALL) -> None:
-        """Mix the target into a state, at some instants."""
-
-    @abstractmethod
-    def reflect(self, state: State, instants: slice = ALL) -> Array:
-        """W - F/k = 2 W - (W + F/k) of a state, at some instants; the next call overwrites it."""
-
-    def weights(self, time_weights: Array) -> Array | None:
-        """Squared weights of an inner product of states; None where these cannot be mixed."""
-        return None
-
-    def bases(self, state: State) -> Bases:
-        """Separated bases of a state, if it has any."""
-        return {}
-
-
-class FullGroup(Group[Array]):
-    """A group whose state is y in full: one matrix product for all substructures and instants."""
-
-    def start(self, checkpoint: Checkpoint | None) -> Array:
-        """State of a checkpoint, or that in which all is zero."""
+    def go_to(self, checkpoint: Checkpoint | None) -> None:
+        """Take on the state of a checkpoint, or that in which all is zero."""
         if checkpoint is None:
-            return self.field()
-        return np.copy(checkpoint.outgoing[self.rows], order="F")
+            self.state = self.field()
+        else:
+            self.state = np.copy(checkpoint.outgoing[self.rows], order="F")
 
-    def outgoing(self, state: Array) -> Array:
-        """W + F/k of a state, which is the state itself."""
-        return state
+    def outgoing(self) -> Array:
+        """W + F/k, a field of the group."""
+        return self.state
 
-    def relax(self, state: Array, relaxation: float, instants: slice = ALL) -> None:
-        """Mix the target into a state, at some instants."""
-        old, target = state[:, :, instants], self.target[:, :, instants]
+    def relax(self, relaxation: float, instants: slice = ALL) -> None:
+        """Mix the target into the state, at some instants."""
+        old, target = self.state[:, :, instants], self.target[:, :, instants]
         if relaxation == 1.0:
             np.copyto(old, target)
             return
@@ -267,20 +210,20 @@ class FullGroup(Group[Array]):
         np.multiply(target, relaxation, out=target)
         np.add(old, target, out=old)
 
-    def reflect(self, state: Array, instants: slice = ALL) -> Array:
-        """W - F/k = 2 W - (W + F/k) of a state, up to date at some instants."""
+    def reflect(self, instants: slice = ALL) -> Array:
+        """W - F/k = 2 W - (W + F/k), up to date at some instants; the next call overwrites it."""
         flat = (len(self.k), -1)
         reflected = self._reflected[:, :, instants]
         self.response.reflect(
-            state[:, :, instants].reshape(flat, order="F"), reflected.reshape(flat, order="F")
+            self.state[:, :, instants].reshape(flat, order="F"), reflected.reshape(flat, order="F")
         )
         if self.body is not None:
             reflected += 2.0 * self.body[:, :, instants]
         return self._reflected
 
-    def weights(self, time_weights: Array) -> Array:
-        """Those of the norm of k over boundary and time."""
-        return np.broadcast_to(self.k[:, None, None] * time_weights, self.target.shape)
+    def bases(self) -> Iterator[tuple[int, Modes, ReductionRecord]]:
+        """Separated bases, and what the last iteration did to them, by number of substructure."""
+        return iter(())
 
 
 def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:

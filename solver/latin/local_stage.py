@@ -7,29 +7,22 @@ import numpy as np
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
-from solver.latin.sliding_body import Slide, slide_of
+from solver.latin.sliding_body import slide_of
 
 
 class LocalStage:
-    """Interface laws along the search direction E+, ready for one problem and one k.
+    """Interface laws along the search direction E+, ready for one problem and one k, (n_rows,).
 
     It reads z = W - F/k of the linear stage alone, and its result is read as
-    W^ + F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together.
-
-    Parameters
-    ----------
-    problem, k
-        Whose laws; k has shape (n_rows,).
-    blocks
-        Of instants, for what is local in time; None for all at once.
+    W^ + F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together, and what is
+    local in time block by block of instants.
 
     Attributes
     ----------
     displacement
         W^ of the last call, shape (n_rows, n_instants); the next call makes a new field.
     incoming
-        z with which the last call obeyed: as read, but for the shift of a body that slides as a
-        whole.
+        z with which the last call obeyed: as read, but for the shift of a body that slides.
     motion
         Of the rows of such a body, shape (n_rows,), which every call chooses anew; or None.
     """
@@ -39,25 +32,14 @@ class LocalStage:
         self._blocks = blocks or at_once(problem.n_instants)
         self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
-        way = slide_of(problem)
-        self.motion = None if way is None else way[problem.row_dofs]
-        self._slide = None if way is None else Slide(problem, way, k)
+        self._slide = slide_of(problem, k)
+        self.motion = None if self._slide is None else self._slide.motion
         laws, n_instants = problem.laws, problem.n_instants
         self._remembering = [law.rule(k, n_instants) for law in laws if law.remembers]
         self._instant = [law.rule(k, n_instants) for law in laws if not law.remembers]
 
     def __call__(self, incoming: Array) -> Array:
-        """Obey all laws.
-
-        Parameters
-        ----------
-        incoming
-            z = W - F/k of the linear stage, shape (n_rows, n_instants).
-
-        Returns
-        -------
-        W^ + F^/k, same shape; the next call overwrites it.
-        """
+        """W^ + F^/k that obey all laws, from z = W - F/k; the next call overwrites them."""
         if self._slide is not None:
             incoming = self._slide.balanced(incoming)
         self.incoming = incoming

@@ -7,6 +7,7 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -17,9 +18,9 @@ from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear_stage import Bases, Group
+from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis, nearest_mode
+from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -46,13 +47,12 @@ class PGD:
         Equal substructures use the same modes if these miss at most this share of each one's field;
         0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
         (solver/study/README.md, 8).
-    remedy, has_to_prove, is_local_in_time, responses
+    remedy, has_to_prove, responses
         As of `Full`.
     """
 
     remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
     has_to_prove: ClassVar[bool] = True
-    is_local_in_time: ClassVar[bool] = False
 
     modes: int = 10
     tolerance: float = 1e-7
@@ -66,27 +66,17 @@ class PGD:
         for name in ("tolerance", "sharing"):
             check_range(self, name, 0.0, 1.0)
 
-    def group(
-        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
-    ) -> PGDGroup:
+    def group(self, problem: Problem, parts: list[Substructure], k: Array) -> PGDGroup:
         """Group of identical substructures with the same k, shape (n_rows,)."""
-        return PGDGroup(problem, parts, k, responses, self)
+        return PGDGroup(problem, parts, k, self)
 
 
 @dataclass
 class Family:
-    """One basis and the substructures of a group that use it.
+    """One basis, and the substructures that use it by their places in a group.
 
-    Attributes
-    ----------
-    members
-        Places of the substructures in their group.
-    basis
-        Of y = W + F/k; columns run through the members, then through the instants.
-    incoming_modes
-        W - F/k of every mode, shape (n_boundary, n_modes).
-    record
-        What the last iteration did.
+    The basis is of y = W + F/k; its columns run through the members, then through the instants.
+    Beside it W - F/k of every mode, (n_boundary, n_modes), and what the last iteration did.
     """
 
     members: list[int]
@@ -106,85 +96,78 @@ class Family:
             field = np.asfortranarray(field[:, members])
         return field.reshape(len(field), -1, order="F")
 
+    def put(self, field: Array, columns: Array) -> None:
+        """Write such a matrix into a group field."""
+        field[:, self.members] = columns.reshape(len(field), len(self.members), -1, order="F")
 
-class PGDGroup(Group[list[Family]]):
-    """Identical substructures whose states are separated.
 
-    The state is a list of families: one per substructure, fewer when bases are shared.
-
-    Parameters
-    ----------
-    problem, parts, k, responses
-        As of `Group`.
-    pgd
-        How modes are found, when, and how many are kept.
+class PGDGroup(Group):
+    """Identical substructures whose y is separated.
 
     Attributes
     ----------
+    families
+        One per substructure, fewer when bases are shared.
     iterations
         Iterations done, which set the pace of looking for bases to share.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        parts: list[Substructure],
-        k: Array,
-        responses: Responses,
-        pgd: PGD,
-    ) -> None:
-        super().__init__(problem, parts, k, responses)
+    families: list[Family]
+
+    def __init__(self, problem: Problem, parts: list[Substructure], k: Array, pgd: PGD) -> None:
+        super().__init__(problem, parts, k, pgd.responses)
         alike = {id(part) for part in parts}
         every = enumerate(problem.substructures)
         self._numbers = [number for number, part in every if id(part) in alike]
-        self._pgd = pgd
-        self._weights = problem.time_weights
+        self._pgd, self._weights = pgd, problem.time_weights
         self.iterations = 0
 
-    def start(self, checkpoint: Checkpoint | None) -> list[Family]:
-        """State of a checkpoint: its bases, or the nearest ones to its fields."""
+    def go_to(self, checkpoint: Checkpoint | None) -> None:
+        """Take on the bases of a checkpoint, or the nearest ones to its fields, or none."""
         self.iterations = checkpoint.number if checkpoint else 0
         places = range(self.rows.shape[1])
         if checkpoint is None:
-            return [self._family([place], self._empty(1)) for place in places]
-        if checkpoint.reduction is None:
+            bases = [SeparatedBasis.empty(self.k, self._weights) for _ in places]
+        elif checkpoint.reduction is None:
             self.gather(checkpoint.outgoing)
-            nearest = (self._basis_of(self.target[:, place], 1) for place in places)
-            return [self._family([place], basis) for place, basis in enumerate(nearest)]
-        modes, records = checkpoint.reduction.modes, checkpoint.reduction.records
-        numbers = self._numbers
-        return self._shared([modes[n] for n in numbers], [records[n] for n in numbers])
+            bases = [self._basis_of(self.target[:, place], 1) for place in places]
+        else:
+            self.families = list(self._shown(checkpoint.reduction))
+            return
+        self.families = [
+            Family([place], basis, self._incoming(basis), ReductionRecord.idle(basis.n_modes))
+            for place, basis in enumerate(bases)
+        ]
 
-    def outgoing(self, state: list[Family]) -> Array:
-        """W + F/k of a state, rebuilt."""
+    def outgoing(self) -> Array:
+        """W + F/k, rebuilt."""
         rebuilt = self.field()
-        for family in state:
-            self._put(rebuilt, family.members, family.basis.field())
+        for family in self.families:
+            family.put(rebuilt, family.basis.field())
         return rebuilt
 
-    def relax(self, state: list[Family], relaxation: float, instants: slice = ALL) -> None:
-        """Bring a state towards the target: update time functions, enrich, downsize."""
-        for family in state:
+    def relax(self, relaxation: float, instants: slice = ALL) -> None:
+        """Bring the bases towards the target: update time functions, enrich, downsize."""
+        for family in self.families:
             self._advance(family, relaxation)
         self.iterations += 1
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
-            self._share(state)
+            self._share()
 
-    def reflect(self, state: list[Family], instants: slice = ALL) -> Array:
-        """W - F/k of a state; the next call overwrites it."""
-        for family in state:
+    def reflect(self, instants: slice = ALL) -> Array:
+        """W - F/k; the next call overwrites it."""
+        for family in self.families:
             columns = family.columns(self._reflected)
             np.matmul(family.incoming_modes, family.basis.time_functions, out=columns)
             if len(family.members) > 1:
-                self._put(self._reflected, family.members, columns)
+                family.put(self._reflected, columns)
         if self.body is not None:
             self._reflected += 2.0 * self.body
         return self._reflected
 
-    def bases(self, state: list[Family]) -> Bases:
-        """Separated bases of a state, by number of the substructure."""
-        bases: Bases = {}
-        for family in state:
+    def bases(self) -> Iterator[tuple[int, Modes, ReductionRecord]]:
+        """The bases, and what the last iteration did to them, by number of the substructure."""
+        for family in self.families:
             time_functions = family.basis.time_functions
             for place, member in enumerate(family.members):
                 modes = Modes(
@@ -194,25 +177,21 @@ class PGDGroup(Group[list[Family]]):
                     k=self.k,
                     stored=self._numbers[family.members[0]],
                 )
-                bases[self._numbers[member]] = modes, family.record
-        return bases
+                yield self._numbers[member], modes, family.record
 
-    def _shared(self, modes: list[Modes], records: list[ReductionRecord]) -> list[Family]:
-        """State that was shown, bit by bit; one entry per substructure."""
+    def _shown(self, reduction: Reduction) -> Iterator[Family]:
+        """Families that were shown, bit by bit."""
         places: dict[int, list[int]] = {}
-        for place, shown in enumerate(modes):
-            places.setdefault(shown.stored, []).append(place)
-        families = []
+        for place, number in enumerate(self._numbers):
+            places.setdefault(reduction.modes[number].stored, []).append(place)
         for members in places.values():
-            basis = self._empty(len(members))
-            basis.modes = np.asfortranarray(modes[members[0]].outgoing)
-            basis.time_functions = np.stack(
-                [modes[place].time_functions for place in members], axis=2
-            ).reshape(basis.n_modes, -1)
-            family = self._family(members, basis)
-            family.record = records[members[0]]
-            families.append(family)
-        return families
+            numbers = [self._numbers[place] for place in members]
+            modes = np.asfortranarray(reduction.modes[numbers[0]].outgoing)
+            time_functions = [reduction.modes[number].time_functions for number in numbers]
+            joined = np.stack(time_functions, axis=2).reshape(modes.shape[1], -1)
+            weights = np.repeat(self._weights, len(members))
+            basis = SeparatedBasis(modes, joined, self.k, weights)
+            yield Family(members, basis, self._incoming(basis), reduction.records[numbers[0]])
 
     def _advance(self, family: Family, relaxation: float) -> None:
         basis, pgd = family.basis, self._pgd
@@ -241,7 +220,7 @@ class PGDGroup(Group[list[Family]]):
                 basis.append(mode, relaxation * time_function)
                 explained += basis.squared_of(time_function[None])
                 added += 1
-            dropped = basis.downsize(pgd.tolerance, self._pgd.modes)
+            dropped = basis.downsize(pgd.tolerance, pgd.modes)
             family.incoming_modes = self._incoming(basis)
         family.record = ReductionRecord(
             modes=basis.n_modes,
@@ -251,10 +230,10 @@ class PGDGroup(Group[list[Family]]):
             dropped=dropped,
         )
 
-    def _share(self, state: list[Family]) -> None:
+    def _share(self) -> None:
         """Join families whose fields lie in each other's modes up to the allowed share."""
         joined: list[Family] = []
-        for family in state:
+        for family in self.families:
             for other in joined:
                 apart = family.basis.outside(other.basis), other.basis.outside(family.basis)
                 if max(apart) <= self._pgd.sharing:
@@ -262,40 +241,22 @@ class PGDGroup(Group[list[Family]]):
                     break
             else:
                 joined.append(family)
-        state[:] = joined
+        self.families = joined
 
     def _join(self, family: Family, other: Family) -> None:
         target = self.field()
         for part in (family, other):
-            self._put(target, part.members, part.basis.field())
+            part.put(target, part.basis.field())
         family.members = sorted(family.members + other.members)
         family.basis = self._basis_of(family.columns(target), len(family.members))
         family.incoming_modes = self._incoming(family.basis)
 
-    def _family(self, members: list[int], basis: SeparatedBasis) -> Family:
-        record = ReductionRecord.idle(basis.n_modes)
-        return Family(members, basis, self._incoming(basis), record)
-
     def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
-        return SeparatedBasis.of_field(
-            columns,
-            self.k,
-            self._tiled(n_members),
-            self._pgd.tolerance,
-            self._pgd.modes,
-        )
-
-    def _empty(self, n_members: int) -> SeparatedBasis:
-        return SeparatedBasis.empty(self.k, self._tiled(n_members))
-
-    def _tiled(self, n_members: int) -> Array:
-        return np.repeat(self._weights, n_members)
+        weights, pgd = np.repeat(self._weights, n_members), self._pgd
+        return SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
 
     def _incoming(self, basis: SeparatedBasis) -> Array:
         incoming = np.empty(basis.modes.shape, order="F")
         if basis.n_modes:
             self.response.reflect(basis.modes, incoming)
         return incoming
-
-    def _put(self, field: Array, members: list[int], columns: Array) -> None:
-        field[:, members] = columns.reshape(len(field), len(members), -1, order="F")

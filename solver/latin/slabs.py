@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -94,7 +93,9 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     instants = slice(0, min(1 + length, problem.n_instants))
     direction = _OfWhole(k=latin.direction.of(problem))
     linear = replace(latin.linear, responses=Responses())
-    start = latin.start and Nested(partial(_at, latin.start, instants))
+    start, nested = None, latin.start
+    if nested is not None:
+        start = Nested(lambda: (slab_of(coarser, instants) for coarser in nested.problems()))
     stop, accuracy = latin.stop, latin.stop.accuracy
     if np.isfinite(accuracy):
         stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)
@@ -102,20 +103,8 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     return Slab(instants, slab_of(problem, instants), method)
 
 
-def _at(start: Nested, instants: slice) -> Iterator[Problem]:
-    return (slab_of(problem, instants) for problem in start.problems())
-
-
 def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Slab | None:
-    """The slab that follows; None after the last.
-
-    Parameters
-    ----------
-    problem, length
-        As for `first_slab`.
-    slab, solved
-        The slab before, and its solution.
-    """
+    """The slab that follows one, and its solution; None after the last."""
     first = slab.instants.stop
     if first == problem.n_instants:
         return None

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.laws import Contact
+from solver.laws import Contact, Friction, Unilateral
 
 SAME = 1e-9
 """By how much a motion may differ from a slide along the support."""
@@ -23,19 +23,17 @@ TRIALS = 8
 """Straight lines that are followed to their zero, before it is looked for between two shifts."""
 
 
-def slide_of(problem: Problem) -> Array | None:
-    """The rigid motion along its support of a body that a slack spring catches.
+def slide_of(problem: Problem, k: Array) -> Slide | None:
+    """The slide along its support of a body that a slack spring catches, with the k of all rows.
 
-    Returns
-    -------
-    Displacement of all degrees of freedom, shape (n_dofs,), 1 along the support; None where there
-    is no such body, or something else holds it.
+    None where there is no such body, or something else holds it.
     """
+    springs = [law.normal for law in problem.rubbing.values() if _is_spring(law)]
     ground = [law for law in problem.rubbing.values() if not _is_spring(law)]
-    if problem.motions is None or len(ground) != 1 or len(problem.rubbing) != 2:
+    if problem.motions is None or len(ground) != 1 or len(springs) != 1:
         return None
-    (law,) = ground
-    if law.normal is None or not law.is_on_support:
+    (law,), (spring,) = ground, springs
+    if law.normal is None or spring is None or not law.is_on_support:
         return None
     along = law.tangential
     if along.strength is not None or along.cap is not None:
@@ -45,7 +43,8 @@ def slide_of(problem: Problem) -> Array | None:
     moved = problem.motions[problem.row_dofs[np.concatenate([slides, across])]]
     shares = np.linalg.lstsq(moved, wanted, rcond=None)[0]
     is_held = np.abs(moved @ shares - wanted).max() > SAME
-    return None if is_held else np.asarray(problem.motions @ shares)
+    way = np.asarray(problem.motions @ shares)
+    return None if is_held else Slide(problem, way, k, law.normal, along, spring)
 
 
 def _is_spring(law: Contact) -> bool:
@@ -65,21 +64,31 @@ class Slide:
     Parameters
     ----------
     problem, way
-        What is solved, and the motion, as of `slide_of`.
+        What is solved, and the motion, 1 along the support, shape (n_dofs,).
     k
         Search direction of the rows, shape (n_rows,), scaled.
+    across, along, spring
+        Laws of the support, and of the spring.
+
+    Attributes
+    ----------
+    motion
+        Of the rows, shape (n_rows,).
     """
 
-    def __init__(self, problem: Problem, way: Array, k: Array) -> None:
-        (ground,) = (law for law in problem.rubbing.values() if not _is_spring(law))
-        (spring,) = (law.normal for law in problem.rubbing.values() if _is_spring(law))
-        law, along = ground.normal, ground.tangential
-        assert law is not None
-        assert spring is not None
+    def __init__(
+        self,
+        problem: Problem,
+        way: Array,
+        k: Array,
+        across: Unilateral,
+        along: Friction,
+        spring: Unilateral,
+    ) -> None:
         assert spring.softness is not None
-        self._across, self._along = law.component.above, along.component.above
+        self._across, self._along = across.component.above, along.component.above
         self._end = spring.component.above
-        self._closed, self._k = -law.gap[:, None], k[self._across, None]
+        self._closed, self._k = -across.gap[:, None], k[self._across, None]
         self._bound, self._friction = along.bound, along.friction[:, None]
         soft = 1.0 / k[self._along] + (0.0 if along.softness is None else along.softness)
         self._soft = soft[:, None]
@@ -88,7 +97,7 @@ class Slide:
         self._start = np.zeros(len(soft)) if along.start is None else along.start
         self._spring = float(1.0 / (1.0 / k[self._end] + spring.softness)[0])
         self._slack = float(spring.gap[0])
-        self._way = way[problem.row_dofs, None]
+        self.motion: Array = way[problem.row_dofs]
         parts = problem.substructures
         loads = [way[part.dofs] @ part.body_force for part in parts if part.body_force is not None]
         self._load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
@@ -102,20 +111,14 @@ class Slide:
         ends = -self._slack - incoming[self._end][0]
         shifts = self._shifts(targets, np.ascontiguousarray(reach.T), ends)
         shifted = np.empty_like(incoming)
-        np.multiply(self._way, shifts, out=shifted)
+        np.multiply(self.motion[:, None], shifts, out=shifted)
         return np.add(shifted, incoming, out=shifted)
 
     def _shifts(self, targets: Array, reach: Array, ends: Array) -> Array:
         """The shift of every instant, shape (n_instants,), scaled.
 
-        Parameters
-        ----------
-        targets
-            Where the points would be without friction or shift, shape (n_instants, n_points).
-        reach
-            How far a point can be behind before it slips, same shape.
-        ends
-            Shift up to which the spring pulls, shape (n_instants,).
+        Of points at `targets` without friction or shift, which can be behind by `reach` before they
+        slip, (n_instants, n_points) both; the spring pulls up to the shifts `ends`.
         """
         enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
         # Points are seen from the body, where the digits of how far they are behind stay.
@@ -139,10 +142,7 @@ class Slide:
         load: float,
         enough: float,
     ) -> tuple[float, Array] | None:
-        """Follow straight lines to the step at which all balances, None where that fails.
-
-        With it, how far the points are behind then.
-        """
+        """Step at which all balances, by straight lines, and how far points are behind then."""
         # The nearer the iteration is to its end, the less is left to shift.
         pulled, wanted, step = self._stiffness.dot, behind, 0.0
         for trial in range(TRIALS):

@@ -68,16 +68,9 @@ class Solution:
 def record(
     iterate: Iterate, verdict: Decision, distance: Distance | None, *, watch: bool = True
 ) -> Record:
-    """Gather the scalars of an iterate; what the rules did not need is off the run's clock.
+    """The scalars of an iterate; what the rules did not need is off the run's clock.
 
-    Parameters
-    ----------
-    iterate, verdict
-        Of one iteration.
-    distance
-        To a reference, or None.
-    watch
-        Whether anybody wants indicators and estimate of every iteration.
+    `watch` says whether anybody wants indicators and estimate of every iteration.
     """
     indicator, behaviour = verdict.indicator, verdict.behaviour
     estimated = verdict.estimated_error
@@ -106,25 +99,19 @@ def judged(
     latin: Latin,
     start: Checkpoint | None = None,
     spent: float = 0.0,
-    *,
-    resumable: bool = True,
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
-    Parameters
-    ----------
-    problem, latin, start, resumable
-        As for `iterations`, which goes on though a verdict says that the run ends.
-    spent
-        Seconds that the run took before, to make the problem.
+    It goes on though a verdict says that the run ends. The run took `spent` seconds before, to make
+    the problem.
     """
     rules = StopState(latin, spent)
-    for iterate in iterations(problem, latin, start, resumable=resumable):
+    for iterate in iterations(problem, latin, start):
         with one_blas_thread():
             verdict = rules.judge(iterate)
         yield iterate, verdict
         if verdict.finished is not None:
-            yield verdict.finished, rules.close(verdict.finished)
+            yield verdict.finished
             return
 
 
@@ -134,7 +121,6 @@ def solve(
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,
-    resumable: bool = False,
     watch: bool = True,
     spent: float = 0.0,
     cancelled: Callable[[], bool] = lambda: False,
@@ -143,22 +129,18 @@ def solve(
 
     Parameters
     ----------
-    problem, start, resumable
-        As for `iterations`.
-    latin
-        The method; its defaults are the fast one, from zero.
+    problem, latin, start, spent
+        As for `judged`; the method is the fast one by default, from zero.
     distance
         To a reference, for the errors in the records.
     watch
         Whether the records shall hold the indicators of every iteration.
-    spent
-        As for `judged`.
     cancelled
         Asked after every iteration.
     """
     records: list[Record] = []
     last = None
-    for iterate, verdict in judged(problem, latin, start, spent, resumable=resumable):
+    for iterate, verdict in judged(problem, latin, start, spent):
         status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)

@@ -17,8 +17,8 @@ from solver.discrete.substructure import Substructure
 from solver.latin.certified import known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
-from solver.reference.choice import incremental_solver
 from solver.reference.condensation import NoReferenceError
+from solver.reference.incremental import incremental_solver
 from solver.reference.solution import Interrupted, Reference
 
 
@@ -60,37 +60,20 @@ class Nested:
             except Interrupted:
                 return None
             if solution.converged.all():
-                return Checkpoint(0, 0.0, _carried(solution, problem, k))
+                return Checkpoint(0, 0.0, prolong(solution, problem, k))
         return None
 
 
-def _carried(solution: Reference, problem: Problem, k: Array) -> Array:
-    """Carry the solution of a coarser mesh to a problem: W + F/k, (n_rows, n_instants)."""
-    coarse = solution.problem
-    displacement = solution.displacement / coarse.scales.displacement
-    force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
-    return prolong(coarse, displacement[coarse.row_dofs], force, problem, k)
-
-
-def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k: Array) -> Array:
-    """Carry the solution of a coarser mesh to a finer one.
+def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
+    """Carry the solution of a coarser mesh to the same structure on a finer one: W + F/k.
 
     Displacement and friction force per length are linear between the coarse nodes of a body; the
-    forces on cuts and ends are those that the displacement needs inside each substructure.
-
-    Parameters
-    ----------
-    coarse, fine
-        The same structure on two meshes, at the same instants; however it is cut.
-    displacement, force
-        W and F of the coarse rows, shape (n_rows of coarse, n_instants), scaled.
-    k
-        Search direction of the fine rows, shape (n_rows of fine,).
-
-    Returns
-    -------
-    W + F/k, shape (n_rows of fine, n_instants).
+    forces on cuts and ends are those that the displacement needs inside each substructure. `k` and
+    the result are those of the fine rows, (n_rows,) and (n_rows, n_instants).
     """
+    coarse = solution.problem
+    displacement = (solution.displacement / coarse.scales.displacement)[coarse.row_dofs]
+    force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
     row_of_dof = np.zeros(coarse.n_dofs, dtype=np.intp)
     row_of_dof[coarse.row_dofs] = np.arange(coarse.n_rows)
     bodies, fine_bodies = _bodies(coarse), _bodies(fine)

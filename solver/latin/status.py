@@ -5,11 +5,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate
+from solver.reference.limit_analysis import Collapse
 
+if TYPE_CHECKING:
+    from solver.latin.method import Latin
+
+BELOW_UNPROVEN = (
+    "The LATIN indicator is below its tolerance, yet the contact force is not known to be accurate "
+    "enough"
+)
 FAR = 0.1
 """Error of the contact force from which on what a status step finds is not LATIN's own."""
 LOWEST = 1e-24
@@ -72,12 +81,15 @@ _ON_BASES = " The modes are those of that iterate."
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
 
-def collapses(time: float) -> Status:
-    """Status of a run whose loads no contact forces can balance from a time on, s."""
+def collapses(collapse: Collapse) -> Status:
+    """Status of a run whose loads no contact forces can balance from a time on."""
+    way, remedy = "slides away", "Lower the load, or raise friction or pressure."
+    if collapse.tips:
+        way, remedy = "tips over", "Lower the load, or make it wider, or press it more."
     return Status(
         Ending.STALLED,
-        f"There is no equilibrium from {time:.4g} s on: no contact forces within friction balance "
-        "the loads, and the structure collapses. Lower the load, or raise friction or pressure.",
+        f"There is no equilibrium from {collapse.time:.4g} s on: no contact forces within friction "
+        f"balance the loads, and the structure {way}. {remedy}",
     )
 
 
@@ -95,16 +107,8 @@ def certified(
 ) -> Status:
     """Status of a run that ends with a certified solution.
 
-    Parameters
-    ----------
-    finish
-        The iterate that is the solution. Separated bases that it shows are those of the search.
-    certificate
-        What it is made of, if the run has it.
-    error
-        Of the contact force of the last iterate before it; NaN without one.
-    advice
-        What to try, of a search that had to end earlier.
+    `error` is that of the contact force of the last iterate before it, NaN without one; `advice`
+    what to try, of a search that had to end earlier.
     """
     message = f"{_CERTIFIED} (residual {finish.residual or 0.0:.0e})."
     if not math.isnan(error):
@@ -122,84 +126,56 @@ def certified(
 
 def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:
     """Status that also says when the certified solution jumps, if it does."""
-    if certificate is None or certificate.jumps_at is None:
+    if certificate is None or certificate.solution.jumps_at is None:
         return status
-    message = _JUMPED.format(problem.instants[certificate.jumps_at])
+    message = _JUMPED.format(problem.instants[certificate.solution.jumps_at])
     return replace(status, advice=status.advice + message)
 
 
-@dataclass(frozen=True)
-class Advice:
-    """What to try where a run does not converge, by its method.
+def exhausted(latin: Latin, lack: str, *, is_late: bool) -> Status:
+    """Status of a run at its limit, of seconds if it is late, else of iterations.
 
-    Attributes
-    ----------
-    modes
-        What helps separated bases, to begin a sentence with; empty for full fields.
-    has_step
-        Whether a status step may end the run.
-    relaxation
-        Share of the new iterate.
+    `lack` says what is not met, in a sentence without its full stop.
     """
+    of_k, of_bases = _remedies(latin)
+    remedy = of_bases or f"Raise max_iterations, or {of_k}."
+    return Status(Ending.EXHAUSTED, f"{lack}. {_LONGER if is_late else remedy}")
 
-    modes: str
-    has_step: bool
-    relaxation: float
 
-    def exhausted(self, lack: str, *, is_late: bool) -> Status:
-        """Status of a run at its limit, of seconds if it is late, else of iterations.
+def stalled(latin: Latin, lowest: float, tolerance: float, *, agrees: bool) -> Status:
+    """Status of a run whose LATIN indicator has stopped falling.
 
-        `lack` says what is not met, in a sentence without its full stop.
-        """
-        remedy = self._of_bases or f"Raise max_iterations, or {self._of_k}."
-        return Status(Ending.EXHAUSTED, f"{lack}. {_LONGER if is_late else remedy}")
+    `tolerance` is low enough for it; `agrees` says whether the k-free indicator is.
+    """
+    of_k, of_bases = _remedies(latin)
+    if lowest < LOWEST and agrees:
+        advice = "The LATIN indicator is down to rounding: more iterations change nothing."
+    elif lowest < LOWEST:
+        advice = (
+            "The LATIN indicator is down to rounding, yet the k-free indicator shows that the "
+            "contact laws are broken: friction is too small beside the load, or k too far from the "
+            "stiffness, for more digits. Bring friction, the load and k_scale nearer to each other."
+        )
+    elif lowest <= tolerance and of_bases:
+        advice = f"{BELOW_UNPROVEN}. {of_bases}"
+    elif lowest <= tolerance:
+        advice = (
+            "The LATIN indicator is below its tolerance, yet the k-free indicator shows that the "
+            "contact laws are broken: k is far from what suits, or rigid motion so large that it "
+            f"hides how the body deforms. {of_k.capitalize()}."
+        )
+    elif latin.relaxation > 0.9:
+        advice = "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
+    else:
+        remedy = of_bases or f"Accept a larger tolerance, or {of_k}."
+        advice = f"The LATIN indicator has stopped falling. {remedy}"
+    return Status(Ending.STALLED, advice)
 
-    def stalled(self, lowest: float, tolerance: float, *, agrees: bool) -> Status:
-        """Status of a run whose LATIN indicator has stopped falling.
 
-        Parameters
-        ----------
-        lowest, tolerance
-            The lowest indicator so far, and the one that is low enough.
-        agrees
-            Whether the k-free indicator is low enough.
-        """
-        return Status(Ending.STALLED, self._against_stall(lowest, tolerance, agrees=agrees))
-
-    def _against_stall(self, lowest: float, tolerance: float, *, agrees: bool) -> str:
-        if lowest < LOWEST and agrees:
-            return "The LATIN indicator is down to rounding: more iterations change nothing."
-        if lowest < LOWEST:
-            return (
-                "The LATIN indicator is down to rounding, yet the k-free indicator shows that the "
-                "contact laws are broken: friction is too small beside the load, or k too far from "
-                "the stiffness, for more digits. Bring friction, the load and k_scale nearer to "
-                "each other."
-            )
-        if lowest <= tolerance and self.modes:
-            return (
-                "The LATIN indicator is below its tolerance, yet the contact force is not known to "
-                f"be accurate enough. {self._of_bases}"
-            )
-        if lowest <= tolerance:
-            return (
-                "The LATIN indicator is below its tolerance, yet the k-free indicator shows that "
-                "the contact laws are broken: k is far from what suits, or rigid motion so large "
-                f"that it hides how the body deforms. {self._of_k.capitalize()}."
-            )
-        if self.relaxation > 0.9:
-            return "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
-        remedy = self._of_bases or f"Accept a larger tolerance, or {self._of_k}."
-        return f"The LATIN indicator has stopped falling. {remedy}"
-
-    @property
-    def _of_k(self) -> str:
-        """What helps against an unsuitable k, as part of a sentence; a status step needs none."""
-        if not self.has_step:
-            return "set finish=at-once, for which k does not matter"
-        return "try a k_scale ten times smaller, and if that is no better ten times larger"
-
-    @property
-    def _of_bases(self) -> str:
-        also = "" if self.has_step else ", or set finish=at-once"
-        return f"{self.modes}{also}." if self.modes else ""
+def _remedies(latin: Latin) -> tuple[str, str]:
+    """What helps against an unsuitable k, as part of a sentence, and bases that are too small."""
+    has_step, modes = latin.finish is not None, latin.linear.remedy
+    of_k = "try a k_scale ten times smaller, and if that is no better ten times larger"
+    also = "" if has_step else ", or set finish=at-once"
+    of_bases = f"{modes}{also}." if modes else ""
+    return of_k if has_step else "set finish=at-once, for which k does not matter", of_bases

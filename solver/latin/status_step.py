@@ -11,27 +11,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
-from solver.reference.choice import Incremental
 from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
-from solver.reference.limit_analysis import Collapse
-from solver.reference.solution import States
+from solver.reference.incremental import Incremental
+from solver.reference.rules import States
+from solver.reference.solution import Reference
 
 STILL = 1e-3
 """Share of the largest slip of an interface below which a point counts as stuck, at most."""
 FRONT = 2.0
 """The same over the square of a point's share of the length, as slip grows behind a front. To call
-a point stuck that slips is the dearer mistake: mending frees one point at a time, and stops many
-at once. On 800 elements and 101 instants a step takes 480 systems with `STILL` alone, 180 with
-this, and 190 with 1e-9 (measured)."""
+a point stuck that slips is the dearer mistake, as mending frees one at a time: on 800 elements and
+101 instants a step takes 480 systems with `STILL` alone, 180 with this, 190 with 1e-9
+(measured)."""
 CERTIFIED = 1e-7
 """KKT residual of a certified solution at most, relative to the contact force. Its statuses agree
 with it exactly; on four wires of 320 elements the linear systems leave 1e-8 (measured)."""
@@ -43,27 +41,18 @@ class Certificate:
 
     Attributes
     ----------
-    displacement
-        Shape (n_dofs, n_instants), m.
-    deformation
-        The same without rigid motions that would hide it.
-    contact_force
-        Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), N.
+    solution
+        Its fields, and where it jumps.
     distance
         To it.
     residual
         Its KKT residual, relative to the contact force: the largest of all points and instants as
         if it were that of each.
-    jumps_at
-        Instant at which it jumps, as of `Reference`.
     """
 
-    displacement: Array
-    deformation: Array
-    contact_force: Array
+    solution: Reference
     distance: Distance
     residual: float
-    jumps_at: int | None = None
 
 
 @dataclass(frozen=True)
@@ -81,32 +70,14 @@ class StatusStep:
     at_once: bool = True
 
 
-class StepResult(NamedTuple):
-    """What a status step came to.
-
-    Attributes
-    ----------
-    certificate
-        The solution, or None where the statuses were too far from right.
-    jumps
-        Whether it found nothing any more after friction had made the structure jump.
-    collapse
-        From when on there is no equilibrium, if that is why it found nothing.
-    """
-
-    certificate: Certificate | None
-    jumps: bool
-    collapse: Collapse | None = None
-
-
 def status_step(
     solver: Incremental,
     problem: Problem,
     states: States,
     most: int,
     stop: Callable[[], bool] | None = None,
-) -> StepResult:
-    """Try to certify states, mended.
+) -> tuple[Reference, Certificate | None]:
+    """What the solver makes of states, mended, and its certificate if it is a solution.
 
     Parameters
     ----------
@@ -127,24 +98,13 @@ def status_step(
         If the solver is not worth the size of the problem.
     """
     solution = solver.march(guess=states, most=most, stop=stop)
-    jumps = solution.jumps_at is not None and solution.is_lost
-    nothing = StepResult(None, jumps, solution.collapse)
     if not solution.converged.all():
-        return nothing
+        return solution, None
     distance = distance_to(solution, problem)
     residual = solution.unbalanced * np.sqrt(len(solution.contact_force)) / distance.force_size
     if residual > (BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED):
-        return nothing
-    deformation = solution.deformation
-    certificate = Certificate(
-        solution.displacement,
-        solution.displacement if deformation is None else deformation,
-        solution.contact_force,
-        distance,
-        float(residual),
-        solution.jumps_at,
-    )
-    return StepResult(certificate, jumps)
+        return solution, None
+    return solution, Certificate(solution, distance, float(residual))
 
 
 def states_of(iterate: Iterate) -> States:

@@ -16,32 +16,28 @@ if TYPE_CHECKING:
     from solver.laws.contact import Contact
 
 FRICTION_FACTOR = 2.0
-"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h.
-Measured with Anderson acceleration and a nested start, sine and decaying cycles of 300 to 2400 N:
-1 % of friction force within 23 iterations with 1.5 and 2, 19 with 3, 28 with 1, 43 with 4; and
-1e-6 the later the larger it is."""
+"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h. Of
+sines and decaying cycles 1 % of friction force takes at most 23 iterations with 1.5 and 2, 19 with
+3, 28 with 1, 43 with 4; and 1e-6 the later the larger it is (measured)."""
 CONTACT_STIFFNESS = 7.0
-"""k per area of a contact in the plane, times its length over E. With both, 1 % of the contact
-force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs by at most two from
-4 to 64 substructures: pressed flat, on a parabola, tilted, and a quarter as high; 48 and 96
-elements along (measured). Twice as much takes up to 20."""
+"""k per area of a contact in the plane, times its length over E. 1 % of the contact force takes 8
+to 14 iterations, whatever the gap and height of the body and from 4 to 64 substructures; with twice
+as much up to 20 (measured)."""
 AT_A_POINT = 0.1
-"""k of a point where a spring pulls, over E, for a metre of thickness. With that of a whole contact
-on this one point, where mostly no force acts, it is what keeps a body from sliding. On 14
-blocks on slopes 1 % of the contact force takes 8 to 18 iterations, as many with 0.03, some 26 with
-1, and 29 to more than 120 with that of a contact (measured)."""
+"""k of a point where a spring pulls, over E, for a metre of thickness. On 14 blocks on slopes 1 %
+of the contact force takes 8 to 18 iterations, as many with 0.03, some 26 with 1, and 29 to more
+than 120 with the k of a contact, which keeps the body from sliding (measured)."""
 RESOLVED, FINER = 96.0, 1.0 / 3.0
-"""Elements along a support from which its k grows with their number, and to which power. What is
-local then is stiffer than the body as a whole, so a constant k finds it ever later. Block of
-768 x 384 elements on a parabola: 1e-4 of the contact force takes 52 iterations, 104 with a constant
-k; flat, 53 instead of 62 (measured). Layers, where k is of their sliding, gain nothing."""
+"""Elements along a support from which its k grows with their number, and to which power: what is
+local is stiffer than the body as a whole. Block of 768 x 384 elements on a parabola: 1e-4 takes 52
+iterations, 104 with a constant k; flat, 53 instead of 62 (measured)."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
 """The tangential k between two bodies over the normal one: layers slide on each other along their
 length. Measured as `SLENDER` is: at most 45 iterations; 76 with half as much, 67 with twice."""
 SLENDER = 40.0
-"""How many times as long as thick two bodies in contact may be before k must be smaller. Two to ten
-layers, 10 to 1000 times as long as thick: 1 % of the contact force takes 10 to 45 iterations, at
-most 54 with half of it, 46 with twice, 82 with four times, more than 150 without (measured)."""
+"""How many times as long as thick two bodies in contact may be before k must be smaller. Of layers
+10 to 1000 times as long as thick 1 % of the contact force takes at most 45 iterations, 54 with
+half, 46 with twice, 82 with four times, more than 150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,16 +73,9 @@ class Rod:
     16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface.
+        """Write the k of an interface into that of all rows, (n_rows,), scaled.
 
-        Parameters
-        ----------
-        law
-            The interface.
-        k
-            Of all rows, scaled, shape (n_rows,), in which that of the interface is written.
-        parts
-            Over the share of one interface that slides, the number of interfaces.
+        `parts` is the number of interfaces over the share of one that slides.
         """
         length = law.weights.sum()
         spacing = length / max(len(law.positions) - 1, 1)
@@ -95,9 +84,6 @@ class Rod:
             k[rows] = stiffness * law.weights / spacing
             if self.modulus is not None:
                 k[rows] *= self.modulus
-
-    def stick(self, law: Contact, k: Array) -> None:
-        """Where it nowhere slips k stays as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,10 +145,9 @@ class Bodies:
     def _slender(self, law: Contact) -> float:
         """Factor on k between two bodies that are thin beside their length.
 
-        Layers slide like rods: what is global is the stiffness E d / l^2 per area of a rod of depth
-        d along the contact's length l, what is local E d / (l h) with the distance h of its points,
-        or with d where that is larger. Their geometric mean is E / l times the root of
-        d / l min(1, d / h). Bending is softer still, but the macro forces see to its long waves.
+        Layers slide like rods, of stiffness E d / l^2 per area as a whole, with the depth d along
+        the contact's length l; and E d / (l h) from point to point, h apart, or d where that is
+        larger. This is their geometric mean over E / l. Macro forces see to long waves of bending.
         """
         length = float(law.weights.sum())
         spacing = length / max(len(law.positions) - 1, 1)
@@ -190,9 +175,6 @@ class PointOfBody:
         for component in law.components:
             for rows in component.sides:
                 k[rows] = AT_A_POINT * self.modulus
-
-    def stick(self, law: Contact, k: Array) -> None:
-        """Where it nowhere slips k stays as it is."""
 
 
 Around = Rod | Bodies | PointOfBody

@@ -254,13 +254,7 @@ class Contact(Interface):
         )
 
     def capacity(self, held: NDArray[np.bool_]) -> float:
-        """Largest friction force that it can ever carry without pressing, beside the supports.
-
-        Parameters
-        ----------
-        held
-            Rows whose displacement is prescribed, shape (n_rows,).
-        """
+        """Largest friction force that it can ever carry without pressing, beside the held rows."""
         return float(self.tangential.bound.max(axis=1)[~held[self.tangent.above]].sum())
 
     def carried(self, force: Array) -> float:

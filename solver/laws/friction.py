@@ -112,15 +112,7 @@ class FrictionLaw:
         )
 
     def without_slip(self, rubbed: Array, size: float = 1.0) -> Array:
-        """Largest friction force before slip, of the shape of what mu N alone makes.
-
-        Parameters
-        ----------
-        rubbed
-            mu N, per area or of all of it.
-        size
-            The area, m or m^2; 1 where `rubbed` is per area.
-        """
+        """Largest friction force before slip, of what mu N makes, per area or of all of an area."""
         return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))
 
     @property
@@ -172,10 +164,7 @@ class Friction:
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Position of the slider of every pair, shape (n_pairs, n_instants), scaled.
 
-        Parameters
-        ----------
-        displacement, force
-            W and F of all rows, shape (n_rows, n_instants); None for F leaves the spring out.
+        From W and F of all rows, (n_rows, n_instants); None for F leaves the spring out.
         """
         jump = self.component.jump(displacement)
         if self.softness is None or force is None:
@@ -202,12 +191,8 @@ class Friction:
     def without_slip(self, pressing: Array | None, opening: Array | None = None) -> Array:
         """Largest friction force before slip, (n_pairs, n_instants), or as the bound is.
 
-        Parameters
-        ----------
-        pressing
-            Force that presses, shape (n_pairs, n_instants); None where the pressure is known.
-        opening
-            Distance of the sides, same shape, where it may break a bond.
+        By the force that presses, None where the pressure is known, and the distance of the
+        sides where it may break a bond; both (n_pairs, n_instants).
         """
         bound = self.bound
         if pressing is not None:

@@ -198,10 +198,8 @@ def follow(target: Array, reach: Array, strength: Strength) -> Array:
 def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:
     """Smallest slip a >= 0 of one instant with a + reach g(gone + a) = distance, shape (n,).
 
-    The left side is linear in a between the points of g, of which the first that is no less than
-    the distance ends the way. Where it falls with a, as friction softens faster than the search
-    direction unloads, and the distance is within reach, the point sticks: that is the solution that
-    it is at already.
+    The left side is linear in a between the points of g. Where it falls with a, as friction softens
+    faster than the search direction unloads, and the distance is within reach, the point sticks.
     """
     slip, missing = np.zeros_like(distance), distance - reach * strength(gone)
     left = missing > 0.0

@@ -10,9 +10,8 @@ import numpy as np
 from solver.arrays import Array
 
 STEPS = 4
-"""Steps of the fixed point at most. On bar and strand with 20 modes, 1, 2 and 10 steps, and the
-leading singular pair itself, reach 10 % and 1 % of force error within one iteration of each other
-(98 to 106; measured)."""
+"""Steps of the fixed point at most: 1, 2 and 10 steps, and the leading singular pair itself, reach
+1 % of force error within one iteration of each other (bar and strand, 98 to 106; measured)."""
 STAGNATION = 0.01
 """Change of a pair's size, as a share, at which the fixed point stops; 0 and 0.1 as well."""
 

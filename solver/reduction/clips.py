@@ -25,8 +25,7 @@ BELOW = -2.0
 """A line that lies below all shares: the point keeps what it has."""
 STEPS = 6
 """Passes in which a line is fitted again to the instants at which its own clip shows it. With 2 the
-error where friction changes with slip is a sixth larger, on iterates of bar and strand the same
-(measured)."""
+error where friction changes with slip is a sixth larger (measured)."""
 ENTRIES = 64
 """Instants of a branch, at most, at which lines are drawn through the entries of all points."""
 SAME_SHAPE = 1e-9
@@ -156,13 +155,7 @@ def clips_of(
 
 
 def monotone(load: Array) -> Iterator[slice]:
-    """Yield the branches of a load, each as far as it goes one way; it starts from zero.
-
-    Parameters
-    ----------
-    load
-        Shape (n_instants,). Where it stands still, the branch goes on.
-    """
+    """Yield the branches of a load, from zero: as far as it goes one way, or stands still."""
     ways = np.sign(np.diff(load, prepend=0.0))
     moving = np.flatnonzero(ways)
     turns = moving[1:][ways[moving[1:]] != ways[moving[:-1]]]
@@ -192,22 +185,10 @@ def _fitted(
 class _Ramps:
     """Shares of the bound at the points in one branch, each counted in the way that it goes.
 
-    A point keeps the friction that it had before, then follows the load in proportion, then slips
-    at its bound: its share is min(1, max(low, a g + b)), with the load g counted in the branch's
-    way. What is clipped is a straight line.
-
-    Attributes
-    ----------
-    shares
-        Shape (n_points, n_instants).
-    low
-        What each had when the branch began, from -1 to 1, same shape.
-    load
-        Rising, shape (n_instants,).
-    before
-        The load when the branch began.
-    weights
-        Of the instants, shape (n_instants,), non-negative.
+    A point keeps the friction `low` that it had before, then follows the load g, which rises from
+    `before`, in proportion, then slips at its bound: its share is min(1, max(low, a g + b)).
+    Shares have shape (n_points, n_instants); `low` is broadcast to that, `weights` of the instants
+    are non-negative.
     """
 
     shares: Array
@@ -272,10 +253,7 @@ class _Ramps:
 
 
 def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:
-    """Clipped argument of a branch, shape (n_points, n_instants of it), N/m.
-
-    What was held is within a bound that has fallen since.
-    """
+    """Clipped argument of a branch, (n_points, n_instants); a lower bound cuts what was held."""
     line = (branch.slope[:, None] * load[branch.instants] + branch.offset[:, None]) * bound
     kept = np.clip(held[:, None], -bound, bound)
     is_up = (branch.way * branch.slope >= 0.0)[:, None]

@@ -95,17 +95,9 @@ class Decomposition:
         return int(np.argmax(self.errors <= share))
 
     def correlations(self, modes: Array) -> Array:
-        """Cosines between modes and the space modes of the same place in the order.
+        """Cosines between modes, (n_points, n), and the space modes of the same place in the order.
 
-        Parameters
-        ----------
-        modes
-            Shape (n_points, n), of any length but zero.
-
-        Returns
-        -------
-        Shape (n,), in the inner product of `space_weights`, from -1 to 1; the sign tells whether
-        the modes point the same way.
+        Shape (n,), in the inner product of `space_weights`, from -1 to 1.
         """
         lengths = np.sqrt(self.space_weights @ modes**2)
         space_modes = self.space_modes[:, : modes.shape[1]]
@@ -115,15 +107,7 @@ class Decomposition:
 def decompose(
     field: Array, space_weights: Array, time_weights: Array, positions: Array
 ) -> Decomposition:
-    """Decomposition of a space-time field in weighted inner products.
-
-    Parameters
-    ----------
-    field
-        Shape (n_points, n_instants).
-    space_weights, time_weights, positions
-        As in `Decomposition`.
-    """
+    """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
     space_root, time_root = np.sqrt(space_weights)[:, None], np.sqrt(time_weights)
     left, values, right = np.linalg.svd(space_root * field * time_root, full_matrices=False)
     space_modes, time_modes = left / space_root, right / time_root
@@ -183,17 +167,10 @@ def front_decay(count: int) -> Array:
 
 
 def against_front(values: Array) -> Array:
-    """Decay of singular values over that of a constant-speed front.
+    """Decay of singular values, descending, over that of a constant-speed front.
 
-    Parameters
-    ----------
-    values
-        Shape (n_modes,), descending.
-
-    Returns
-    -------
-    (2n - 1) sigma_n/sigma_1, same shape: 1 throughout for a constant-speed front, falling for a
-    field that is easier to reduce. Zero where all values are.
+    (2n - 1) sigma_n/sigma_1: 1 throughout for a constant-speed front, falling for a field that is
+    easier to reduce. Zero where all values are.
     """
     if values[0] == 0.0:
         return np.zeros_like(values)

@@ -1,4 +1,4 @@
-"""The whole structure as one: stiffness and load that every incremental solver starts from."""
+"""The whole structure as one: stiffness, load and jumps that incremental solvers start from."""
 
 from __future__ import annotations
 
@@ -42,3 +42,18 @@ def points_dofs(problem: Problem) -> Indices:
         under[law.points] = problem.row_dofs[law.tangent.above]
         dofs.append(under)
     return np.concatenate(dofs)
+
+
+def jumps(problem: Problem) -> sparse.csr_array:
+    """J, the jumps of all pairs, shape (n_forces, n_dofs)."""
+    rows, columns, values, first = [], [], [], 0
+    for law in problem.rubbing.values():
+        points, pairs = np.unique(law.points, return_index=True)
+        for component in law.components:
+            for side, value in zip(component.sides, (1.0, -1.0), strict=False):
+                rows.append(first + points)
+                columns.append(problem.row_dofs[side[pairs]])
+                values.append(np.full(len(points), value))
+            first += len(law.positions)
+    entries = np.concatenate(rows), np.concatenate(columns)
+    return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))

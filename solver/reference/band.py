@@ -105,14 +105,10 @@ class Band:
         return band if self._added is None else band.stiffened(self._added[places])
 
     def tied(self, group: Indices, movable: Array) -> Self:
-        """Stiffness of degrees of freedom that are tied together where they are movable.
+        """Stiffness of degrees of freedom that are tied together where they are movable, 1 or 0.
 
-        Parameters
-        ----------
-        group
-            Number of the one that each becomes, ascending, shape (n,).
-        movable
-            1 or 0, same shape; one without any that is movable has the stiffness 1.
+        `group` is the number of the one that each becomes, ascending, shape (n,); one without
+        any that is movable has the stiffness 1.
         """
         size = int(group[-1]) + 1
         upper = np.zeros((self._width + 1, size), order="F")

@@ -21,8 +21,7 @@ from solver.arrays import Array, Indices
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import CONVERGED, NEWTON_LIMIT, Marched, Newton
-from solver.reference.rules import Rules
-from solver.reference.states import HELD, Increment, Sides, States
+from solver.reference.rules import HELD, Increment, Rules, Sides, States
 from solver.reference.unloading import unload
 
 SETTLED = 1e-12

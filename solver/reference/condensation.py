@@ -33,9 +33,9 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.dense import blocks, symmetrise
-from solver.reference.glued import base_of, from_jumps, jumps, self_stresses
+from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of
 
 LOOSE = 1e-14
@@ -187,13 +187,7 @@ class Condensation:
         return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
 
     def deformation(self, strained: Array) -> Array:
-        """All displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
-
-        Parameters
-        ----------
-        strained
-            Jumps y of the base, shape (n_base, n_instants), scaled.
-        """
+        """All displacements but for rigid motions, (n_dofs, n_instants), by jumps y of the base."""
         displacement = np.empty_like(self._force)
         displacement[self._fixed] = self._prescribed
         jumped = self._balanced(strained - self._given_of_base)
@@ -206,14 +200,9 @@ class Condensation:
         return np.asarray(self._jumps @ displacement)
 
     def unbalanced(self, deformation: Array, force: Array) -> Array:
-        """Forces out of balance where nothing is prescribed, (n_free, n_instants).
+        """Forces out of balance where nothing is prescribed, (n_free, n_instants), scaled.
 
-        Parameters
-        ----------
-        deformation
-            Displacement but for rigid motions, shape (n_dofs, n_instants), scaled.
-        force
-            Of all contacts, shape (n_forces, n_instants), scaled.
+        By displacements without rigid motions, and the force of all contacts.
         """
         outer = self._force + self._jumps.T @ force
         return np.asarray((self._whole @ deformation - outer)[self._free])
@@ -223,15 +212,8 @@ class Condensation:
 
         The forces inside a slender body are far larger than what acts on it; and what they were
         once stays in the places where its contacts stick. How far a body has moved says where a
-        spring ends, too, and what closes: but there rounding of the motion deforms the body, and
-        where that makes more than a small share of the forces, these are lost.
-
-        Parameters
-        ----------
-        deformation, motion
-            Displacement but for rigid motions, and these, shape (n_dofs, n_instants), scaled.
-        size
-            Largest force, scaled.
+        spring ends, too, and what closes: but there rounding of the rigid motion deforms the body,
+        and where that makes more than a small share of the largest force, `size`, these are lost.
         """
         inside = abs(self._whole) @ np.abs(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))

@@ -15,21 +15,22 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solver.arrays import Array, Flags
 from solver.discrete.problem import Problem
+from solver.laws import OPEN
+from solver.laws.play import follow, play
 from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
-from solver.reference.rules import rules_of
-from solver.reference.solution import Interrupted, Reference, Shown, unbalanced_of
-from solver.reference.states import States, all_forces, status_of
+from solver.reference.rules import Rules, States, rules_of
+from solver.reference.solution import Interrupted, Reference
 
 MOST_JUMPS = 13_000
-"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB, and its
-time grows with the square to the cube of their number. 12 935 of 200 wires, of which few slip at a
-time, take 18 s and 1.5 GB; 3700 of 20 layers, of which a third does, 30 s (measured)."""
+"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB. 12 935 of
+200 wires, of which few slip at a time, take 18 s; 3700 of 20 layers, of which a third does, 30
+s."""
 
 
 class IncrementalContact:
@@ -42,11 +43,6 @@ class IncrementalContact:
     Where the normal jump is prescribed, contact shares its force with the support in any way: it
     is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
     its motion; at rest it is taken as zero.
-
-    Parameters
-    ----------
-    problem
-        A structure with any number of interfaces with friction.
 
     Raises
     ------
@@ -90,7 +86,7 @@ class IncrementalContact:
         Raises
         ------
         Interrupted
-            As soon as `stop` gives True.
+            As soon as `stop` returns True.
         """
         start = time.perf_counter()
         problem, condensed, rules = self._problem, self._condensed, self._rules
@@ -131,27 +127,23 @@ class IncrementalContact:
     def _nothing_done(self) -> Marched:
         """Allocate what instants are written into."""
         condensed = self._condensed
-        sizes = (
-            len(condensed.moving),
-            len(condensed.moving),
-            len(condensed.base),
-            condensed.gauge.shape[1],
-        )
+        n_moving, (n_base, n_motions) = len(condensed.moving), condensed.gauge.shape
+        sizes = n_moving, n_moving, n_base, n_motions
         return Marched(*(np.zeros((size, self._problem.n_instants)) for size in sizes))
 
-    def _judged(self, done: Marched, reached: NDArray[np.bool_]) -> Reference:
-        """Give all fields, and how far they are from equilibrium and laws."""
+    def _judged(self, done: Marched, reached: Flags) -> Reference:
+        """All fields, and how far they are from equilibrium and laws."""
         problem, condensed, rules = self._problem, self._condensed, self._rules
         motion = np.cumsum(done.motion, axis=1)
         deformation = condensed.deformation(np.cumsum(done.strained, axis=1))
         rigid = condensed.motions @ motion
         moved = condensed.jump(deformation)
-        forces = all_forces(condensed, rules, moved, done.force)
+        forces = _all_forces(condensed, rules, moved, done.force)
         moved += rules.compliance[:, None] * forces
         slip = np.diff(moved, axis=1, prepend=0.0)
         slip += condensed.jump(condensed.motions @ done.motion)
         opening = moved + condensed.jump(rigid) + rules.gap[:, None]
-        unbalanced = unbalanced_of(condensed, rules, Shown(deformation, forces, opening, slip))
+        unbalanced = _unbalanced(condensed, rules, deformation, forces, opening, slip)
         slip[condensed.moving] = done.slip
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
@@ -162,7 +154,7 @@ class IncrementalContact:
             displacement=(deformation + rigid) * scales.displacement,
             deformation=deformation * scales.displacement,
             contact_force=forces * scales.force,
-            status=status_of(rules, slip, forces),
+            status=_status(rules, slip, forces),
             residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * scales.force,
             rounding=blurred * scales.force,
@@ -174,6 +166,62 @@ class IncrementalContact:
 
 
 def jumps_in(problem: Problem) -> int:
-    """Give the number of components of contact that `IncrementalContact` condenses."""
+    """Number of components of contact that `IncrementalContact` condenses."""
     laws = problem.rubbing.values()
     return sum(len(component.above) for law in laws for component in law.components)
+
+
+def _unbalanced(
+    condensed: Condensation,
+    rules: Rules,
+    deformation: Array,
+    force: Array,
+    opening: Array,
+    slip: Array,
+) -> Array:
+    """KKT residual of every instant, a force, scaled.
+
+    The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
+    opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness
+    r of the pair makes a force of a length; the conditions hold if and only if both distances
+    vanish.
+    """
+    unit = condensed.unit[:, None]
+    bound = rules.bounds(force, slip, opening)
+    pressed = np.maximum(force - unit * opening, 0.0)
+    rubbed = np.clip(force - unit * slip, -bound, bound)
+    wrong = np.abs(force - np.where(rules.normal[:, None], pressed, rubbed))
+    # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
+    moving = np.isin(np.arange(len(force)), condensed.moving)
+    wrong[rules.normal & ~moving] = 0.0
+    unbalanced = np.abs(condensed.unbalanced(deformation, force)).max(axis=0, initial=0.0)
+    return np.asarray(np.maximum(unbalanced, wrong.max(axis=0, initial=0.0)))
+
+
+def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:
+    """Add the friction at jumps that follow from prescribed displacements, all instants."""
+    forces = np.zeros_like(jumps)
+    forces[condensed.moving] = force
+    given = ~rules.normal
+    given[condensed.moving] = False
+    slip = np.diff(jumps, axis=1, prepend=0.0)
+    bound = rules.bounds(forces, slip)
+    forces[given] = (-bound * np.sign(slip))[given]
+    for number, strength in enumerate(rules.strengths):
+        springy = given & (rules.compliance > 0.0) & (rules.strength == number)
+        if not springy.any():
+            continue
+        soft, jump = rules.compliance[springy, None], jumps[springy]
+        reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[springy]
+        slider = play(jump, reach) if number == 0 else follow(jump, reach, strength)
+        forces[springy] = (slider - jump) / soft
+    return forces
+
+
+def _status(rules: Rules, slip: Array, forces: Array) -> States:
+    """Status of every point, stacked interface by interface, (n_points, n_instants)."""
+    tangential = ~rules.normal
+    status = np.sign(slip).astype(np.int8)
+    with_normal = rules.normal[rules.partner][:, None]
+    status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN
+    return np.asarray(status[tangential])

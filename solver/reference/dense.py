@@ -28,21 +28,11 @@ def symmetrise(matrix: Array) -> None:
 
 
 class Factors:
-    """A square matrix, factored.
+    """A square matrix, factored, and whether its determinant is negative (`turned`).
 
-    Parameters
-    ----------
-    matrix
-        Shape (n, n).
-    scaled
-        Whether to bring rows and columns to one size first, by powers of two, and to refine what is
-        solved once: then every row holds up to the rounding of its own terms (Skeel, Math. Comp.
-        35, 1980).
-
-    Attributes
-    ----------
-    turned
-        Whether the determinant is negative.
+    If `scaled`, rows and columns are brought to one size first, by powers of two, and what
+    is solved is refined once: then every row holds up to the rounding of its own terms (Skeel,
+    Math. Comp. 35, 1980).
     """
 
     def __init__(self, matrix: Array, *, scaled: bool) -> None:

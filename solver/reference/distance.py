@@ -6,13 +6,12 @@ from operator import truediv
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness
-from solver.reference.glued import jumps, self_stresses
+from solver.reference.assembly import assembled_stiffness, jumps
+from solver.reference.glued import self_stresses
 from solver.reference.rules import rules_of
 
 VANISHING = 1e-8
@@ -20,9 +19,8 @@ VANISHING = 1e-8
 
 
 LEAST_SHARE = 0.01
-"""Share of pressure and friction together that each of them counts as, at least. Friction hides
-behind a pressure of a hundred times its size if both are measured by one norm; and a friction that
-is next to nothing beside the pressure that it comes from has no digits that a run could find."""
+"""Share of pressure and friction together that each of them counts as, at least: a friction that is
+next to nothing beside the pressure that it comes from has no digits that a run could find."""
 
 
 class Fields(Protocol):
@@ -49,22 +47,10 @@ class Distance:
     ----------
     reference
         The fields that count as true.
-    time_weights
-        Shape (n_instants,).
+    problem
+        Which they are of.
     load
         Forces that act on the structure, shape (n, n_instants), N.
-    bound
-        Friction forces that are allowed without any pressure, N, shape (n_forces, n_instants), or
-        (n_forces, 1) where they stay the same.
-    dofs
-        Degrees of freedom at interfaces, shape (n,).
-    normal
-        Which of the forces are pressures that follow from the solution, shape (n_forces,).
-    determinate
-        Where the contact force is, shape (n_forces, n_instants); a point that is held still by
-        a support shares its force with that support in any way.
-    held
-        Instants at which the displacement is, shape (n_instants,).
 
     Attributes
     ----------
@@ -72,29 +58,21 @@ class Distance:
         What distances of contact forces are divided by, the norm of the forces, N sqrt(s).
     """
 
-    def __init__(
-        self,
-        reference: Fields,
-        time_weights: Array,
-        load: Array,
-        bound: Array,
-        dofs: Indices,
-        normal: NDArray[np.bool_],
-        determinate: NDArray[np.bool_],
-        held: NDArray[np.bool_],
-    ) -> None:
-        self._weights = time_weights
-        self._determinate, self._held = determinate, held
-        self._dofs = dofs
-        self._displacement = reference.displacement[dofs] * held
-        self._force = reference.contact_force * determinate
+    def __init__(self, reference: Fields, problem: Problem, load: Array) -> None:
+        rules, self._weights = rules_of(problem), problem.time_weights
+        self._determinate = determinate_forces(problem)
+        self._held = held_instants(problem, reference.contact_force)
+        self._dofs: Indices = np.unique(problem.row_dofs)
+        self._displacement = reference.displacement[self._dofs] * self._held
+        self._force = reference.contact_force * self._determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
         force_size, load_size = self._norm(self._force), self._norm(load)
-        allowed = self._norm(bound * np.ones(len(time_weights)))
+        bound = rules.bound * problem.scales.force
+        allowed = self._norm(bound * np.ones(len(self._weights)))
         # Without a known bound it is the load alone that contact forces can vanish beside.
         vanishes = force_size <= VANISHING * (min(load_size, allowed) or load_size)
         self.force_size = (load_size if vanishes else force_size) or 1.0
-        self._kinds = [kind for kind in (normal, ~normal) if kind.any()]
+        self._kinds = [kind for kind in (rules.normal, ~rules.normal) if kind.any()]
         least = self.force_size if vanishes else LEAST_SHARE * self.force_size
         self._sizes = [max(self._norm(self._force[kind]), least) for kind in self._kinds]
 
@@ -140,19 +118,10 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
         if np.abs(forces[0]).max(initial=0.0) <= VANISHING * elements.max(initial=0.0):
             forces = [elements]
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])
-    return Distance(
-        reference,
-        problem.time_weights,
-        load * problem.scales.force,
-        rules_of(problem).bound * problem.scales.force,
-        np.unique(problem.row_dofs),
-        rules_of(problem).normal,
-        determinate_forces(problem),
-        held_instants(problem, reference.contact_force),
-    )
+    return Distance(reference, problem, load * problem.scales.force)
 
 
-def held_instants(problem: Problem, contact_force: Array) -> NDArray[np.bool_]:
+def held_instants(problem: Problem, contact_force: Array) -> Flags:
     """Instants at which contact forces determine where all bodies are, shape (n_instants,).
 
     A body that contact alone holds may lie anywhere along a rigid motion that neither goes against
@@ -181,7 +150,7 @@ def held_instants(problem: Problem, contact_force: Array) -> NDArray[np.bool_]:
     return np.asarray(np.asarray(sure)[kind.ravel()] | at_rest)
 
 
-def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
+def determinate_forces(problem: Problem) -> Flags:
     """Where contact forces are determinate, stacked, shape (n_forces, n_instants).
 
     Where prescribed displacements alone make a jump, a normal force is not, nor is the friction

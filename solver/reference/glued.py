@@ -21,25 +21,9 @@ from scipy.sparse.csgraph import (
 from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.problem import Problem
 
 NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
-
-
-def jumps(problem: Problem) -> sparse.csr_array:
-    """J, the jumps of all pairs, shape (n_forces, n_dofs)."""
-    rows, columns, values, first = [], [], [], 0
-    for law in problem.rubbing.values():
-        points, pairs = np.unique(law.points, return_index=True)
-        for component in law.components:
-            for side, value in zip(component.sides, (1.0, -1.0), strict=False):
-                rows.append(first + points)
-                columns.append(problem.row_dofs[side[pairs]])
-                values.append(np.full(len(points), value))
-            first += len(law.positions)
-    entries = np.concatenate(rows), np.concatenate(columns)
-    return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))
 
 
 def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -22,12 +23,11 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
 from solver.reference.band import Band
-from solver.reference.changing_bound import bounds_of, least_with_changing_bound
-from solver.reference.condensation import LEFT_INSIDE
+from solver.reference.condensation import LEFT_INSIDE, NoReferenceError
 from solver.reference.contact import IncrementalContact
-from solver.reference.search import Minimum, Search
-from solver.reference.solution import Interrupted, Reference, States
-from solver.reference.states import Starts
+from solver.reference.rules import Starts, States
+from solver.reference.search import Minimum, Search, bounds_of, least_with_changing_bound
+from solver.reference.solution import Interrupted, Reference
 
 DEARER = 30
 """Points that make a system of the general solver cost one more of the band's (measured)."""
@@ -86,23 +86,12 @@ class IncrementalRod:
         most: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
-        """Solve instant by instant.
-
-        Parameters
-        ----------
-        guess
-            Statuses from which an instant starts, shape (n_points, n_instants), unless those of the
-            instant before turn out to be better.
-        most
-            Linear systems to solve; the instants that are not reached then do not move, and are
-            not `converged`.
-        stop
-            Called once per instant.
+        """Solve instant by instant, as `IncrementalContact.march`; a guess is one of statuses.
 
         Raises
         ------
         Interrupted
-            As soon as `stop` gives True.
+            As soon as `stop` returns True.
         TooLargeError
             If friction softens so fast that the general solver is needed, and there are too many
             points for it.
@@ -124,7 +113,8 @@ class IncrementalRod:
                 begin = guessed
             least = self._minimise(instant, self._load_steps[instant] + balance, begin, gone)
             if least is None:
-                return self._general.march(guess, most and most // self._dearer, stop)
+                dearer = 1 + len(self._dofs) // DEARER
+                return self._general.march(guess, most and most // dearer, stop)
             minima.append(least)
             starts.took(band.solutions - done, from_guess=from_guess)
             balance, status = least.pull, least.status
@@ -135,12 +125,7 @@ class IncrementalRod:
     def _minimise(self, instant: int, force: Array, status: Array, gone: Array) -> Minimum | None:
         """Minimise phi over one instant, from a guess of the statuses; None where it has none.
 
-        Parameters
-        ----------
-        instant
-            Its number.
-        force, status, gone
-            Load, guess, and accumulated slip before, shape (n_dofs,).
+        `gone` is the slip accumulated before; all have shape (n_dofs,).
         """
         move = self._moves[instant]
         given = np.zeros(len(force))
@@ -164,11 +149,6 @@ class IncrementalRod:
     def _search_within(self, bound: Array) -> Search:
         return Search(self._band, bound * self._movable, self._movable)
 
-    @property
-    def _dearer(self) -> int:
-        """How many of these systems one of the general solver takes as long as."""
-        return 1 + len(self._dofs) // DEARER
-
     def _gathered(self, minima: list[Minimum], steps: int, seconds: float) -> Reference:
         """Solution of the first instants' minima, after which nothing moves."""
         problem, dofs = self._problem, self._dofs
@@ -177,9 +157,11 @@ class IncrementalRod:
             increments[instant], pulls[instant] = least.increment, least.pull
         moved = np.cumsum(increments, axis=0).T
         inside = self._band.largest_row * float(np.abs(moved).max(initial=0.0))
+        displacement = moved * problem.scales.displacement
         return Reference(
             problem=problem,
-            displacement=moved * problem.scales.displacement,
+            displacement=displacement,
+            deformation=displacement,
             contact_force=0.0 - pulls.T[dofs] * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
             residual=max([0.0, *(least.residual for least in minima)]),
@@ -190,3 +172,29 @@ class IncrementalRod:
             steps=steps,
             seconds=seconds,
         )
+
+
+Incremental = IncrementalRod | IncrementalContact
+
+
+def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
+    """Solve a problem instant by instant, by the solver that its interfaces call for.
+
+    `stop` is called once per instant; `Interrupted` is raised as soon as it returns True.
+    """
+    start = time.perf_counter()
+    solution = incremental_solver(problem).march(stop=stop)
+    return replace(solution, seconds=time.perf_counter() - start)
+
+
+def incremental_solver(problem: Problem) -> Incremental:
+    """Prepare the solver that the interfaces of a problem call for.
+
+    Raises
+    ------
+    NoReferenceError
+        If there is none, or the problem goes on from where another ends.
+    """
+    if any(law.tangential.start is not None for law in problem.rubbing.values()):
+        raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
+    return IncrementalRod(problem) if rubs_on_supports(problem) else IncrementalContact(problem)

@@ -18,13 +18,14 @@ from scipy.optimize import linprog
 
 from solver.arrays import Array, at_instant
 from solver.discrete.problem import Problem
-from solver.reference.assembly import external_force
+from solver.reference.assembly import external_force, jumps
 from solver.reference.condensation import NoReferenceError
-from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
 
 WHOLE = 1.0 - 1e-6
 """Share of a step of the loads from which on it is all of it, but for what HiGHS leaves."""
+TURNED = 1e-3
+"""Difference of displacements in a body, over the largest of all, from which on it turns."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,20 +40,18 @@ class Collapse:
         The first instant without one.
     mechanism
         Rigid motions of all bodies in which they begin to move, shape (n_dofs,), the largest 1.
+    tips
+        Whether any of them turns, and does not only slide.
     """
 
     time: float
     instant: int
     mechanism: Array
+    tips: bool
 
 
 def collapse_of(problem: Problem) -> Collapse | None:
     """Where a structure collapses on the path of its loads; None if it never does.
-
-    Parameters
-    ----------
-    problem
-        What is loaded.
 
     Raises
     ------
@@ -100,7 +99,8 @@ def collapse_of(problem: Problem) -> Collapse | None:
         if share < WHOLE:
             first = times[max(instant - 1, 0)]
             time = float(first + share * (times[instant] - first))
-            return Collapse(time, instant, _mechanism(found, problem.motions))
+            mechanism = _mechanism(found, problem.motions)
+            return Collapse(time, instant, mechanism, _tips(problem, mechanism))
         before = now
     return None
 
@@ -113,3 +113,15 @@ def _mechanism(found: object, motions: Array) -> Array:
     moved = -motions @ np.asarray(marginals)
     largest = float(np.abs(moved).max(initial=0.0))
     return np.asarray(moved / largest) if largest else moved
+
+
+def _tips(problem: Problem, mechanism: Array) -> bool:
+    """Whether points of a body do not move alike in a mechanism."""
+    assert problem.inside is not None
+    component = problem.inside.components
+    return any(
+        float(np.ptp(mechanism[part.dofs[component[part.dofs] == axis]])) > TURNED
+        for part in problem.substructures
+        for axis in (0, 1)
+        if np.any(component[part.dofs] == axis)
+    )

@@ -19,8 +19,7 @@ from solver.arrays import ROUNDING, Array, Indices, at_instant
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.response import Response
-from solver.reference.rules import Rules
-from solver.reference.states import HELD, Increment, Sides, Starts, States, states_at
+from solver.reference.rules import HELD, Increment, Rules, Sides, Starts, States, states_at
 from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
@@ -44,18 +43,11 @@ class Marched(NamedTuple):
 
 
 class Newton:
-    """Finds jumps and forces of one instant after the other.
+    """Jumps and forces of one instant after the other.
 
-    Parameters
-    ----------
-    condensed, rules
-        The structure between its contacts, and what these obey.
-    rest
-        Displacement from which contacts may be guessed, (n_dofs, n_instants), scaled, or None.
-    guesses
-        States to try, (n, n_instants), or None.
-    may_hold
-        Whether there may be an equilibrium at an instant, asked where none is found at once.
+    From what rules say of the condensed structure; `rest` is a displacement from which contacts may
+    be guessed, (n_dofs, n_instants), and `guesses` are states to try, (n, n_instants). `may_hold`
+    says whether there may be an equilibrium at an instant, where none is found at once.
 
     Attributes
     ----------
@@ -77,11 +69,9 @@ class Newton:
         self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules
         self._opening, self._force = rules.gap.copy(), np.zeros_like(rules.gap)
-        self._strained, self._motion = (
-            np.zeros(len(condensed.base)),
-            np.zeros(condensed.gauge.shape[1]),
-        )
-        self._load, self._shift = np.zeros(len(condensed.base)), np.zeros_like(rules.gap)
+        n_base, n_motions = condensed.gauge.shape
+        self._strained, self._motion = np.zeros(n_base), np.zeros(n_motions)
+        self._load, self._shift = np.zeros(n_base), np.zeros_like(rules.gap)
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
         self._guesses, self._starts = guesses, Starts()
         self._smooth: Indices = np.flatnonzero(rules.smooth)
@@ -99,7 +89,7 @@ class Newton:
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
 
     def __call__(self, instant: int) -> Marched:
-        """Give what an instant adds.
+        """What an instant adds.
 
         The forces that move nothing are the multipliers that keep dependent jumps together
         (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
@@ -133,7 +123,9 @@ class Newton:
         for _ in range(PASSES):
             solved = self._solved(sides, instant)
             if solved is None:
-                return self.response(np.full_like(self._states, HELD), self._stays(sides))
+                # All contacts stay where they are.
+                held = sides.held + (self._rules.normal * self._opening)[:, None]
+                return self.response(np.full_like(self._states, HELD), replace(sides, held=held))
             self._states, step = solved
             if not stresses.size:
                 break
@@ -146,10 +138,6 @@ class Newton:
             sides = replace(sides, load=sides.load - pull[:, None])
         self._starts.took(self.response.solutions - done, from_guess=from_guess)
         return step
-
-    def _stays(self, sides: Sides) -> Sides:
-        normal = self._rules.normal[:, None]
-        return replace(sides, held=sides.held + np.where(normal, self._opening[:, None], 0.0))
 
     def _solved(self, sides: Sides, instant: int) -> tuple[States, Increment] | None:
         """Find the states of the jumps and the step, or None."""
@@ -172,7 +160,7 @@ class Newton:
         return found
 
     def _iterate(self, states: States, sides: Sides) -> tuple[States, Increment] | None:
-        """Seek the states from a guess, or give None where they cycle."""
+        """Seek the states from a guess, or None where they cycle."""
         seen = set()
         for _ in range(NEWTON_LIMIT):
             step = self.response(states, sides)
@@ -190,8 +178,7 @@ class Newton:
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
         """Force that rounding may make anywhere; and of a jump that is not held, (n,) or (1,).
 
-        Where a jump is held, the deformation is what it comes to less the rigid motion; and what
-        rounding leaves of that difference makes forces at all jumps.
+        A held jump is the deformation less the rigid motion: rounding of that makes forces at all.
         """
         inside = self.response.inside(self._strained + step.strained[:, 0])
         slack = ROUNDING * (inside + self._largest)
@@ -200,7 +187,7 @@ class Newton:
         return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
 
     def _corrected(self, states: States, step: Increment, sides: Sides) -> States:
-        """Give the states that jump and force call for; what is up to rounding calls for none."""
+        """States that jump and force call for; what is up to rounding calls for none."""
         rules, response, force = self._rules, self.response, step.force[:, 0]
         moved = (response.unit * (step.jump - sides.held))[:, 0]
         slack, blur = self._rounding(states, step)

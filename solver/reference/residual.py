@@ -7,9 +7,8 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete import Problem
-from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.distance import Fields, determinate_forces
-from solver.reference.glued import jumps
 from solver.reference.rules import rules_of
 
 ELASTIC = 1e-4

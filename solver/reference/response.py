@@ -12,8 +12,7 @@ import numpy as np
 from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.reference.condensation import Condensation
 from solver.reference.dense import Factors
-from solver.reference.rules import Rules
-from solver.reference.states import HELD, Increment, Sides, States
+from solver.reference.rules import HELD, Increment, Rules, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is free."""
@@ -61,10 +60,7 @@ class Response:
         self.unbalanced, self.turned, self.singular = 0.0, False, False
 
     def _forces_of_unknowns(self) -> Array:
-        """Forces of all jumps as a matrix on y and on forces of jumps that follow from others.
-
-        Shape (n, n).
-        """
+        """Forces of all jumps by y and forces of jumps that follow from others, (n, n)."""
         if self._ties is None:
             return self._stiffness
         n_base, size = len(self._base), len(self._ties)
@@ -122,14 +118,7 @@ class Response:
         """Forces of all jumps that the unknowns at some places make.
 
         Most of what is held comes to nothing, and few jumps slip at a time: so S, which is
-        symmetric, is read at the rows of what does.
-
-        Parameters
-        ----------
-        unknown
-            Shape (n_unknowns, ...).
-        places, rows
-            Of it, and S at these if that is at hand.
+        symmetric, is read at the `rows` of what does, if these are not at hand.
         """
         if rows is None:
             places = places[unknown[places].any(axis=1)]
@@ -206,13 +195,7 @@ class Response:
         self.singular = self._factors.make_sure(least)
 
     def _with_motions(self, forces: Array) -> Array:
-        """All equations: what is in series comes to its end, and y is chosen.
-
-        Parameters
-        ----------
-        forces
-            What the equations say of the unknowns, shape (n_rows, n_rows).
-        """
+        """All equations: what is in series comes to its end, and y is chosen."""
         free, gauge, sprung = self._free, self._gauge, self._sprung
         kept = self._gauge_kept = gauge[self._kept]
         held, n_rows, n_free = self._rows[sprung], len(forces), len(free)

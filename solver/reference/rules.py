@@ -1,18 +1,30 @@
-"""What jumps of the displacement obey at one instant, as incremental solvers read it."""
+"""What jumps of the displacement obey at one instant, and their states.
+
+A normal jump is HELD at the gap, or OPEN without force. A tangential one is HELD where it was,
+slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN: without force, as
+where the contact is open or there is no friction.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import Array, Flags, Indices, in_rows
 from solver.discrete.problem import Problem
-from solver.laws import Contact, Strength
+from solver.laws import OPEN, Contact, Strength
 from solver.laws.friction import is_intact
 
+States = NDArray[np.int8]
+HELD = 0
+EXPECTED = 2.5
+"""Systems that an instant takes from the states of the one before, until it is known: the most on
+charts of the bar, where a guess from a neighbour takes 1 to 7, and one from an iterate 1.7."""
 PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
 """Of friction that slip does not change."""
 
@@ -123,25 +135,14 @@ class Rules:
         return values
 
     def before_slip(self, bound: Array, force: Array) -> Array:
-        """Friction force r + mu f_n up to its cap, before slip changes it, shape (n, n_instants).
-
-        Parameters
-        ----------
-        bound, force
-            r, and the force of all jumps, same shape.
-        """
+        """Friction force r + mu f_n up to its cap, before slip changes it, (n, n_instants)."""
         carried = self.friction[:, None] * force[self.partner]
         return np.asarray(np.minimum(bound + np.maximum(carried, 0.0), self.cap[:, None]))
 
     def bounds(self, force: Array, slip: Array, opening: Array | None = None) -> Array:
-        """Largest friction force, shape (n, n_instants).
+        """Largest friction force, (n, n_instants), by force and slip per instant of all jumps.
 
-        Parameters
-        ----------
-        force, slip
-            Of all jumps, slip per instant, same shape.
-        opening
-            Of all jumps, same shape, where contact that opens breaks bonds.
+        With their opening, where contact that opens breaks bonds.
         """
         bound = self.bound
         if opening is not None and self.bonds.size:
@@ -183,3 +184,73 @@ def _components(law: Contact, first: int, strength: int) -> list[Rules]:
     cap = endless if along.cap is None else law.by_point(along.cap)
     strengths = np.full(size, strength)
     return [*normal, Rules(no, none, places, friction, bound, cap, soft, strengths, ())]
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """Right sides of one instant; columns, where there are several, are solved together.
+
+    Attributes
+    ----------
+    load
+        q of the step from the instant before, shape (n_base, ...).
+    bound
+        Friction force r that needs no normal force, shape (n, ...).
+    held
+        What held jumps come to in the step, shape (n, ...): minus the opening, or nothing; on top
+        of the length before of what is in series.
+    """
+
+    load: Array
+    bound: Array
+    held: Array
+
+
+class Increment(NamedTuple):
+    """What an instant adds to the one before, and the forces at its end.
+
+    Attributes
+    ----------
+    jump
+        Of all jumps, with the new length of what is in series, shape (n, ...); as `Sides.held`.
+    force
+        Of all jumps, same shape.
+    strained, motion
+        Of y of the base, shape (n_base, ...), and of the rigid motions a, (n_motions, ...).
+    """
+
+    jump: Array
+    force: Array
+    strained: Array
+    motion: Array
+
+
+class Starts:
+    """Where an instant begins: from a guess, or from the states of the instant before.
+
+    From whichever has taken fewer linear systems an instant so far.
+    """
+
+    def __init__(self) -> None:
+        # Systems and instants, from the guess and from the instant before.
+        self._guess, self._before = [0.0, 0], [EXPECTED, 1]
+
+    @property
+    def from_guess(self) -> bool:
+        """Whether to begin from the guess."""
+        (guess, guessed), (before, times) = self._guess, self._before
+        return guess * times <= before * guessed
+
+    def took(self, systems: int, *, from_guess: bool) -> None:
+        """Count what an instant took, and from where."""
+        account = self._guess if from_guess else self._before
+        account[0] += systems
+        account[1] += 1
+
+
+def states_at(jumps: Array, rules: Rules) -> States:
+    """States of a body that is where it would be if it were rigid, (n, n_instants)."""
+    closed = (jumps + rules.gap[:, None] <= 0.0)[rules.partner]
+    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
+    slip[rules.normal] = HELD
+    return np.where(closed, slip, OPEN).astype(np.int8)

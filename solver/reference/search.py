@@ -1,18 +1,33 @@
-"""The minimum over one instant where friction has a known bound (solver/README.md, 6)."""
+"""The minimum over one instant where friction has a known bound (solver/README.md, 6 and 14).
+
+Where friction hardens or softens with slip the bound is linear in the slip increment v, b + g |v|,
+between two points of its strength, so that, with G = diag(g),
+
+    phi(v) = 1/2 v' (K + G) v - g' v + sum b |v|:
+
+the same minimum, of a structure that is stiffer, or softer, where it slips. Which points of the
+strength are passed within the instant is found by trial.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.linalg import LinAlgError
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
+from solver.discrete.problem import Problem
+from solver.reference.assembly import points_dofs
 from solver.reference.band import Band, summed
+from solver.reference.rules import Rules, rules_of
 
 NEWTON_LIMIT = 8
 """Steps from one guess of the statuses before a better one is sought."""
+TRIALS = 50
+"""Sets of points of the strength that are passed, at most."""
 COARSEST = 8
 """Degrees of freedom below which no coarser mesh is asked for a guess."""
 HELD = 1e-13
@@ -33,10 +48,7 @@ class Minimum:
 
 
 class _Guess(NamedTuple):
-    """Statuses that were sought, with increment and pull if they are those of the minimum.
-
-    Else with the rods on which they still change.
-    """
+    """Statuses, with increment and pull where they are the minimum's, else the rods that change."""
 
     status: Array
     solved: tuple[Array, Array] | None
@@ -87,10 +99,6 @@ class Search:
         settled[rods] = parts._mended(force[rods], status[rods])
         self._band.solutions += -(-parts._band.solutions * len(parts._bound) // len(force))
         return self._of(force, settled)
-
-    def released(self, force: Array, status: Array) -> Minimum:
-        """Minimum, sought from statuses by releasing or stopping one point after the other."""
-        return self._of(force, self._descend(force, status))
 
     def _of(self, force: Array, status: Array) -> Minimum:
         """Minimum whose statuses these are."""
@@ -146,10 +154,7 @@ class Search:
 
     @cached_property
     def _coarser(self) -> tuple[Search, Indices]:
-        """The same structure with successive degrees of freedom of a rod tied in pairs.
-
-        With it the number of the pair of each.
-        """
+        """The same structure with degrees of freedom of a rod tied in pairs; the pair of each."""
         places = np.arange(len(self._rod)) - self._starts[self._rod]
         begins = places % 2 == 0
         group = np.cumsum(begins) - 1
@@ -178,9 +183,8 @@ class Search:
     def _descend(self, force: Array, status: Array) -> Array:
         """Minimise phi by an active-set method, every step of which lowers phi.
 
-        A step of a rod ends where a first point stops, which then sticks; at a minimum over the
-        slipping points, the point pulled most beyond its bound is released, and moves the way it is
-        pulled. So no set of statuses has its minimum reached twice.
+        A step ends where a first point stops, which then sticks; at a minimum over the slipping
+        points that pulled most beyond its bound is released, and moves the way it is pulled.
         """
         rod = self._rod
         largest = np.abs(force).max()
@@ -208,10 +212,7 @@ class Search:
     def _release(
         self, force: Array, increment: Array, status: Array, largest: float, rods: Flags
     ) -> Flags:
-        """Release the point of each of some rods that is pulled most beyond its bound.
-
-        It is written into the statuses; gives the rods that have one.
-        """
+        """Release the point of each rod that is pulled most beyond its bound; which have one."""
         pull = force - self._band.product(increment)
         excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
         most = np.maximum.reduceat(excess, self._starts)
@@ -224,3 +225,81 @@ class Search:
         """First of these degrees of freedom on each of the rods."""
         places = np.flatnonzero(is_one & rods[self._rod])
         return places[np.unique(self._rod[places], return_index=True)[1]]
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Friction bounds of degrees of freedom at one instant.
+
+    Attributes
+    ----------
+    first
+        Before any slip, shape (n_dofs,), scaled.
+    dofs
+        Those that rub, shape (n,).
+    rules
+        What says how slip changes their bounds.
+    """
+
+    first: Array
+    dofs: Indices
+    rules: Rules
+
+    @property
+    def stay(self) -> bool:
+        """Whether slip changes nothing."""
+        return not self.rules.ages
+
+    def at(self, gone: Array) -> Array:
+        """Bounds after accumulated slip, shape (n_dofs,) both."""
+        bounds = self.first.copy()
+        if self.rules.ages:
+            bounds[self.dofs] *= self.rules.factor(gone[self.dofs])
+        return bounds
+
+    def growth(self, first: Array, last: Array) -> Array:
+        """Least growth of the bound per slip on the way from one slip to another, (n_dofs,)."""
+        growths = np.zeros_like(self.first)
+        dofs = self.dofs
+        growths[dofs] = self.first[dofs] * self.rules.lowest_growth(first[dofs], last[dofs])
+        return growths
+
+
+def bounds_of(problem: Problem) -> list[Bounds]:
+    """Bounds of all interfaces, which are on supports: of every instant, or of all alike."""
+    dofs, rules = points_dofs(problem), rules_of(problem)
+    first = np.zeros((problem.n_dofs, rules.bound.shape[1]))
+    first[dofs] = rules.bound
+    return [Bounds(bound, dofs, rules) for bound in np.ascontiguousarray(first.T)]
+
+
+def least_with_changing_bound(
+    band: Band, bounds: Bounds, movable: Array, force: Array, status: Array, gone: Array
+) -> Minimum | None:
+    """Minimum that the instant before certainly goes over into, None where that is not sure.
+
+    It is sure if the structure is stable where points slip, however far they have softened on the
+    way: then no other minimum slips there alone.
+    """
+    end = gone
+    for _ in range(TRIALS):
+        slope = bounds.growth(end, end) * movable
+        bound = (bounds.at(end) - slope * (end - gone)) * movable
+        softer = band.stiffened(slope)
+        try:
+            least = Search(softer, bound, movable)(force, status * (bound > 0.0))
+            reached = gone + np.abs(least.increment)
+            dofs, segment = bounds.dofs, bounds.rules.segment
+            if np.array_equal(segment(end[dofs]), segment(reached[dofs])):
+                softest = band.stiffened(bounds.growth(gone, reached) * movable)
+                slips = movable * (least.increment != 0.0)
+                softest.solve_kept(slips, np.zeros_like(force))
+                if np.any(bound[slips > 0.0] < 0.0):
+                    return None
+                return replace(least, pull=least.pull + slope * least.increment)
+        except LinAlgError:
+            return None
+        finally:
+            band.solutions += softer.solutions
+        end, status = reached, least.status
+    return None

@@ -108,10 +108,7 @@ def _count(problem: Problem) -> int:
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:
-    """Lambda where the worst point decides: two instants that pull it both ways beyond its bounds.
-
-    Forces and bounds over the largest bound.
-    """
+    """Lambda where the worst point decides: two instants pull it both ways beyond its bounds."""
     factor = np.inf
     for force, most in zip(elastic.T, bound.T, strict=True):
         swing = np.abs(elastic - force[:, None])
@@ -122,10 +119,7 @@ def _limit_of_points(elastic: Array, bound: Array) -> float:
 
 
 def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
-    """Lambda where forces Q go round rings without moving anything, at each instant on their own.
-
-    Unknown are R s, lambda, and of every instant a share of Q; forces as above.
-    """
+    """Lambda where forces go round rings without moving anything, at each instant on their own."""
     size, count = elastic.shape
     within = sparse.hstack(
         [
@@ -139,13 +133,7 @@ def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
 
 
 def _largest(place: int, matrix: Array | sparse.sparray, limit: Array) -> OptimizeResult:
-    """Largest value of one of the unknowns x, not below zero, with matrix x <= limit.
-
-    Raises
-    ------
-    NoReferenceError
-        Where no x obeys that.
-    """
+    """Largest value of one of the unknowns x, not below zero, with matrix x <= limit."""
     bounds = np.tile([-np.inf, np.inf], (matrix.shape[1], 1))
     bounds[place, 0] = 0.0
     aim = np.zeros(matrix.shape[1])
@@ -220,20 +208,9 @@ def _elastic(condensed: Condensation) -> Array:
 def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     """How much a load may swing about its mean until no slip could stay, or a contact opens.
 
-    Parameters
-    ----------
-    space
-        The planes.
-    cycle
-        The instants of whole cycles, equally far apart.
-
-    Returns
-    -------
-    factor
-        On the load's distance from its mean over the time of the cycles; infinite where it stands
-        still.
-    slip
-        One that stays under it, with all contacts closed, shape (n_points,), m.
+    The factor on the load's distance from its mean over the instants of whole cycles, equally far
+    apart, infinite where it stands still; and a slip that stays under it, with all contacts closed,
+    shape (n_points,), m.
 
     Raises
     ------

@@ -1,9 +1,10 @@
-"""The solution of a problem on its own mesh and instants, and how far fields are from one."""
+"""The solution of a problem on its own mesh and instants, and what it depends on."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from hashlib import blake2b
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +12,9 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
-from solver.reference.condensation import Condensation
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.limit_analysis import Collapse
-from solver.reference.rules import Rules
-
-States = NDArray[np.int8]
+from solver.reference.rules import States, rules_of
 
 
 class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
@@ -32,6 +31,8 @@ class Reference:
         What it solves.
     displacement
         Shape (n_dofs, n_instants), m.
+    deformation
+        The same but for rigid motions of bodies that contact alone holds, which would hide it.
     contact_force
         Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says, shape
         (n_forces, n_instants), N.
@@ -55,9 +56,6 @@ class Reference:
         Time taken.
     rounding
         What rounding alone may leave of `unbalanced`, N.
-    deformation
-        Displacement but for rigid motions of bodies that contact alone holds, which would hide it;
-        shape (n_dofs, n_instants), m. None where nothing moves so.
     jumps_at
         First instant that has no solution that goes on from the instant before, as friction falls
         with slip faster than the structure unloads: what follows, if anything is solved, is another
@@ -70,8 +68,9 @@ class Reference:
 
     problem: Problem
     displacement: Array
+    deformation: Array
     contact_force: Array
-    status: NDArray[np.int8]
+    status: States
     residual: float
     unbalanced: float
     converged: NDArray[np.bool_]
@@ -79,7 +78,6 @@ class Reference:
     steps: int
     seconds: float
     rounding: float = 0.0
-    deformation: Array | None = None
     jumps_at: int | None = None
     is_lost: bool = False
     collapse: Collapse | None = None
@@ -92,45 +90,48 @@ class Reference:
     def contact(self, name: str) -> ContactFields:
         """Forces, status and motion of an interface with friction."""
         problem = self.problem
-        sizes = [len(law.positions) for law in problem.rubbing.values()]
-        first = sum(sizes[: list(problem.rubbing).index(name)])
-        status = self.status[first : first + len(problem.rubbing[name].positions)]
+        status = self.status[problem.contact_points[name]]
         rows = self.displacement[problem.row_dofs] / problem.scales.displacement
         return contact_fields(problem, name, self.contact_force, rows, status)
 
 
-class Shown(NamedTuple):
-    """Fields of a structure, scaled.
+def fingerprint(problem: Problem) -> bytes:
+    """Digest all that the incremental solvers read of a problem, and nothing that they do not.
 
-    Attributes
-    ----------
-    deformation
-        Displacement but for rigid motions, shape (n_dofs, n_instants).
-    forces, opening, slip
-        Of all jumps, with what is in series, shape (n_forces, n_instants).
+    So cuts count where degrees of freedom depend on them, as in the plane, and do not along a rod;
+    the method never does. Problems that differ by rounding count as two.
     """
+    digest = blake2b(digest_size=16)
+    for name, law in problem.rubbing.items():
+        digest.update(f"{name} {law.opens} {law.is_on_support}".encode())
+    for array in _arrays(problem):
+        digest.update(f"{array.dtype.str} {array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.digest()
 
-    deformation: Array
-    forces: Array
-    opening: Array
-    slip: Array
 
-
-def unbalanced_of(condensed: Condensation, rules: Rules, shown: Shown) -> NDArray[np.float64]:
-    """KKT residual of every instant, a force, scaled.
-
-    The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
-    opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness
-    r of the pair makes a force of a length; the conditions hold if and only if both distances
-    vanish.
-    """
-    forces, unit = shown.forces, condensed.unit[:, None]
-    bound = rules.bounds(forces, shown.slip, shown.opening)
-    pressed = np.maximum(forces - unit * shown.opening, 0.0)
-    rubbed = np.clip(forces - unit * shown.slip, -bound, bound)
-    wrong = np.abs(forces - np.where(rules.normal[:, None], pressed, rubbed))
-    # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
-    moving = np.isin(np.arange(len(forces)), condensed.moving)
-    wrong[rules.normal & ~moving] = 0.0
-    unbalanced = np.abs(condensed.unbalanced(shown.deformation, forces)).max(axis=0, initial=0.0)
-    return np.asarray(np.maximum(unbalanced, wrong.max(axis=0, initial=0.0)))
+def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
+    scales, rules = problem.scales, rules_of(problem)
+    yield np.array([scales.displacement, scales.force, scales.time])
+    yield problem.instants
+    yield problem.positions
+    yield external_force(problem)
+    yield from problem.prescribed
+    yield from (
+        rules.normal,
+        rules.gap,
+        rules.partner,
+        rules.friction,
+        rules.bound,
+        rules.compliance,
+        rules.cap,
+        rules.strength,
+        *(np.array([strength.slips, strength.factors]) for strength in rules.strengths),
+    )
+    for matrix in (assembled_stiffness(problem), jumps(problem)):
+        matrix.sort_indices()
+        yield from (matrix.indptr, matrix.indices, matrix.data)
+    for law in problem.rubbing.values():
+        yield law.positions
+    if problem.rest is not None:
+        yield problem.rest

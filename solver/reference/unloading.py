@@ -18,8 +18,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.laws import OPEN
 from solver.reference.response import Response
-from solver.reference.rules import Rules
-from solver.reference.states import HELD, Sides, States
+from solver.reference.rules import HELD, Rules, Sides, States
 
 CHANGES = 30
 """Changes of state for each jump, at most; 11 are the most seen, with mu = 10."""
@@ -31,13 +30,7 @@ FLAT = 1e-12
 
 
 def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
-    """Find states that solve an instant, or None where the walk goes off to infinity.
-
-    Parameters
-    ----------
-    response, rules, sides
-        The instant, one column.
-    """
+    """States that solve an instant, of one column, or None where the walk goes off to infinity."""
     walk = _PathFollower(response, rules, sides)
     size = len(rules.gap)
     for _ in range(int(CHANGES * size * min(1.0, (FEW / size) ** 2))):
@@ -95,10 +88,7 @@ class _PathFollower:
         return False
 
     def _room(self, jump: Array, force: Array) -> tuple[Array, Array]:
-        """Give what has to stay positive at lambda = 0, and its slope; shape (n, 2), forces.
-
-        A held tangential jump has two bounds; all others have their first column alone.
-        """
+        """What has to stay positive at lambda = 0, and its slope, (n, 2): a held point has two."""
         rules, states = self._rules, self.states
         room = np.full((2, len(states), 2), np.inf)
         room[1] = 0.0

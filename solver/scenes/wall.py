@@ -10,7 +10,8 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity, redefined
-from solver.discrete.wall import Brick, Wall, bonded, with_opening
+from solver.discrete.bricks import Brick, bonded, with_opening
+from solver.discrete.wall import Wall
 from solver.loads import PRESETS, load_path
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings

@@ -17,9 +17,9 @@ from typing import Any
 
 from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
-from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -115,7 +115,7 @@ def _course(settings: Settings) -> tuple[bool, int, int, str]:
         distance = None
     own_at, known_at, known_by = 0, 0, ""
     method = method_of(settings.replace(finish="none"))
-    for iterate, verdict in islice(judged(problem, method, resumable=False), MOST):
+    for iterate, verdict in islice(judged(problem, method), MOST):
         if not own_at and distance and distance.of_friction_force(iterate) <= GOAL:
             own_at = iterate.number
         if not known_at and verdict.status and verdict.status.ending is Ending.CONVERGED:
@@ -131,7 +131,7 @@ def _seconds(settings: Settings, way: Callable[..., Iterator[object]], number: i
     own = settings.replace(finish="none")
 
     def work() -> None:
-        for _ in islice(way(discretise(own), method_of(own), resumable=False), number):
+        for _ in islice(way(discretise(own), method_of(own)), number):
             pass
 
     return seconds_of(work) if number else math.nan

@@ -18,7 +18,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.elements import elastic_matrix
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, structure_of
 
 PROGRAM = Path(__file__).with_name("getfem_block.py")

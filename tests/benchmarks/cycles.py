@@ -25,8 +25,8 @@ from solver.executors import ONE_THREAD, machine
 from solver.latin import Iterate, iterations
 from solver.latin.iteration import Iteration
 from solver.latin.slabs import Slab, first_slab, next_slab
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -147,7 +147,7 @@ def _course(
         fields = (reference.displacement, reference.contact_force)
         part = AtInstants(*(field[:, slab.instants] for field in fields))
         distance = distance_to(part, slab.problem)
-        way_there = iterations(slab.problem, slab.latin, slab.start, resumable=False)
+        way_there = iterations(slab.problem, slab.latin, slab.start)
         for iterate in islice(way_there, MOST):
             if distance.of_friction_force(iterate) <= goal:
                 break
@@ -180,7 +180,7 @@ def _run(
                 iteration.local_stage()
                 local += time.process_time() - began
                 iteration.linear_stage()
-            iterate = iteration.snapshot(count, 0.0, resumable=False)
+            iterate = iteration.snapshot(count, 0.0)
             slab = next_slab(problem, slab, iterate, length)
 
     seconds = seconds_of(work)

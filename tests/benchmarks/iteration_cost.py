@@ -72,15 +72,16 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     local = LocalStage(problem, k)
     multi = LinearStage(problem, k, multiscale=True)
     mono = LinearStage(problem, k, multiscale=False)
-    state = multi.start(None)
+    for stage in (multi, mono):
+        stage.go_to(None)
     incoming = space_time(problem.n_rows, problem.n_instants)
     target = local(incoming)
 
     def linear_stage(stage: LinearStage) -> Callable[[], None]:
         def step() -> None:
             stage.read(target)
-            stage.advance(state, settings.relaxation)
-            stage.incoming(state)
+            stage.advance(settings.relaxation)
+            stage.incoming()
 
         return step
 

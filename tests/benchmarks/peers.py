@@ -16,9 +16,8 @@ from collections.abc import Iterator
 from public_solvers import PUBLIC, PeerError, solve_by
 
 from solver.files import settings_from_command
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import rubs_on_supports
+from solver.reference.incremental import reference_of, rubs_on_supports
 from solver.remarks import print_tables
 from solver.scenes import discretise
 from solver.settings import Settings

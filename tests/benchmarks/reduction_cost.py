@@ -6,9 +6,8 @@ import statistics
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -138,13 +137,20 @@ def reduction_cost(
     target = np.asfortranarray(generator.normal(size=shape))
     smallest = min(len(part.rows) for part in problem.substructures)
     sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
-    stages: list[LinearStage] = [LinearStage(problem, k, multiscale=True)]
-    for tolerance in (1.0, TIGHT):
-        forms = [PGD(size, tolerance, pairs=1, sharing=0.0) for size in sizes]
-        stages += [LinearStage(problem, k, form, multiscale=True) for form in forms]
+    whole = LinearStage(problem, k, multiscale=True)
+    loose, tight = (
+        [
+            LinearStage(problem, k, PGD(size, tolerance, pairs=1, sharing=0.0), multiscale=True)
+            for size in sizes
+        ]
+        for tolerance in (1.0, TIGHT)
+    )
+    for stage in (whole, *tight):
+        stage.go_to(start)
     # All begin from bases that are full, also where no residual is enough for another mode.
-    states = [stage.start(start) for stage in (stages[0], *2 * stages[1 + len(sizes) :])]
-    steps = [_step(*each, target) for each in zip(stages, states, strict=True)]
+    for stage, full_bases in zip(loose, tight, strict=True):
+        stage.go_to(replace(start, reduction=full_bases.reduction()))
+    steps = [_step(stage, target) for stage in (whole, *loose, *tight)]
     full, *rest = medians_of(steps, repeats, max(3, int(2e6 / np.prod(shape))))
     return ReductionCost(
         operator,
@@ -210,11 +216,11 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
     }
 
 
-def _step(stage: LinearStage, state: list[Any], target: Array) -> Callable[[], None]:
+def _step(stage: LinearStage, target: Array) -> Callable[[], None]:
     def step() -> None:
         stage.read(target)
-        stage.advance(state, 0.8)
-        stage.incoming(state)
+        stage.advance(0.8)
+        stage.incoming()
 
     return step
 

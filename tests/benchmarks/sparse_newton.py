@@ -17,10 +17,8 @@ from scipy.sparse.linalg import SuperLU, splu
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
-from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.glued import jumps
-from solver.reference.rules import rules_of
-from solver.reference.states import HELD, States
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
+from solver.reference.rules import HELD, States, rules_of
 
 ORDER = "MMD_AT_PLUS_A"
 """Of columns: on walls 5 % faster than COLAMD, with three quarters of its fill (measured)."""

@@ -26,8 +26,8 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -92,7 +92,7 @@ def counts_of(courses: int) -> tuple[int, dict[str, int]]:
             continue
         method = method_of(settings_of(courses, changes))
         counts[way] = 0
-        for iterate in islice(iterations(replace(problem), method, resumable=False), MOST):
+        for iterate in islice(iterations(replace(problem), method), MOST):
             if distance.of_friction_force(iterate) <= GOAL:
                 counts[way] = iterate.number
                 break
@@ -127,9 +127,9 @@ def run(problem: Problem, settings: Settings, way: str, count: int) -> None:
     elif way == SPARSE:
         SparseNewton(problem).march()
     else:
-        steps: Iterator[object] = iterations(problem, method_of(settings), resumable=False)
+        steps: Iterator[object] = iterations(problem, method_of(settings))
         if way == KNOWN:
-            steps = judged(problem, method_of(settings), resumable=False)
+            steps = judged(problem, method_of(settings))
         for _ in islice(steps, count):
             pass
 

@@ -101,14 +101,7 @@ def _root(share: Array) -> Array:
 def cantilever(length: float, height: float, young: float, poisson: float) -> float:
     """End force for a unit of deflection, of Timoshenko's beam in plane stress, N/m for a metre.
 
-    (J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997.)
-
-    Parameters
-    ----------
-    length, height
-        m.
-    young, poisson
-        E, Pa, and nu.
+    (J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997.) Lengths in m, E in Pa.
     """
     bending = length**3 / (3.0 * young * height**3 / 12.0)
     shear = length / (SHEAR_FACTOR * height * young / (2.0 * (1.0 + poisson)))

@@ -32,24 +32,18 @@ EVEN = 1e-12
 
 
 def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> Array:
-    """Pressure of the fluid along the line, Pa.
+    """Pressure of the fluid along the line, (n_places, n_instants), Pa.
 
     Parameters
     ----------
-    place
-        Distance from the end, shape (n_places,), m; not negative.
-    instants
-        From 0 on, shape (n_instants,), s; at least two. Where they are not evenly spaced, each bend
-        of what is given is added on its own.
+    place, instants
+        Distance from the end, m, not negative; and instants from 0 on, s, at least two. Where they
+        are not evenly spaced, each bend of what is given is added on its own.
     given
         Pressure at the end, shape (n_instants,), Pa: its first value from the very beginning, and
         linear in between.
     diffusivity
         Alpha, m^2/s; positive.
-
-    Returns
-    -------
-    Shape (n_places, n_instants), Pa; at the first instant nothing has spread yet.
     """
     steps, later = np.diff(instants), instants[1:] - instants[0]
     bends = np.diff(np.diff(given) / steps, prepend=0.0)
@@ -99,10 +93,11 @@ def front_over_diffusion(stress: float) -> float:
 
 
 def fronts(place: Array, lack: Array) -> Array:
-    """How far from its middle a zone slips that grows in both directions alike.
+    """How far from its middle a zone slips that grows in both directions alike, (n_instants,), m.
 
     Nothing is singular at its ends: there what the stress lacks to the strength, times
-    ds / sqrt(a^2 - s^2), sums up to nothing over the zone.
+    ds / sqrt(a^2 - s^2), sums up to nothing over the zone. 0 where nothing slips, infinite where
+    all does.
 
     Parameters
     ----------
@@ -111,10 +106,6 @@ def fronts(place: Array, lack: Array) -> Array:
     lack
         Strength less the stress far away, shape (n, n_instants), Pa; it grows along the interface,
         and falls with time.
-
-    Returns
-    -------
-    Half-length a, shape (n_instants,), m; 0 where nothing slips, infinite where all does.
     """
     half_lengths = np.zeros(lack.shape[1])
     for instant, lacking in enumerate(lack.T):
@@ -129,20 +120,9 @@ def fronts(place: Array, lack: Array) -> Array:
 
 
 def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -> Array:
-    """How much such a zone adds to the stress ahead of it.
+    """How much such a zone adds to the stress ahead of it, at distances from the middle, Pa.
 
-    Parameters
-    ----------
-    beyond
-        Distance from the middle, at least the half-length, shape (m,), m.
-    place, lack
-        As of `fronts`, at one instant, shape (n,) each.
-    half_length
-        Of the zone, m.
-
-    Returns
-    -------
-    Shape (m,), Pa.
+    `place` and `lack` are as of `fronts`, at one instant.
     """
     lacking = np.interp(half_length * SHARES, place, lack)
     square = beyond**2 - half_length**2
@@ -153,24 +133,11 @@ def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -
 def slip_under_growing_strength(
     place: Array, half_length: float, drop: float, stiffness: float
 ) -> Array:
-    """Slip of a zone of given length, whose strength grows evenly from its middle.
+    """Slip of a zone of given length, whose strength grows evenly from its middle, m; 0 outside.
 
-    Stress drops by `drop` in the middle and by nothing at both ends, beyond which nothing slips
-    (R. Buergmann, D. D. Pollard, S. J. Martel, Slip distributions on faults, J. Struct. Geol. 16,
-    1675-1690, 1994).
-
-    Parameters
-    ----------
-    place
-        Distance from the middle, shape (n,), m.
-    half_length, drop
-        m; Pa.
-    stiffness
-        G / (1 - nu), Pa.
-
-    Returns
-    -------
-    Shape (n,), m; 0 outside.
+    Stress drops by `drop`, Pa, in the middle and by nothing at both ends, beyond which nothing
+    slips; the stiffness is G / (1 - nu), Pa (R. Buergmann, D. D. Pollard, S. J. Martel, Slip
+    distributions on faults, J. Struct. Geol. 16, 1675-1690, 1994).
     """
     share = np.clip(np.abs(place) / half_length, 0.0, 1.0)
     root = np.sqrt(1.0 - share**2)

@@ -15,14 +15,9 @@ from solver.arrays import Array
 
 
 def masing(load: Array, grown: Callable[[float], float]) -> Array:
-    """Answer to a load from rest on, shape (n_instants,).
+    """Answer to a load from rest on, (n_instants,), monotone between instants.
 
-    Parameters
-    ----------
-    load
-        Over time, shape (n_instants,); monotone between instants.
-    grown
-        The answer to a load that has grown from rest to a value, which is not negative.
+    `grown` is that to a load which has grown from rest to a value, which is not negative.
     """
     turns = [(0.0, 0.0)]  # loads, and the answers at them
     now = turns[0]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from solver.latin import Iterate, Record, solve
 from solver.reduction.svd import Decomposition, InterfaceField, decompositions
-from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings

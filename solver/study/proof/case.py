@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields
 from solver.latin import Ending, Solution, solve
-from solver.reference.choice import reference_of
+from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.study.cases.case import Case

@@ -15,13 +15,13 @@ from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.certified import finished
+from solver.latin.cost import costs_of
 from solver.latin.status import certified
 from solver.latin.status_step import states_of, status_step
-from solver.latin.step_cost import costs_of, moving_share
-from solver.reference.choice import incremental_solver, reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
-from solver.reference.solution import States
+from solver.reference.incremental import incremental_solver, reference_of
+from solver.reference.rules import States
 from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -159,12 +159,12 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
     if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
         return None
-    costs = costs_of(problem, moving_share(states))
+    costs = costs_of(problem, states)
     if not costs.afford(ALONE):
         return None
     try:
         solver, most = incremental_solver(problem), costs.systems(ALONE)
-        certificate = status_step(solver, problem, states, most).certificate
+        _, certificate = status_step(solver, problem, states, most)
     except NoReferenceError:
         return None
     if certificate is None or certificate.residual > settings.accuracy:

@@ -26,8 +26,8 @@ import numpy as np
 from solver.arrays import Array
 from solver.executors import machine
 from solver.latin import Solution, judged, solve
-from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of

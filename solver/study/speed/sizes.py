@@ -10,7 +10,7 @@ from itertools import product
 
 from solver.definitions import SettingError
 from solver.latin import Ending
-from solver.latin.run_cost import run_cost
+from solver.latin.cost import run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of

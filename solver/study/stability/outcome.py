@@ -12,9 +12,9 @@ import numpy as np
 from solver.discrete import Problem
 from solver.latin import Ending, Solution, solve
 from solver.latin.indicators import behaviour_indicator, latin_indicator
-from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.reference.residual import kkt_residual
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError

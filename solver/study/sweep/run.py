@@ -27,7 +27,7 @@ import numpy as np
 from solver.definitions import SettingError
 from solver.files import save_result
 from solver.latin import Ending
-from solver.reference.solution import States
+from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.quantities.memory import settle

@@ -1,0 +1,128 @@
+"""Bricks on a grid of equal elements, and the joints where their sides meet.
+
+Upright joints have no pair at their ends. Three contacts would meet in a corner, of whose forces
+only sums are determined, and which of them slips would depend on how they share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+Bond = Literal["running", "stack"]
+
+
+class Brick(NamedTuple):
+    """A rectangle on the grid: its lower left corner and its size, in elements."""
+
+    x: int
+    y: int
+    columns: int
+    rows: int
+
+
+class Joint(NamedTuple):
+    """Where two bricks touch, or one its support.
+
+    Attributes
+    ----------
+    above, below
+        Numbers of the brick above, or to the right, and of the other; None is the support.
+    first, last
+        Nodes of the grid along it between which there are pairs, the last one too.
+    is_upright
+        Whether it is a joint between neighbours of a course.
+    """
+
+    above: int
+    below: int | None
+    first: int
+    last: int
+    is_upright: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name of the interface."""
+        other = "support" if self.below is None else f"brick {self.below + 1}"
+        return f"{other} and brick {self.above + 1}"
+
+
+def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> list[Brick]:
+    """Bricks of a wall, course by course from below.
+
+    Parameters
+    ----------
+    bond
+        "running": every second course begins and ends with a half. "stack": all joints are one
+        above the other.
+    columns, courses
+        Bricks of a course, and courses.
+    size
+        Elements of a brick along, even in a running bond, and up.
+    """
+    along, up = size
+    bricks = []
+    for course in range(courses):
+        halves = bond == "running" and course % 2 == 1
+        half = [along // 2] * halves
+        x = 0
+        for width in [*half, *[along] * (columns - halves), *half]:
+            bricks.append(Brick(x, course * up, width, up))
+            x += width
+    return bricks
+
+
+def with_opening(
+    bricks: Sequence[Brick], size: tuple[int, int], bricks_along: tuple[int, int], courses: int
+) -> list[Brick]:
+    """Bricks round an opening that stands on the ground, with a lintel over it.
+
+    Parameters
+    ----------
+    bricks, size
+        Of the whole wall, and elements of a brick, even along it.
+    bricks_along
+        First brick of the lowest course that is left out, and the first behind these.
+    courses
+        Height of the opening. The lintel is the next course, and lies on half a brick at each end.
+    """
+    along, up = size
+    left, right = (number * along for number in bricks_along)
+    half = along // 2
+    lintel = Brick(left - half, courses * up, right - left + 2 * half, up)
+    found = [lintel]
+    for brick in bricks:
+        course, end = brick.y // up, brick.x + brick.columns
+        first, last = left, right
+        if course == courses:
+            first, last = lintel.x, lintel.x + lintel.columns
+        if course > courses or end <= first or brick.x >= last:
+            found.append(brick)
+            continue
+        if brick.x < first:
+            found.append(brick._replace(columns=first - brick.x))
+        if end > last:
+            found.append(brick._replace(x=last, columns=end - last))
+    return sorted(found, key=lambda brick: (brick.y, brick.x))
+
+
+def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
+    """All joints of bricks that do not overlap: with the support, beds, and upright ones."""
+    x, y, columns, rows = np.array(bricks).T
+    joints = []
+    for above, brick in enumerate(bricks):
+        if brick.y == 0:
+            joints.append(Joint(above, None, brick.x, brick.x + brick.columns))
+        for below in np.flatnonzero(y + rows == brick.y):
+            first = max(brick.x, int(x[below]))
+            last = min(brick.x + brick.columns, int(x[below] + columns[below]))
+            if last > first:
+                joints.append(Joint(above, int(below), first, last))
+        for left in np.flatnonzero(x + columns == brick.x):
+            first = max(brick.y, int(y[left])) + 1
+            last = min(brick.y + brick.rows, int(y[left] + rows[left])) - 1
+            if last >= first:
+                joints.append(Joint(above, int(left), first, last, is_upright=True))
+    return joints

@@ -1,0 +1,234 @@
+"""What a status step costs beside the iterations that it saves, and a whole run before it begins.
+
+All of it is estimated from counts, never measured by a clock, so that a run ends alike on every
+machine. `python tests/benchmarks/whole_cost.py` sets estimates of runs beside what is measured.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solver.discrete.problem import Problem
+from solver.latin.anderson import MEMORY, MOST_VALUES
+from solver.latin.automatic_k import sliding_share
+from solver.reference.contact import MOST_JUMPS, jumps_in
+from solver.reference.incremental import rubs_on_supports
+from solver.reference.rules import HELD, States
+
+if TYPE_CHECKING:
+    from solver.latin.method import Latin
+
+WAIT = 2.0
+"""Seconds that a step may take before a run is called converged, whatever the iterations took."""
+SYSTEMS = 3
+"""Linear systems for every instant that a step may solve in any case."""
+ENDS_FOR_SURE = 40
+"""The same where a step ends for sure: of rods on supports of their own it takes 5 to 30 (37 and 91
+wires near a clamp), and where friction softens 2 to 35 (blocks and faults; measured)."""
+AT_REST, SAVED = 0.02, 10
+"""Share of the jumps that move up to which statuses are right at once, as nothing slips; and the
+iterations that a step then saves, at least (thin layers: after 2 instead of 10; measured)."""
+TRIED = 2.0
+"""Times the iterations so far that a step may cost, whatever the force does: 70 random runs take
+0.84 to 0.96 of the time with once, and 1.35 at most; 0.69 to 0.95 and 1.56 with four (measured)."""
+WORTH = 0.5
+"""Share of the time of the iterations so far that a proof is worth: with all of it blocks of
+384 x 192 elements took twice as long, to prove what their estimate had said (measured)."""
+AFFORDABLE = 40
+"""Iterations that a status step may cost in any case: about as many as it saves."""
+DENSE, FACTOR, SPARSE = 1e10, 2e10, 6e9
+"""Operations a second of dense products, of dense factors, and of sparse ones (measured)."""
+SHALLOW = 1.8
+"""Doublings of degrees of freedom over jumps that cost a condensation nothing; beyond one more each
+adds its whole time once, as factors fill (blocks in 32 to 512 substructures: 1.1 to 2.6;
+measured)."""
+SQUARE = 5e-8
+"""Seconds a number of the condensed stiffness takes, all in all (measured)."""
+GATHER, READ = 8e-9, 1.5e-9
+"""Seconds a number takes that a system gathers from it, and that it only reads (measured)."""
+MOVING = 1.0 / 3.0
+"""Share of the jumps that move at an instant where contacts open or bodies bend (measured)."""
+NEXT = 2.0
+"""Interfaces that slide where a load passes from body to body: those beside what carries none. On
+strands of 3 to 20 wires and three loads it gives 1.6 to 3 times what moves (measured)."""
+PASSES, PASS = 30, 1e-9
+"""How often an iteration passes over a boundary field, and seconds a number (measured)."""
+CALLS, OF_ITERATION = 2e-4, 5e-4
+"""Seconds of a dense system, and of an iteration, that no size makes less (measured)."""
+BAND, BAND_CALLS = 6e-8, 3e-5
+"""Seconds a number of a system with a band matrix, and those that no size makes less (measured)."""
+ITERATIONS, MORE = 30, 2.5
+"""That a run takes, and how many more with every contact between bodies but the first, where bodies
+are cut: the defaults take 4 to 25, 50 layers 81, 40 wires 7, and more than 300 where no step may
+end them. 20 layers that are not cut take 72, walls of 68 to 264 bricks 6 to 38 (measured)."""
+PLAIN = 5.0
+"""Times as many without acceleration (measured on the bar)."""
+WATCHED = 2.0
+"""Time of an iteration with its indicators, estimate and errors, over that of its stages."""
+BEGINNING = 0.05
+"""Seconds for what comes before the first iteration, that no size makes less (measured)."""
+FIELDS = 25
+"""Boundary fields that a run holds at a time, besides those that the acceleration remembers: 22 on
+a block of 768 x 384 elements, 33 on a bar of 16 000 (measured)."""
+NUMBER = 8
+"""Bytes."""
+LONG, LARGE = 20.0, 1e9
+"""Seconds and bytes from which a run says before it begins what it will take."""
+VERY_LONG, VERY_LARGE = 60.0, 2e9
+"""Those from which a page asks before."""
+
+
+@dataclass(frozen=True)
+class Costs:
+    """Estimated times, s.
+
+    Attributes
+    ----------
+    condensing
+        Of the structure onto its contacts, once; none where they are of known bound, on rigid
+        supports.
+    system
+        Of one linear system of the step.
+    iteration
+        Of one iteration.
+    n_instants
+        Number of instants.
+    is_at_rest
+        Whether nothing slips: then one system an instant is enough.
+    in_any_case
+        Linear systems for every instant that a step may solve in any case.
+    """
+
+    condensing: float
+    system: float
+    iteration: float
+    n_instants: int
+    is_at_rest: bool = False
+    in_any_case: int = SYSTEMS
+
+    @property
+    def step(self) -> float:
+        """Of a status step whose statuses are right."""
+        return self.condensing + self.n_instants * self.system
+
+    def afford(self, iterations: float, least: float = 0.0) -> bool:
+        """Whether a step costs no more than half of the iterations so far, or that it saves.
+
+        `least` is what it may cost in any case, s.
+        """
+        return self.step <= max(max(WORTH * iterations, AFFORDABLE) * self.iteration, least)
+
+    def are_small(self, iterations: float) -> bool:
+        """Whether a step, also one with some wrong statuses, is soon worth a trial."""
+        if self.is_at_rest and self.step <= (SAVED + iterations) * self.iteration:
+            return True
+        step = self.condensing + SYSTEMS * self.n_instants * self.system
+        return step <= TRIED * iterations * self.iteration
+
+    def systems(self, iterations: float) -> int:
+        """The number of linear systems that a step may solve after so many iterations.
+
+        As many as take the time of these. It is tried again at twice as many iterations, so that
+        all trials together take twice as long as the iterations.
+        """
+        affordable = int(iterations * self.iteration / self.system)
+        return max(self.in_any_case * self.n_instants, affordable)
+
+
+def costs_of(problem: Problem, states: States | None = None) -> Costs:
+    """Estimate the times of a problem, by the states of jumps, (n_forces, n_instants), if known."""
+    n_jumps, entries = jumps_in(problem), 0.0
+    products = sum(2.0 * len(part.rows) ** 2 for part in problem.substructures)
+    products = min(products, 200.0 * problem.n_rows)
+    passes = products / DENSE + PASSES * PASS * problem.n_rows
+    iteration = OF_ITERATION + problem.n_instants * passes
+    softens = any(law.tangential.softens for law in problem.rubbing.values())
+    room = ENDS_FOR_SURE if softens else SYSTEMS
+    if rubs_on_supports(problem):
+        system = BAND_CALLS + BAND * n_jumps
+        room = ENDS_FOR_SURE if len(problem.rubbing) > 1 else room
+        return Costs(0.0, system, iteration, problem.n_instants, in_any_case=room)
+    for part in problem.substructures:
+        stiffness = part.elasticity.stiffness
+        entries += stiffness.size if isinstance(stiffness, np.ndarray) else stiffness.nnz
+    fill = max(1.0, math.log2(problem.n_dofs / n_jumps) - SHALLOW) if n_jumps else 1.0
+    condensing = 4.0 * fill * entries * n_jumps / SPARSE + SQUARE * n_jumps**2
+    moving = _expected_share(problem) if states is None else float(np.mean(states != HELD))
+    n_moving = moving * n_jumps
+    system = CALLS + 2.0 / 3.0 * n_moving**3 / FACTOR
+    system += (GATHER * n_moving + READ * n_jumps) * n_moving
+    is_at_rest = states is not None and moving <= AT_REST
+    return Costs(condensing, system, iteration, problem.n_instants, is_at_rest, room)
+
+
+def _expected_share(problem: Problem) -> float:
+    """The share of jumps that may move at an instant before any iterate tells it."""
+    if problem.opens:
+        return MOVING
+    return min(MOVING, NEXT * sliding_share(problem) / len(problem.rubbing))
+
+
+@dataclass(frozen=True)
+class RunCost:
+    """Estimated, by a factor of three.
+
+    Attributes
+    ----------
+    seconds, memory
+        Of the whole, s and B.
+    reference
+        Seconds of these for the reference; 0 without one.
+    """
+
+    seconds: float
+    memory: float
+    reference: float
+
+    @property
+    def is_large(self) -> bool:
+        """Whether one would like to know before."""
+        return self.seconds > LONG or self.memory > LARGE
+
+    @property
+    def is_to_be_agreed(self) -> bool:
+        """Whether one would like to be asked before."""
+        return self.seconds > VERY_LONG or self.memory > VERY_LARGE
+
+    def __str__(self) -> str:
+        return f"{_duration(self.seconds)} and {self.memory / 1e9:.1g} GB"
+
+
+def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool) -> RunCost:
+    """Estimate what a run of at most so many iterations takes from a problem to its end.
+
+    `with_reference` says whether the incremental reference is solved before, where there is one.
+    """
+    costs, n_jumps = costs_of(problem), jumps_in(problem)
+    has_solver = rubs_on_supports(problem) or n_jumps <= MOST_JUMPS
+    incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
+    # Without cuts the coarse problem carries loads through all bodies, however many there are.
+    coupled = len(problem.rubbing) - 1 if problem.cuts and not rubs_on_supports(problem) else 0
+    expected = (ITERATIONS + MORE * coupled) * (1.0 if latin.acceleration else PLAIN)
+    iterations = min(expected, most)
+    is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
+    steps = has_solver and (latin.linear.has_to_prove or is_worth_it)
+    seconds = BEGINNING + WATCHED * iterations * costs.iteration + steps * incremental
+    reference = incremental if with_reference and has_solver else 0.0
+    field = problem.n_rows * problem.n_instants
+    remembered = min(MEMORY, max(1, MOST_VALUES // field - 1)) + 1
+    # A condensation holds a matrix between all jumps, and one of all degrees of freedom and jumps.
+    dense = 0.0 if rubs_on_supports(problem) else n_jumps * (float(n_jumps) + problem.n_dofs)
+    memory = max((FIELDS + remembered) * field + steps * dense, dense if reference else 0.0)
+    return RunCost(seconds + reference, NUMBER * memory, reference)
+
+
+def _duration(seconds: float) -> str:
+    """Write seconds with one digit, as the estimate has no more."""
+    for size, unit in ((3600.0, "h"), (60.0, "min")):
+        if seconds >= 1.5 * size:
+            return f"{float(f'{seconds / size:.1g}'):g} {unit}"
+    return f"{float(f'{seconds:.1g}'):g} s"
