@@ -30,7 +30,7 @@ LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 LENGTH = 4
 KEPT = 300.0
 """Seconds for which a class waits for its leader."""
-RESUMED = "settings", "selection", "lesson", "plots"
+RESUMED = "settings", "selection", "lesson", "case", "plots"
 """What the next leader has of the last one's state."""
 SHARED = *RESUMED, "frame", "newest", "ghost", "iteration", "running"
 """What followers have of the leader's state."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from typing import Any
-from urllib.parse import quote
 
 import panel as pn
 import panel_material_ui as pmui
@@ -15,10 +14,9 @@ from app.browser import Echoes
 from app.files import CurveDialog, FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
-from app.widgets import button
+from app.widgets import button, mask_of
 from solver.definitions import CurveParameter, Parameter, about
 from solver.scenes import CATALOGUE, chief_of, ends_of
-from solver.scenes.entry import Emblem
 
 WIDTH = 286
 STEPS = 80
@@ -247,7 +245,7 @@ class Controls:
         self._state, self._copy = state, copy
         self._controls: list[SettingControl] = []
         pictures = {
-            f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
+            f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(entry.emblem)
             for number, entry in enumerate(CATALOGUE.values(), start=1)
         }
         self._scene = pmui.RadioButtonGroup(
@@ -319,15 +317,3 @@ def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
         if name not in chief and len(getattr(definition, "objects", "any")) > 1:
             groups.setdefault(about(definition).group, []).append(name)
     return chief, {group: names for group, names in groups.items() if names}
-
-
-def _picture(emblem: Emblem) -> dict[str, str]:
-    """The small picture of a scene as a mask, which takes the colour of its text."""
-    line = 'fill="none" stroke="#000" stroke-width="1.4" stroke-linejoin="round"'
-    svg = (
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 48 32">'
-        f'<path d="{emblem.body}" fill-opacity=".25" stroke="#000" stroke-width="1"/>'
-        f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/>'
-        f'<path d="{emblem.load}" {line}/></svg>'
-    )
-    return {"mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'}

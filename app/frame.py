@@ -157,7 +157,7 @@ class Frame:
     extras: Mapping[str, Any] = field(default_factory=dict)
     """What only some views need, by name, as far as one of them was in sight."""
     readings: Mapping[str, float] = field(default_factory=dict)
-    """Quantities of the run that a lesson names, by name."""
+    """Quantities of the run that a lesson or a case names, by name."""
 
     @property
     def nbytes(self) -> int:

@@ -10,12 +10,13 @@ from typing import Any
 from urllib.parse import parse_qsl, quote
 
 import panel as pn
+import param
 from bokeh.core.properties import String
 from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
 from app.frame import Selection
-from app.lessons.catalogue import LESSONS, settings_of
+from app.lessons.catalogue import CASES, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PACES, TABS, VIEWS, PageState, default_settings
 from app.views.catalogue import CARDS
@@ -25,7 +26,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-SHARED = "lesson", "tab", "question", "pace", "plots", "view", "room"
+SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
@@ -37,8 +38,9 @@ if (page.copied) {
 }
 """
 BACK = """
-addEventListener("popstate", () => { page.search = location.search })
+addEventListener("popstate", () => { page.search = ""; page.search = location.search || "?" })
 """
+"""One may come back to the same address again, and to that which says nothing."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class Place:
 
     settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))
     lesson: str = ""
+    case: str = ""
     tab: str = TABS[0]
     question: str = ""
     instant: float | None = None
@@ -71,7 +74,9 @@ _CHOICES = {"tab": TABS, "pace": list(PACES), "view": VIEWS, "theme": ["light", 
 _PLACE: dict[str, Any] = _NUMBERS | {
     name: choice(options[0], options, "", group="", title="") for name, options in _CHOICES.items()
 }
-"""What an address may say beside settings, scene, lesson, class, plots and question."""
+"""What an address may say beside settings, scene, lesson, case, class, plots and question."""
+_OPENED: dict[str, Mapping[str, Any]] = {"lesson": LESSONS, "case": CASES}
+"""What has settings from which an address says what differs, as a scene has."""
 
 
 class Browser(DataModel):
@@ -92,7 +97,7 @@ class Link:
         self._state, self._location = state, pn.state.location
         self.query = query_of(place_of(state))
         self.browser = Browser(name="browser")
-        self.browser.on_change("search", lambda name, old, new: self.go(new))
+        self.browser.on_change("search", lambda name, old, new: new and self.go(new))
         args = {"page": self.browser}
         self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
         if pn.state.curdoc is not None:
@@ -127,11 +132,13 @@ class Link:
 
 def show(state: PageState, place: Place) -> None:
     """Show what an address says."""
-    state.param.update(**{name: getattr(place, name) for name in SHARED})
-    if place.instant is not None:
-        state.select(phase=place.instant)
-    if dump(place.settings) != dump(state.settings):
-        state.adopt(place.settings)
+    # At once: what is between two addresses has none.
+    with param.parameterized.batch_call_watchers(state):
+        state.param.update(**{name: getattr(place, name) for name in SHARED})
+        if place.instant is not None:
+            state.select(phase=place.instant)
+        if dump(place.settings) != dump(state.settings):
+            state.adopt(place.settings)
     if place.iteration:
         state.reset(place.iteration)
 
@@ -160,12 +167,14 @@ def link_of(state: PageState) -> tuple[str, str]:
 
 
 def query_of(place: Place) -> str:
-    """The address that says what differs from the defaults, or from the settings of a lesson."""
+    """The address that says what differs from the defaults, or from those of a lesson or a case."""
     if place.room:
         return f"?class={quote(place.room)}"
-    lesson = LESSONS.get(place.lesson)
-    base = settings_of(lesson) if lesson else default_settings(place.settings.scene)
-    pairs = {"lesson": place.lesson} if lesson else {"scene": place.settings.scene}
+    lesson, scene = LESSONS.get(place.lesson), place.settings.scene
+    base, pairs = default_settings(scene), {"scene": scene}
+    for kind, known in _OPENED.items():
+        if (name := getattr(place, kind)) in known:
+            base, pairs = settings_of(known[name]), {kind: name}
     changed = place.settings.changed(base)
     long = too_long(place.settings)
     pairs |= {
@@ -175,7 +184,8 @@ def query_of(place: Place) -> str:
     }
     if long:
         pairs["file"] = ",".join(long)
-    first = Place(place.settings, instant=lesson.instant if lesson else Selection().phase)
+    instant = lesson.instant if lesson else Selection().phase
+    first = Place(place.settings, instant=instant, plots=plots_of(place.case))
     for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view", "theme"):
         value = getattr(place, name)
         if value != getattr(first, name) and value is not None:
@@ -191,12 +201,13 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     pairs = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
     refused: list[str] = []
     given: dict[str, Any] = {"room": pairs.pop("class", "")}
-    lesson = LESSONS.get(pairs.get("lesson", ""))
-    if lesson is not None:
-        given |= {"lesson": lesson.name, "instant": lesson.instant}
-    base = _base(pairs.pop("lesson", ""), pairs.pop("scene", ""), refused)
+    base, opened = _base(pairs, refused)
+    given |= opened
+    if "lesson" in opened:
+        given["instant"] = LESSONS[opened["lesson"]].instant
     given["question"] = pairs.pop("question", "")
-    plots = [name.strip() for name in pairs.pop("plots", "").split(",") if name.strip()]
+    plots = pairs.pop("plots", plots_of(opened.get("case", ""))).split(",")
+    plots = [name.strip() for name in plots if name.strip()]
     given["plots"] = ",".join(name for name in plots if name in _PLOTS)
     refused += [f"there is no plot {name[:40]}" for name in plots if name not in _PLOTS]
     for name in [name for name in _PLACE if name in pairs]:
@@ -218,18 +229,20 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     return Place(settings, **given), f"From the address: {told}." if refused else ""
 
 
-def _base(name: str, scene: str, refused: list[str]) -> Settings:
-    """Settings from which an address says what differs: of a lesson, or of a scene."""
-    lesson = LESSONS.get(name)
-    if lesson is not None:
-        if scene not in ("", lesson.settings.scene):
-            refused.append(f"the lesson has a scene of its own, {lesson.settings.scene}")
-        return settings_of(lesson)
-    if name:
-        refused.append(f"there is no lesson {name[:40]}")
+def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
+    """Settings from which an address says what differs, and the lesson or case that has them."""
+    scene, names = pairs.pop("scene", ""), {kind: pairs.pop(kind, "") for kind in _OPENED}
+    for kind, name in names.items():
+        found = _OPENED[kind].get(name)
+        if found is not None:
+            if scene not in ("", found.settings.scene):
+                refused.append(f"the {kind} has a scene of its own, {found.settings.scene}")
+            return settings_of(found), {kind: name}
+        if name:
+            refused.append(f"there is no {kind} {name[:40]}")
     if scene and scene not in CATALOGUE:
         refused.append(f"there is no scene {scene[:40]}: choose {', '.join(CATALOGUE)}")
-    return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE)))
+    return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE))), {}
 
 
 def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> Settings:

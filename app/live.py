@@ -153,6 +153,8 @@ class Card:
         self._offered, self.seen = offered, seen
         self.view.visible = bool(offered)
         active = offered.index(seen) if offered else 0
+        # Its bounds follow the items only after the place among them was checked.
+        self.tabs.param.active.bounds = (0, max(len(offered) - 1, 0))
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
             self.view[:] = [self.tabs, self._pane(seen)] if seen is not None else [self.tabs]

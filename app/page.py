@@ -9,6 +9,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import listen
+from app.cases import CasePanel
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.export import TakeAway
@@ -70,19 +71,21 @@ class Page:
         self._lesson = LessonPanel(
             state, self._live.transport, self._dress, self._member.open_counts
         )
+        self._case = CasePanel(state, self._dress)
         self._class = ClassDialog(self._member)
-        self._lesson.view.stylesheets = self._class.view.stylesheets = [STYLE]
+        for part in (self._lesson, self._case, self._class):
+            part.view.stylesheets = [STYLE]
         self._beside = pn.FlexBox(self._live.view, margin=0)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         take_away, self._words = TakeAway(state, self._live.display), glossary()
-        dialogs = [self._lesson.dialog, self._class.dialog, take_away.view, self._words]
+        dialogs = [part.dialog for part in (self._lesson, self._case, self._class)]
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
             header=[self._header(take_away)],
-            main=[self._main, *dialogs],
+            main=[self._main, *dialogs, take_away.view, self._words],
             busy_indicator=None,
             sx=COMPACT,
         )
@@ -93,6 +96,7 @@ class Page:
         state.param.watch(lambda event: self._lesson.update(), "frame")
         self._turn(state.tab)
         self._lesson.show()
+        self._case.show()
 
     def loaded(self) -> None:
         """Show the figures, and let the first run go on or follow a class: a browser is there."""
@@ -114,6 +118,7 @@ class Page:
     def _header(self, take_away: TakeAway) -> pn.Row:
         actions = {
             "Lessons": ("school", lambda event: self._lesson.offer()),
+            "Cases": ("cases", lambda event: self._case.offer()),
             "A class": ("groups", lambda event: self._class.open()),
             "Presenter view (p)": ("slideshow", lambda event: self._present()),
             "Take away": ("download", lambda event: take_away.open()),
@@ -156,9 +161,10 @@ class Page:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
         # What comes in front is appended, and put there by the style sheet: a column whose children
         # change their order loses some of them.
-        lesson, line = self._lesson.view, self._class.view
+        beside = [part.view for part in (self._lesson, self._case) if part.view.visible]
+        line = self._class.view
         views = (
-            (self._beside, [self._live.view] + [lesson] * lesson.visible),
+            (self._beside, [self._live.view, *beside]),
             (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
         )
         for place, objects in views:
@@ -175,7 +181,7 @@ class Page:
         self._live.arrange(self._lesson.kinds)
         self.template.param.update(
             sx=BARE if is_bare else COMPACT,
-            sidebar_open=not (is_bare or self._lesson.view.visible),
+            sidebar_open=not (is_bare or self._lesson.view.visible or self._case.view.visible),
         )
 
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from typing import Any
+from urllib.parse import quote
 
 import panel_material_ui as pmui
+
+from solver.scenes.entry import Emblem
 
 
 def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:
@@ -31,3 +34,15 @@ def download(label: str, filename: str, make: Callable[[], str | bytes], **look:
     # Its constructor warns of a variant, whatever it is.
     made.variant = "outlined"
     return made
+
+
+def mask_of(emblem: Emblem) -> dict[str, str]:
+    """A small picture as a mask, which takes the colour of its text."""
+    line = 'fill="none" stroke="#000" stroke-width="1.4" stroke-linejoin="round"'
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 48 32">'
+        f'<path d="{emblem.body}" fill-opacity=".25" stroke="#000" stroke-width="1"/>'
+        f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/>'
+        f'<path d="{emblem.load}" {line}/></svg>'
+    )
+    return {"mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'}

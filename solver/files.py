@@ -53,6 +53,8 @@ def _scene_and_values(text: str, source: str) -> tuple[type[Settings], dict[str,
         values = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
         raise SettingError(source, text, "TOML", f"mend it: {problem}") from None
+    # What a case says beside its settings.
+    values.pop("case", None)
     return scene_settings(values.pop("scene", None)), values
 
 

@@ -12,12 +12,13 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.remarks import print_tables
+from solver.study.cases.case import case_from_file
 from solver.study.figures import paper_figures
 from solver.study.figures.figure import FILE, write_figures
 from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned
 from solver.study.proof import report as proof
-from solver.study.proof.case import rows_of
+from solver.study.proof.case import known_case, rows_of
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.sizes import times_at_sizes
 from solver.study.speed.study_report import (
@@ -71,6 +72,13 @@ def add_reports(commands: Any) -> None:
     stable.add_argument("--seed", type=int, default=1, help="of the random runs")
     stable.set_defaults(command=_stability)
     proven = commands.add_parser("proof", help="what is known beside what is found, row by row")
+    proven.add_argument(
+        "files",
+        nargs="*",
+        type=Path,
+        metavar="FILE",
+        help="cases of one's own (.toml)",
+    )
     proven.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
     proven.set_defaults(command=_proof)
 
@@ -158,10 +166,11 @@ def _stability(chosen: argparse.Namespace) -> int:
 
 
 def _proof(chosen: argparse.Namespace) -> int:
+    own = [known_case(case_from_file(path)) for path in chosen.files]
     rows = []
     with writing(chosen.out, *proof.FILES):
         print(proof.HEAD)
-        for case in proof.cases():
+        for case in own or proof.cases():
             for row in rows_of(case):
                 print(proof.line(row), flush=True)
                 rows.append(row)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.lessons.catalogue import CASES, settings_of
 from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
@@ -61,6 +62,25 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
     assert query_of(place) == f"?lesson={name}&k_scale=3.0"
 
 
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_is_its_name_and_what_was_changed(name: str) -> None:
+    place, refusal = read(f"?case={name}&friction=0.25")
+    assert not refusal
+    assert place.plots.split(",") == list(CASES[name].views or ("",))
+    assert query_of(place) == f"?case={name}&friction=0.25"
+    assert read(query_of(place))[0].settings.values() == place.settings.values()
+    assert read(f"?case={name}&plots=Convergence")[0].plots == "Convergence"
+
+
+def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
+    state = PageState(settings_of(CASES["crate"]), case="crate")
+    seen: list[str] = []
+    watched = ["settings", "case", "plots"]
+    state.param.watch(lambda *events: seen.append(query_of(place_of(state))), watched)
+    show(state, read("?scene=bar&peak=800.0")[0])
+    assert seen == ["?scene=bar&peak=800.0"]
+
+
 @pytest.mark.parametrize(
     ("query", "told"),
     [
@@ -69,6 +89,7 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
         ("substructures=60", "raise Elements"),
         ("scene=moon", "there is no scene moon"),
         ("lesson=moon", "there is no lesson moon"),
+        ("case=moon", "there is no case moon"),
         ("tab=Moon", "Live, What if"),
         ("instant=2", "from 0 to 1"),
         ("plots=Convergence,Moon", "there is no plot Moon"),

@@ -32,7 +32,7 @@ LAYERS = [
     ["scenes"],
     ["remarks"],
     ["curves"],
-    ["files"],
+    ["files", "toml_files"],
     ["executors"],
     ["study"],
     ["lessons"],

@@ -16,8 +16,9 @@ FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"
 MATHEMATICS, MEASUREMENTS = ROOT / "solver" / "README.md", ROOT / "solver" / "study" / "README.md"
 LESSONS = ROOT / "app" / "lessons" / "README.md"
 SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
+CASES = ROOT / "solver" / "study" / "cases" / "README.md"
 METHOD = ROOT / "solver" / "latin" / "README.md"
-READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
+READMES = [FRONT, PAGE, LESSONS, CASES, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
 
 

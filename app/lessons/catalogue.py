@@ -1,4 +1,4 @@
-"""All lessons: what a page has of one, and what it says with the quantities of a frame."""
+"""All lessons and cases: what a page has of one, and what it says with quantities of a frame."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from app.views.view import View
 from solver.lessons.lesson import SUBJECTS, Lesson
 from solver.lessons.reading import lesson_from_file
 from solver.settings import Settings
+from solver.study.cases.case import Case, all_cases
 from solver.study.quantities import reading
 
 _READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
@@ -23,6 +24,8 @@ LESSONS = {
     for lesson in sorted(_READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order))
 }
 """By name, in order, those of one subject together."""
+CASES = {case.name: case for case in all_cases()}
+"""By name, in order."""
 VALUE = re.compile(r"\{value:(.*?)\}")
 """A quantity in what a lesson says."""
 PENDING = "…"
@@ -37,13 +40,19 @@ class Control:
     setting: str
 
 
-def settings_of(lesson: Lesson) -> Settings:
-    """Settings with which a page begins a lesson: one sees the search, unless its file has another.
+def settings_of(lesson: Lesson | Case) -> Settings:
+    """Settings with which a page begins a lesson or a case.
 
-    Lessons with the paper's method show every iterate as it is.
+    One sees the search, unless its file has another: lessons with the paper's method show every
+    iterate as it is.
     """
     settings = lesson.settings
     return settings.replace(**SEARCH) if settings.finish == "at-once" else settings
+
+
+def plots_of(case: str) -> str:
+    """Plots that come to the front with a case, as `PageState` has them; none without one."""
+    return ",".join(CASES[case].views) if case in CASES else ""
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:

@@ -80,7 +80,7 @@ class LessonPanel:
         """Begin a lesson, with its scene and settings."""
         self.dialog.open = False
         with param.parameterized.batch_call_watchers(self._state):
-            self._state.param.update(lesson=name, prediction=None)
+            self._state.param.update(lesson=name, case="", prediction=None)
             self._state.adopt(settings_of(LESSONS[name]))
 
     def offer(self) -> None:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.disk import read_text, why
 from solver.files import scene_settings
 from solver.lessons.lesson import SUBJECTS, Claim, EndingClaim, Expected, Lesson
 from solver.settings import Settings
 from solver.study.quantities import reading
+from solver.toml_files import check_keys, placed, read_toml
 
 KEYS = {
     "title": str,
@@ -50,19 +48,10 @@ OF_CHECKPOINT = {
 """Keys of a checkpoint; `settings` and `tolerance` may be left out."""
 OF_VERDICT = {"claim": str, "settings": dict, "says": str}
 """Keys of one that tells with which words a run ends; `settings` may be left out."""
-WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
 INTERVAL = "a share of the interval, from 0 to 1"
 MOST_CONTROLS = 2
 FEWEST_POINTS = 3
 """Of a curve that one may draw."""
-
-
-class LessonError(SettingError):
-    """A refused lesson: the file, or the place in it, stands before what is refused."""
-
-    def __init__(self, place: str, refusal: SettingError) -> None:
-        ValueError.__init__(self, f"{place}: {refusal}")
-        self.name = refusal.name
 
 
 def lesson_from_file(path: Path) -> Lesson:
@@ -73,32 +62,14 @@ def lesson_from_file(path: Path) -> Lesson:
     SettingError
         For a file that cannot be read, or that is refused; the message begins with its name.
     """
-    with _in(path.name):
-        try:
-            values = tomllib.loads(read_text(path))
-        except OSError as problem:
-            raise SettingError(
-                "lesson", str(path), "a file that can be read", why(problem)
-            ) from None
-        except (ValueError, RecursionError) as problem:
-            reason = " ".join(str(problem).split())
-            raise SettingError("lesson", str(path), "TOML", f"mend it: {reason}") from None
-        return _lesson(path.stem, values)
-
-
-@contextlib.contextmanager
-def _in(place: str) -> Iterator[None]:
-    """Put a place before what is refused in it."""
-    try:
-        yield
-    except SettingError as refusal:
-        raise LessonError(place, refusal) from None
+    with placed(path.name):
+        return _lesson(path.stem, read_toml(path, "lesson"))
 
 
 def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
-    _check_keys(values, KEYS, optional=OPTIONAL)
+    check_keys(values, KEYS, optional=OPTIONAL)
     kind = scene_settings(values["scene"])
-    with _in("settings"):
+    with placed("settings"):
         settings = kind.checked(values["settings"])
     choices, controls, views = (_names(key, values) for key in ("choices", "controls", "views"))
     beside = _names("beside", values) if "beside" in values else ()
@@ -116,7 +87,7 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
     _check_controls(controls, settings)
     paragraphs = {}
     for key in ("text", "explanation"):
-        with _in(key):
+        with placed(key):
             paragraphs[key] = _paragraphs(values[key], controls)
     read = {
         **{key: value for key, value in values.items() if key != "scene"},
@@ -130,21 +101,6 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         allowed = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
         raise SettingError("draw", lesson.draw, allowed, "write more checkpoints, or leave it out")
     return lesson
-
-
-def _check_keys(
-    values: Mapping[str, Any], keys: Mapping[str, Any], optional: tuple[str, ...] = ()
-) -> None:
-    """Refuse keys that there are not, keys that lack, and values of a wrong type."""
-    known = ", ".join(keys)
-    for name, value in values.items():
-        if name not in keys:
-            raise SettingError(name, value, known, "there is no such key: leave it out")
-        if not isinstance(value, keys[name]) or isinstance(value, bool):
-            raise SettingError(name, value, WORDS.get(keys[name], "a number"), "mend the value")
-    for name in keys:
-        if name not in values and name not in optional:
-            raise SettingError(name, None, known, "this key is needed: write it")
 
 
 def _names(key: str, values: Mapping[str, Any]) -> tuple[str, ...]:
@@ -183,7 +139,7 @@ def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | Endi
     if not values:
         raise SettingError("checkpoints", values, "at least one", "say what the lesson claims")
     for number, entry in enumerate(values, start=1):
-        with _in(f"checkpoint {number}"):
+        with placed(f"checkpoint {number}"):
             if not isinstance(entry, dict):
                 raise SettingError("checkpoints", entry, "a table", "write [[checkpoints]]")
             yield _checkpoint(entry, settings)
@@ -191,9 +147,9 @@ def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | Endi
 
 def _checkpoint(entry: dict[str, Any], settings: Settings) -> Claim | EndingClaim:
     if "says" in entry:
-        _check_keys(entry, OF_VERDICT, optional=("settings",))
+        check_keys(entry, OF_VERDICT, optional=("settings",))
     else:
-        _check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
+        check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
     claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
     if "says" in entry:
         return EndingClaim(claim, own, entry["says"])

@@ -11,14 +11,17 @@ from urllib.parse import urlencode
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields
-from solver.latin import Ending, solve
+from solver.latin import Ending, Solution, solve
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
+from solver.study.cases.case import Case
+from solver.study.quantities.finished import FinishedRun
 
 LATIN, INCREMENTAL = "LATIN", "incremental"
 CLOSED_FORMS, PUBLISHED = "Closed forms", "Published numbers"
-"""Parts of the report, by where what is known is from."""
+TRADE = "Cases of the trade"
+"""Parts of the report, by where what is known is from; cases of the trade are solved by LATIN."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +31,7 @@ class Answer:
     settings: Any
     problem: Problem
     fields: LoopFields
+    solution: Solution | None = None
 
     @property
     def bar(self) -> tuple[float, float]:
@@ -90,9 +94,10 @@ class KnownCase:
     @property
     def mesh(self) -> str:
         """What it is solved on, and over how many instants."""
-        names = [name for name in ("elements", "elements_up") if name in self.values]
-        elements = " x ".join(str(self.values[name]) for name in names)
-        return f"{elements} elements, {len(self.settings.times())} instants"
+        settings = self.settings
+        names = [name for name in ("elements", "elements_up") if name in settings.definitions()]
+        elements = " x ".join(str(getattr(settings, name)) for name in names)
+        return f"{elements} elements, {len(settings.times())} instants"
 
     @property
     def address(self) -> str:
@@ -138,13 +143,31 @@ class ProofRow:
 
 
 def rows_of(case: KnownCase) -> Iterator[ProofRow]:
-    """Solve a case by LATIN and by the incremental solver on the same mesh."""
+    """Solve a case by LATIN and, unless it is of the trade, by the incremental solver too."""
     settings = case.settings
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     ended = solution.status.ending is Ending.CONVERGED
-    for number in case.numbers(Answer(settings, problem, solution.iterate)):
+    for number in case.numbers(Answer(settings, problem, solution.iterate, solution)):
         yield ProofRow(case, LATIN, ended, *number)
+    if case.part == TRADE:
+        return
     reference = reference_of(problem)
     for number in case.numbers(Answer(settings, problem, reference)):
         yield ProofRow(case, INCREMENTAL, bool(reference.converged.all()), *number)
+
+
+def known_case(case: Case) -> KnownCase:
+    """Make a row of the proof of a case of the trade."""
+    asked = case.quantity
+
+    def numbers(answer: Answer) -> Iterator[Number]:
+        assert answer.solution is not None
+        found = asked(FinishedRun(answer.settings, answer.solution))
+        yield asked.title, asked.unit or "-", case.known, found
+
+    settings, source = case.settings, f"{case.formula}. {case.how} {case.source}"
+    changes = settings.changed()
+    return KnownCase(
+        case.title, source, case.tolerance, settings.scene, changes, numbers, part=TRADE
+    )

@@ -7,12 +7,22 @@ from html import escape
 from itertools import groupby
 from pathlib import Path
 
+from solver.study.cases.case import all_cases
 from solver.study.page import cell, table, write_csv, write_page
 from solver.study.proof.bodies import body_cases
-from solver.study.proof.case import CLOSED_FORMS, INCREMENTAL, LATIN, PUBLISHED, KnownCase, ProofRow
+from solver.study.proof.case import (
+    CLOSED_FORMS,
+    INCREMENTAL,
+    LATIN,
+    PUBLISHED,
+    TRADE,
+    KnownCase,
+    ProofRow,
+    known_case,
+)
 from solver.study.proof.rods import rod_cases
 
-HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<28} {'deviation':>9} {'allowed':>8}"
+HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<52} {'deviation':>9} {'allowed':>8}"
 COLUMNS = (
     *("holds", "part", "case", "solver", "quantity", "unit", "known", "ours", "deviation"),
     *("allowed", "mesh", "source", "address"),
@@ -24,8 +34,9 @@ TITLE = "Proof: what is known beside what Slipfront finds"
 WORDS = (
     f'<p>Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>\n'
     "<p>Each row is a number that is known, and the same number of a run: by LATIN, ended as a run "
-    "on the page ends, and by the incremental solver on the same mesh. <em>Deviation</em> is the "
-    "distance of each over the number that is known, <em>allowed</em> what the mesh leaves.</p>"
+    "on the page ends, and but for cases of the trade by the incremental solver on the same mesh. "
+    "<em>Deviation</em> is the distance of each over the number that is known, <em>allowed</em> "
+    "what the mesh leaves.</p>"
 )
 HEADS = "", "quantity", "unit", "known", LATIN, "deviation", INCREMENTAL, "deviation", "allowed"
 HOLDS, FAILS = "holds", "FAILS"
@@ -33,13 +44,13 @@ HOLDS, FAILS = "holds", "FAILS"
 
 def cases() -> list[KnownCase]:
     """All cases, none of them solved yet."""
-    return [*rod_cases(), *body_cases()]
+    return [*rod_cases(), *body_cases(), *map(known_case, all_cases())]
 
 
 def line(row: ProofRow) -> str:
     """One row of the console's table."""
     return (
-        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.quantity:<28} "
+        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.quantity:<52} "
         f"{row.deviation:9.1e} {row.case.allowed:8.0e}"
     )
 
@@ -54,7 +65,7 @@ def write_proof(rows: Sequence[ProofRow], folder: Path) -> tuple[Path, Path]:
     table_file, page = (folder / file for file in FILES)
     write_csv(table_file, COLUMNS, map(_entries, rows))
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
-    for part in (CLOSED_FORMS, PUBLISHED):
+    for part in (CLOSED_FORMS, PUBLISHED, TRADE):
         lines = list(_html_rows(row for row in rows if row.case.part == part))
         if lines:
             sections.append(f"<h2>{part}</h2>{table(HEADS, lines)}")

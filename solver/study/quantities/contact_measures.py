@@ -20,6 +20,7 @@ from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import CYCLE, Parameter, quantity
 
+AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
 EQUAL = 1e-6
 """Relative difference up to which two loads count as equally large."""
@@ -64,11 +65,15 @@ def axial_force_at(run: FinishedRun, instant: int) -> float:
 @quantity(
     "Largest axial force",
     "N",
+    parameter=AT,
     applies=lambda settings: kind_of(settings) in ("rod", "wires"),
     at_instant=axial_force_at,
 )
-def axial_force(run: FinishedRun) -> float:
-    """Largest axial force in any element at any instant, N, pull positive."""
+def axial_force(run: FinishedRun, at: float | None) -> float:
+    """Largest axial force in any element at any instant, or at one, N, pull positive."""
+    if at is not None:
+        times = run.problem.instants
+        return axial_force_at(run, int(np.abs(times - at * times[-1]).argmin()))
     force = AxialForce(run.problem)(run.iterate.displacement)
     return float(force.flat[np.abs(force).argmax()])
 

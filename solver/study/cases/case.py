@@ -1,0 +1,124 @@
+"""A case of the trade: somebody's question, the run that answers it, and a number that is known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from solver.definitions import SettingError
+from solver.files import scene_settings
+from solver.scenes import CATALOGUE
+from solver.scenes.entry import Emblem
+from solver.settings import Settings
+from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
+from solver.toml_files import check_keys, placed, read_toml
+
+KEYS = {
+    "order": int,
+    "title": str,
+    "question": str,
+    "source": str,
+    "quantity": str,
+    "known": (int, float),
+    "tolerance": (int, float),
+    "formula": str,
+    "how": str,
+    "change": str,
+    "controls": list,
+    "views": list,
+    "picture": dict,
+}
+"""Keys of the table `case`, and the type of each; `OPTIONAL` may be left out."""
+OPTIONAL = "views", "picture"
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A case as its file says.
+
+    Attributes
+    ----------
+    name
+        That of its file, without the ending.
+    order
+        Its place among the cases.
+    title, question
+        What it is called, and what its owner asks.
+    source
+        Where the question, or what is known, is from.
+    settings
+        Of the run.
+    quantity
+        That of the run which is known.
+    known, tolerance
+        What is known, and how far the run may be from it, as a share.
+    formula, how
+        What it follows from, and how it is known.
+    change, controls
+        What to change first, and the names of its settings.
+    views
+        Names of the plots that come to the front.
+    picture
+        By which it is found; without one that of the scene.
+    """
+
+    name: str
+    order: int
+    title: str
+    question: str
+    source: str
+    settings: Settings
+    quantity: Quantity
+    known: float
+    tolerance: float
+    formula: str
+    how: str
+    change: str
+    controls: tuple[str, ...]
+    views: tuple[str, ...]
+    picture: Emblem
+
+
+def case_from_file(path: Path) -> Case:
+    """Read a case: a file of settings with a table `case`.
+
+    Raises
+    ------
+    SettingError
+        For a file that cannot be read, or that is refused; the message begins with its name.
+    """
+    with placed(path.name):
+        values = read_toml(path, "case")
+        kind = scene_settings(values.pop("scene", None))
+        entries = values.pop("case", None)
+        if not isinstance(entries, dict):
+            raise SettingError("case", entries, "a table", "write [case] below the settings")
+        settings = kind.checked(values)
+        with placed("case"):
+            return _case(path.stem, settings, entries)
+
+
+def all_cases() -> list[Case]:
+    """Read all cases of this folder, in their order."""
+    found = map(case_from_file, Path(__file__).parent.glob("*.toml"))
+    return sorted(found, key=lambda case: case.order)
+
+
+def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
+    check_keys(entries, KEYS, optional=OPTIONAL)
+    if not 0.0 < entries["tolerance"] < 1.0:
+        allowed = "a share above 0 and below 1"
+        raise SettingError("tolerance", entries["tolerance"], allowed, "say what the mesh leaves")
+    working = [own for own in settings.definitions() if settings.applies(own)]
+    for control in entries["controls"]:
+        if control not in working:
+            remedy = "name a setting that does something here"
+            raise SettingError("controls", control, ", ".join(working), remedy)
+    paths = entries.get("picture", CATALOGUE[settings.scene].emblem._asdict())
+    check_keys(paths, dict.fromkeys(Emblem._fields, str))
+    read = dict(entries) | {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
+    read |= {"quantity": reading(entries["quantity"]), "picture": Emblem(**paths)}
+    return Case(name=name, settings=settings, **read)
