@@ -77,15 +77,9 @@ class ContactGroup:
         move; a point that is just at its bound moves by rounding alone, and that is not called
         slip. Where a cut ends at the interface both sides have their say, and the larger slip wins.
 
-        Parameters
-        ----------
-        displacement, force
-            W^ and F^ of all rows, shape (n_rows, n_instants); F^ where the status shows in forces.
-        slip
-            If it is known already.
-        still
-            Slip up to which a point counts as stuck, beside what is rounding, scaled: of each
-            interface, shape (n_interfaces,), or of all.
+        From W^ and F^ of all rows, (n_rows, n_instants), F^ where the status shows in forces, and
+        the slip if it is known. `still` is slip up to which a point counts as stuck, beside what is
+        rounding, scaled: of each interface, (n_interfaces,), or of all.
         """
         law = self.law
         slip = self.slip(displacement, force) if slip is None else slip

@@ -9,7 +9,7 @@ memory (Fortran order), because the friction law walks through time.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -305,42 +305,3 @@ def nothing_acts(problem: Problem) -> bool:
         return False
     forces = (part.body_force for part in problem.substructures if part.body_force is not None)
     return not any(force.any() for force in forces)
-
-
-def slab_of(problem: Problem, some: slice, start: Mapping[str, Array] | None = None) -> Problem:
-    """A problem at some instants.
-
-    Parameters
-    ----------
-    problem
-        Of the whole interval.
-    some
-        Instants that follow each other.
-    start
-        Where the sliders of every interface with friction stand before the first of them, as
-        `Tangential.slider` gives it, shape (n_pairs,) each, scaled; None at zero.
-
-    Raises
-    ------
-    RefusedError
-        If a law remembers more than that.
-    """
-
-    def during(field: Array | None) -> Array | None:
-        return None if field is None else field[:, some]
-
-    parts = tuple(
-        replace(part, body_force=during(part.body_force), free_force=during(part.free_force))
-        for part in problem.substructures
-    )
-    interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
-    for name, before in (start or {}).items():
-        interfaces[name] = problem.rubbing[name].during(some).begun(before)
-    return replace(
-        problem,
-        substructures=parts,
-        interfaces=interfaces,
-        instants=problem.instants[some],
-        rest=during(problem.rest),
-        carried=during(problem.carried),
-    )

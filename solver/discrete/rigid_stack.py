@@ -87,7 +87,7 @@ def is_upright(stack: Stack) -> bool:
 
 
 def loss_of_equilibrium(stack: Stack) -> Loss | None:
-    """Find why a body on a support cannot rest under its loads, or None if nothing forbids it.
+    """Why a body on a support cannot rest under its loads, or None if nothing forbids it.
 
     Nothing but the support can hold what no side holds: it presses and does not pull, friction
     carries no more than its law allows, and the pressure's resultant acts on the base. A spring

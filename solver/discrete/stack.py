@@ -249,7 +249,7 @@ class Stack:
 
 
 def _given(given: Given, side: str, component: int) -> Act:
-    """Show what is given along a side: evenly in the middle, unevenly at both ends."""
+    """What is given along a side: evenly in the middle, unevenly at both ends."""
     towards, away = ((1.0, 0.0), (0.0, 1.0))[component], OUTWARD[side]
     first, last = ends_of(side)
     unit = "m" if given.prescribed else "Pa"

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.problem import Problem, slab_of
+from solver.discrete.problem import Problem
 from solver.latin.directions import FromStatus, SearchDirection
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate, read_only
@@ -95,12 +95,39 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     linear = replace(latin.linear, responses=Responses())
     start, nested = None, latin.start
     if nested is not None:
-        start = Nested(lambda: (slab_of(coarser, instants) for coarser in nested.problems()))
+        start = Nested(lambda: (_during(coarser, instants) for coarser in nested.problems()))
     stop, accuracy = latin.stop, latin.stop.accuracy
     if np.isfinite(accuracy):
         stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)
     method = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
-    return Slab(instants, slab_of(problem, instants), method)
+    return Slab(instants, _during(problem, instants), method)
+
+
+def _during(problem: Problem, some: slice, start: Mapping[str, Array] | None = None) -> Problem:
+    """A problem at instants that follow each other.
+
+    `start` is where the sliders of every interface with friction stand before the first of them, as
+    of `Friction.slider`, (n_pairs,) each; None at zero.
+    """
+
+    def during(field: Array | None) -> Array | None:
+        return None if field is None else field[:, some]
+
+    parts = tuple(
+        replace(part, body_force=during(part.body_force), free_force=during(part.free_force))
+        for part in problem.substructures
+    )
+    interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
+    for name, before in (start or {}).items():
+        interfaces[name] = problem.rubbing[name].during(some).begun(before)
+    return replace(
+        problem,
+        substructures=parts,
+        interfaces=interfaces,
+        instants=problem.instants[some],
+        rest=during(problem.rest),
+        carried=during(problem.carried),
+    )
 
 
 def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Slab | None:
@@ -120,7 +147,7 @@ def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Sla
     start = Checkpoint(
         0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(solved, before, instants)
     )
-    return Slab(instants, slab_of(problem, instants, ends), slab.latin, start)
+    return Slab(instants, _during(problem, instants, ends), slab.latin, start)
 
 
 def _cut(solved: Iterate, before: slice, instants: slice) -> Reduction | None:

@@ -45,10 +45,9 @@ class Nested:
         return self.coarser() if callable(self.coarser) else self.coarser
 
     def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
-        """Where a problem starts with a search direction.
+        """Where a problem starts with a search direction: from the finest mesh that has a solution.
 
-        From the finest of the meshes that has a solution. None if there is no such mesh, or it
-        takes more than so many seconds.
+        None if there is no such mesh, or it takes more than so many seconds.
         """
         deadline = time.perf_counter() + seconds
         for coarse in self.problems():

@@ -76,20 +76,11 @@ class FrictionLaw:
         known: Array | None = None,
         friction: Array | None = None,
     ) -> Friction:
-        """Law at the pairs of an interface.
+        """Law at the pairs of an interface, by their rows and tributary areas, (n_pairs,).
 
-        Parameters
-        ----------
-        component
-            Their rows.
-        weights
-            Tributary area of each, shape (n_pairs,), m or m^2.
-        scales
-            Units of length, m, and of force, N.
-        known
-            Friction force that known pressure makes, (n_pairs, n_instants) or (n_pairs, 1), scaled.
-        friction
-            mu of each pair, shape (n_pairs,), where pressure is not known.
+        `scales` are the units of length, m, and of force, N. `known` is the friction force that
+        known pressure makes, scaled, (n_pairs, n_instants) or (n_pairs, 1); `friction` is mu of
+        each pair, (n_pairs,), where pressure is not known.
         """
         length, force = scales
         bound = np.zeros((len(weights), 1)) if known is None else known.reshape(len(known), -1)

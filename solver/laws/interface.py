@@ -117,16 +117,10 @@ class Rule(Protocol):
     """A law that is ready for one k: it obeys in the local stage (paper, problem 2.1)."""
 
     def __call__(self, incoming: Array, displacement: Array, instants: slice, /) -> None:
-        """Write W^ of the interface's rows.
+        """Write W^ of the interface's rows; what is not of the interface stays.
 
-        Parameters
-        ----------
-        incoming
-            z = W - F/k of all rows, shape (n_rows, n) of n instants.
-        displacement
-            W^, same shape; what is not of the interface stays.
-        instants
-            Which these are; all of them where the rule remembers.
+        From z = W - F/k of all rows, (n_rows, n) of n instants, which `instants` says; all of them
+        where the rule remembers.
         """
 
 
@@ -162,14 +156,9 @@ class Interface(ABC):
 
     @abstractmethod
     def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
-        """How much W and F of all rows miss continuity and balance by, without k.
+        """How much W and F of all rows, (n_rows, n_instants), miss continuity and balance by.
 
-        Parameters
-        ----------
-        displacement, force
-            Shape (n_rows, n_instants), scaled.
-        noise
-            What rounding makes of either; less is nothing.
+        Without k; what is less than `noise` is rounding.
         """
 
     def during(self, instants: slice) -> Self:

@@ -174,14 +174,8 @@ class Strength:
 def follow(target: Array, reach: Array, strength: Strength) -> Array:
     """Positions of sliders that follow a target with a reach that changes with their slip.
 
-    Parameters
-    ----------
-    target
-        Where they would be without friction, shape (n_points, n_instants).
-    reach
-        How far each may stay behind before it has slipped, same shape or (n_points, 1).
-    strength
-        Factor on that over accumulated slip.
+    `target` is where they would be without friction, (n_points, n_instants); `reach` how far each
+    may stay behind before it has slipped, so or (n_points, 1); `strength` a factor on it.
     """
     positions = np.empty_like(target)
     position, gone = np.zeros((2, len(target)))

@@ -109,19 +109,9 @@ class SeparatedBasis:
     def downsize(self, tolerance: float, largest: int) -> float:
         """Turn the modes into those of the field's singular values, sorted, and drop the smallest.
 
-        As the modes are orthonormal, the singular values of the field are those of the small
-        matrix of time functions.
-
-        Parameters
-        ----------
-        tolerance
-            Share of the field's norm that may be dropped.
-        largest
-            Number of modes beyond which the smallest are dropped in any case.
-
-        Returns
-        -------
-        Share of the field's norm that was dropped.
+        Up to `tolerance`, a share of the field's norm, and in any case beyond the `largest` number
+        of modes. As the modes are orthonormal, the singular values of the field are those of the
+        small matrix of time functions. Returns the share of the field's norm that was dropped.
         """
         if self.n_modes == 0:
             return 0.0
@@ -150,18 +140,12 @@ def kept(values: Array, tolerance: float, largest: int) -> int:
 
 
 def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
-    """Space mode of the pair that is nearest to a residual, of any length.
+    """Space mode of the pair that is nearest to a residual delta / k, of any length.
 
     With G + k Z = g for every boundary field g, problem 2.3 asks for the pair g phi nearest to
     the residual; the paper's fixed point alternates between both factors, and is a power
-    iteration towards the leading singular pair.
-
-    Parameters
-    ----------
-    residual
-        delta / k, shape (n_boundary, n_columns); zero gives a mode that is zero.
-    k, weights
-        Weights of space and of the columns.
+    iteration towards the leading singular pair. Of a residual that is zero the mode is zero; k and
+    `weights` are those of space and of the columns.
     """
     # Only the shape matters, and the squares of very small numbers are zero.
     largest = float(np.abs(residual).max())

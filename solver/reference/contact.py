@@ -107,14 +107,14 @@ class IncrementalContact:
             reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
-        found = self._judged(done, reached)
+        solution = self._judged(done, reached)
         return replace(
-            found,
-            ambiguous=ambiguous & found.converged,
+            solution,
+            ambiguous=ambiguous & solution.converged,
             steps=newton.response.solutions,
             jumps_at=newton.jumps_at,
             collapse=self._collapse,
-            is_lost=bool(np.any(reached & ~found.converged)),
+            is_lost=bool(np.any(reached & ~solution.converged)),
             seconds=time.perf_counter() - start,
         )
 

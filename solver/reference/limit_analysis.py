@@ -84,7 +84,7 @@ def collapse_of(problem: Problem) -> Collapse | None:
         step = sparse.csr_array((now - before)[:, None])
         if not step.nnz and instant:
             continue
-        found = linprog(
+        program = linprog(
             np.append(np.zeros(size), -1.0),
             A_ub=sparse.hstack([cone, none]),
             b_ub=np.concatenate([known, known, capped]),
@@ -93,21 +93,21 @@ def collapse_of(problem: Problem) -> Collapse | None:
             bounds=bounds,
             method="highs",
         )
-        if found.status not in (0, 2):
-            raise NoReferenceError(f"limit analysis has no answer: {found.message}")
-        share = float(found.x[-1]) if found.status == 0 else 0.0
+        if program.status not in (0, 2):
+            raise NoReferenceError(f"limit analysis has no answer: {program.message}")
+        share = float(program.x[-1]) if program.status == 0 else 0.0
         if share < WHOLE:
             first = times[max(instant - 1, 0)]
             time = float(first + share * (times[instant] - first))
-            mechanism = _mechanism(found, problem.motions)
+            mechanism = _mechanism(program, problem.motions)
             return Collapse(time, instant, mechanism, _tips(problem, mechanism))
         before = now
     return None
 
 
-def _mechanism(found: object, motions: Array) -> Array:
+def _mechanism(program: object, motions: Array) -> Array:
     """Rigid motions that the dual of the program says, shape (n_dofs,)."""
-    marginals = getattr(getattr(found, "eqlin", None), "marginals", None)
+    marginals = getattr(getattr(program, "eqlin", None), "marginals", None)
     if marginals is None:
         return np.zeros(len(motions))
     moved = -motions @ np.asarray(marginals)

@@ -149,15 +149,15 @@ class Newton:
             # before, or slips as a whole.
             guesses.append(self._at_rest[:, instant])
         for guess in guesses:
-            found = self._iterate(guess, sides)
-            if found is not None:
-                return found
-        found = None
+            solved = self._iterate(guess, sides)
+            if solved is not None:
+                return solved
+        solved = None
         if not self._is_lost and self._may_hold(instant):
             states = unload(self.response, self._rules, sides)
-            found = None if states is None else self._iterate(states, sides)
-        self._is_lost = self._is_lost or found is None
-        return found
+            solved = None if states is None else self._iterate(states, sides)
+        self._is_lost = self._is_lost or solved is None
+        return solved
 
     def _iterate(self, states: States, sides: Sides) -> tuple[States, Increment] | None:
         """Seek the states from a guess, or None where they cycle."""
@@ -196,10 +196,10 @@ class Newton:
         carries = np.where(held, force[rules.partner], -moved[rules.partner])
         most = sides.bound[:, 0] + np.maximum(response.friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
-        found = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
-        found = np.where(np.abs(states) == 1, states * (states * moved >= -blur), found)
-        found[self._smooth] = OPEN
+        corrected = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
+        corrected = np.where(np.abs(states) == 1, states * (states * moved >= -blur), corrected)
+        corrected[self._smooth] = OPEN
         closed = np.where(held, force >= -slack, moved < -blur)
-        found = np.where(rules.normal, np.where(closed, _HELD, _OPEN), found)
-        found[self._rubs[found[self._carry] == OPEN]] = OPEN
-        return found
+        corrected = np.where(rules.normal, np.where(closed, _HELD, _OPEN), corrected)
+        corrected[self._rubs[corrected[self._carry] == OPEN]] = OPEN
+        return corrected

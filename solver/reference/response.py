@@ -64,11 +64,11 @@ class Response:
         if self._ties is None:
             return self._stiffness
         n_base, size = len(self._base), len(self._ties)
-        found = np.zeros((size, size))
-        found[self._base, :n_base] = self._stiffness
-        found[self._base, n_base:] = -self._ties[self._others].T
-        found[self._others, np.arange(n_base, size)] = 1.0
-        return found
+        forces = np.zeros((size, size))
+        forces[self._base, :n_base] = self._stiffness
+        forces[self._base, n_base:] = -self._ties[self._others].T
+        forces[self._others, np.arange(n_base, size)] = 1.0
+        return forces
 
     def set_friction(self, friction: Array, growth: Array) -> None:
         """Change coefficients of friction, and growths of their bounds per slip, shape (n,)."""
@@ -229,6 +229,6 @@ class Response:
         """Jumps at some places as a matrix on those of the base, shape (n, n_base)."""
         if self._ties is not None:
             return np.asarray(self._ties[numbers])
-        found = np.zeros((len(numbers), len(self._base)))
-        found[np.arange(len(numbers)), numbers] = 1.0
-        return found
+        jumps = np.zeros((len(numbers), len(self._base)))
+        jumps[np.arange(len(numbers)), numbers] = 1.0
+        return jumps

@@ -89,10 +89,10 @@ class Search:
 
     def __call__(self, force: Array, status: Array) -> Minimum:
         """Minimum, sought from a guess of the statuses; no force where nothing moves."""
-        found = self._newton(force, status)
-        if found.solved is not None:
-            return self._judged(force, found.status, *found.solved)
-        rods, settled = found.changing, found.status
+        guess = self._newton(force, status)
+        if guess.solved is not None:
+            return self._judged(force, guess.status, *guess.solved)
+        rods, settled = guess.changing, guess.status
         if 2 * np.count_nonzero(rods) >= len(force):
             return self._of(force, self._mended(force, status))
         parts = Search(self._band.only(rods), self._bound[rods], self._movable[rods])

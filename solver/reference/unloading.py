@@ -105,7 +105,7 @@ class _PathFollower:
         return room[0], room[1]
 
     def _change(self, place: int, side: int, moved: Array) -> None:
-        """Give a jump its next state, and remember what has to grow from zero now."""
+        """Set the next state of a jump, and remember what has to grow from zero now."""
         rules, states = self._rules, self.states
         self._changed = place, 0
         if not rules.normal[place]:
