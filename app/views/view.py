@@ -12,6 +12,7 @@ import numpy as np
 from bokeh import models
 from bokeh.core.properties import value
 from bokeh.models import (
+    AllIndices,
     CDSView,
     ColorBar,
     ColumnDataSource,
@@ -139,18 +140,22 @@ class View:
         """The figure."""
         # Nothing in it is selected or left out: what would say so is shared, as each model counts.
         self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
-        self._view = CDSView()
+        self._filter = AllIndices()
         self._nowhere = ColumnDataSource({"x": [np.nan], "y": [np.nan]}, **self._selects)
         self._make()
-        self.magnify(self._type)
+        self._size_type()
         return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
-        self._type = size
-        if self._made is not None:
-            for model in (self._made, *self._made.legend):
-                model.styles = {**model.styles, "font-size": size}
+        if size != self._type:
+            self._type = size
+            if self._made is not None:
+                self._size_type()
+
+    def _size_type(self) -> None:
+        for model in (self._made, *self._made.legend):
+            model.styles = {**model.styles, "font-size": self._type}
 
     def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
@@ -210,7 +215,8 @@ class View:
 
     def _add(self, name: str, source: ColumnDataSource, glyph: Glyph) -> GlyphRenderer:
         without = {f"{state}_glyph": None for state in ("selection", "nonselection", "muted")}
-        renderer: GlyphRenderer = self._made.add_glyph(source, glyph, view=self._view, **without)
+        view = CDSView(filter=self._filter)
+        renderer: GlyphRenderer = self._made.add_glyph(source, glyph, view=view, **without)
         self._glyphs.setdefault(name, []).append(renderer)
         return renderer
 
