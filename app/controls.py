@@ -276,7 +276,6 @@ class Controls:
             sx=GROUP,
         )
         self._groups.param.watch(lambda event: self._open(), "active")
-        self._files = pn.Column(margin=0)
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
@@ -300,21 +299,22 @@ class Controls:
         self._chief[:] = [control.view for control in self._controls]
         self._names = list(groups.values())
         self._groups.active = []
-        columns = [(title, pn.Column(margin=0)) for title in groups]
-        self._groups[:] = [*columns, ("Files", self._files)]
+        # What is opened takes the place of a spacer, which costs a page less than a column.
+        self._titles = [*groups, "Files"]
+        self._groups[:] = [(title, pn.Spacer(height=0)) for title in self._titles]
 
     def _open(self) -> None:
         """Fill the groups that are opened for the first time."""
         for place in self._groups.active:
-            column = self._groups[place]
-            if column.objects:
+            if not isinstance(self._groups[place], pn.Spacer):
                 continue
-            if column is self._files:
-                column.append(FilesPanel(self._state, self._copy, WIDTH).view)
-                continue
-            controls = [SettingControl(name, self._state) for name in self._names[place]]
-            self._controls += controls
-            column[:] = [control.view for control in controls]
+            if place == len(self._names):
+                view = FilesPanel(self._state, self._copy, WIDTH).view
+            else:
+                controls = [SettingControl(name, self._state) for name in self._names[place]]
+                self._controls += controls
+                view = pn.Column(*(control.view for control in controls), margin=0)
+            self._groups[place] = (self._titles[place], view)
 
 
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:

@@ -133,18 +133,6 @@ def test_softening_on_a_spring_is_certified(scene, stiffness, cohesion):
     assert kkt_residual(result.iterate, result.iterate.problem) < 1e-8
 
 
-def test_a_bonded_bar_moves_as_in_closed_form():
-    """theory: u(L) = P tanh(lam L) / (E A lam) with the far end held, while the bond is elastic."""
-    stiffness, pull, axial = 5e6, 500.0, 210e9 * 3.14e-6
-    bond = {"friction": 0.0, "cohesion": 1e5, "tangential_stiffness": stiffness}
-    given = {"elements": 400, "instants": 3, "load": "ramp", "peak": pull}
-    result = run("bar", **{**GENERAL, **bond, **given})
-    lag = np.sqrt(stiffness / axial)
-    moved = pull * np.tanh(lag) / (axial * lag)
-    assert result.iterate.displacement[-1, -1] == pytest.approx(moved, rel=1e-4)
-    assert not result.iterate.status.any()
-
-
 def test_a_bonded_bar_softens_as_in_closed_form():
     """theory: a zone of length s softens, P = N_0 cos(beta s) + (tau / beta) sin(beta s).
 
