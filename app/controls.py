@@ -77,6 +77,7 @@ class SettingControl:
         self._is_updating = self._is_dragged = False
         self._echoes = Echoes()
         self._dialog: CurveDialog | None = None
+        self._edit_button: pmui.Button | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
@@ -101,9 +102,7 @@ class SettingControl:
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
-            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
-            return field, pn.Column(field, self._edit_button, margin=0)
+            return field, pn.Column(field, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
@@ -155,7 +154,7 @@ class SettingControl:
     def _show(self, value: Any) -> None:
         if isinstance(self._definition, CurveParameter):
             self.field.value = POINTS if isinstance(value, tuple) else value
-            self._edit_button.visible = isinstance(value, tuple)
+            self._offer_points(isinstance(value, tuple))
             if self._dialog is not None:
                 self._dialog.update()
         elif self.slider is None:
@@ -164,6 +163,14 @@ class SettingControl:
             self.field.value = self._echoes.give(self._written(value), self.field.value)
             if not self._is_dragged:
                 self._show_on_slider(value)
+
+    def _offer_points(self, are_there: bool) -> None:
+        if are_there and self._edit_button is None:
+            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
+            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
+            self.view.append(self._edit_button)
+        if self._edit_button is not None:
+            self._edit_button.visible = are_there
 
     def _show_on_slider(self, value: float) -> None:
         low, high = self._definition.softbounds
@@ -267,7 +274,6 @@ class Controls:
             sx=GROUP,
         )
         self._groups.param.watch(lambda event: self._open(), "active")
-        self._files = pn.Column(margin=0)
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
@@ -291,21 +297,22 @@ class Controls:
         self._chief[:] = [control.view for control in self._controls]
         self._names = list(groups.values())
         self._groups.active = []
-        columns = [(title, pn.Column(margin=0)) for title in groups]
-        self._groups[:] = [*columns, ("Files", self._files)]
+        # What is opened takes the place of a spacer, which costs a page less than a column.
+        self._titles = [*groups, "Files"]
+        self._groups[:] = [(title, pn.Spacer(height=0)) for title in self._titles]
 
     def _open(self) -> None:
         """Fill the groups that are opened for the first time."""
         for place in self._groups.active:
-            column = self._groups[place]
-            if column.objects:
+            if not isinstance(self._groups[place], pn.Spacer):
                 continue
-            if column is self._files:
-                column.append(FilesPanel(self._state, self._copy, WIDTH).view)
-                continue
-            controls = [SettingControl(name, self._state) for name in self._names[place]]
-            self._controls += controls
-            column[:] = [control.view for control in controls]
+            if place == len(self._names):
+                view = FilesPanel(self._state, self._copy, WIDTH).view
+            else:
+                controls = [SettingControl(name, self._state) for name in self._names[place]]
+                self._controls += controls
+                view = pn.Column(*(control.view for control in controls), margin=0)
+            self._groups[place] = (self._titles[place], view)
 
 
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:

@@ -19,7 +19,7 @@ from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.layouts import column, grid
 from bokeh.model import Model
-from bokeh.models import CustomJS, Div, GlyphRenderer, PointDrawTool, SaveTool, Slider
+from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider
 from bokeh.resources import INLINE
 from jinja2 import Template
 
@@ -88,11 +88,8 @@ def plot_table(view: View, frame: Frame) -> str:
     axes = [*view.figure.xaxis[:1], *view.figure.yaxis[:1]]
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     items = [item for legend in view.figure.legend for item in legend.items]
-    tables: dict[str, pd.DataFrame] = {}
-    for renderer in view.figure.renderers:
-        if not isinstance(renderer, GlyphRenderer) or renderer.data_source.id in tables:
-            continue
-        source = renderer.data_source
+    tables = []
+    for source in view.sources.values():
         labels = [
             str(getattr(item.label, "value", None))
             for item in items
@@ -104,9 +101,9 @@ def plot_table(view: View, frame: Frame) -> str:
         if paths:
             table[paths] = table[paths].map(np.ravel)
             table = table.explode(paths).rename_axis("path").reset_index()
-        table.insert(0, "curve", " / ".join(labels) or source.name or "")
-        tables[source.id] = table
-    return _csv(frame, [view.name, *names], pd.concat(tables.values()))
+        table.insert(0, "curve", " / ".join(labels))
+        tables.append(table)
+    return _csv(frame, [view.name, *names], pd.concat(tables))
 
 
 def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:

@@ -16,6 +16,7 @@ from app.views.catalogue import CARDS
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
+from app.widgets import wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = "2.6vh"
@@ -52,15 +53,15 @@ class Live:
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.
         document.add_next_tick_callback(self.prepare)
-        self._above = pn.FlexBox(self.transport.view, self._status, margin=0)
+        self._above = wrapped(self.transport.view, self._status, sizing_mode="stretch_width")
         self._scene, self._plots = column("scene"), column("plots")
         self._timeline = pn.Row(
             self.transport.play_button, sizing_mode="stretch_width", min_height=56, margin=0
         )
         self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
-        words = self._sentence, self._figures
-        below = pn.FlexBox(*words, justify_content="space-between", margin=0)
+        look = {"styles": {"flex-wrap": "wrap", "justify-content": "space-between"}}
+        below = wrapped(self._sentence, self._figures, sizing_mode="stretch_width", **look)
         parts = self._above, below, self._scene, self._timeline, self._plots
         self.view = column("live", *parts)
         state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])

@@ -23,6 +23,7 @@ from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
 from app.whatif import WhatIf
+from app.widgets import wrapped
 from solver.settings import Settings
 
 COMPACT = {
@@ -75,17 +76,19 @@ class Page:
         self._class = ClassDialog(self._member)
         for part in (self._lesson, self._case, self._class):
             part.view.stylesheets = [STYLE]
-        self._beside = pn.FlexBox(self._live.view, margin=0)
+        self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         take_away, self._words = TakeAway(state, self._live.display), glossary()
         dialogs = [part.dialog for part in (self._lesson, self._case, self._class)]
+        for each in (*dialogs, take_away.view, self._words):
+            each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
             header=[self._header(take_away)],
-            main=[self._main, *dialogs, take_away.view, self._words],
+            main=[self._main],
             busy_indicator=None,
             sx=COMPACT,
         )
@@ -137,6 +140,11 @@ class Page:
     def _present(self) -> None:
         """Show the page as a projector needs it, or as before."""
         self.state.view = "present" if self.state.view == "page" else "page"
+
+    def _put(self, event: Any) -> None:
+        """Put a dialog on the page when it is first opened."""
+        if event.obj not in self.template.main:
+            self.template.main = [*self.template.main, event.obj]
 
     def _help(self) -> None:
         self._words.open = True

@@ -20,11 +20,16 @@ ENDINGS = {
 
 
 def status_line(state: PageState) -> str:
-    """How far the run is, or how it ended, with the method's own words behind *details* (HTML)."""
-    frame, newest = state.frame, state.newest
+    """How far the run is, or how it ended, with the method's own words behind *details* (HTML).
+
+    What the page says beside is one line, and whole in the details.
+    """
+    frame, newest, said = state.frame, state.newest, _said(state)
+    text = " ".join(said)
+    line = f'<div class="said" title="{text}">{text}</div>' if said else ""
     if frame is None or newest is None:
-        return "<b>starting</b>" + _more(state)
-    return _progress(state, frame, newest) + _details(frame) + _more(state)
+        return "<b>starting</b>" + line
+    return _progress(state, frame, newest) + _details(frame, said) + line
 
 
 def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
@@ -42,7 +47,7 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
     return f"<b>{ENDINGS[newest.status.ending]}</b> · {search}: {counted} · {end}"
 
 
-def _details(frame: Frame) -> str:
+def _details(frame: Frame, said: list[str]) -> str:
     """What the method says of itself."""
     settings = frame.run.settings
     parts = settings.n_substructures
@@ -57,20 +62,20 @@ def _details(frame: Frame) -> str:
         f"{number(frame.last('seconds'))} s; incremental solver "
         f"{number(frame.run.reference_seconds)} s",
     ]
-    if frame.status is not None:
+    if frame.status is not None and frame.status.ending is Ending.CONVERGED:
         words.append(escape(frame.status.advice))
-    lines = "".join(f"<div>{word}</div>" for word in words)
+    lines = "".join(f"<div>{word}</div>" for word in [*words, *said])
     return f" <details><summary>details</summary><div>{lines}</div></details>"
 
 
-def _more(state: PageState) -> str:
+def _said(state: PageState) -> list[str]:
     words = [escape(text) for text in (state.message, state.refusal) if text]
     frame = state.frame
     if frame is not None and frame.status is not None:
         if frame.status.ending is not Ending.CONVERGED:
             words.append(escape(frame.status.advice))
         words.extend(map(escape, frame.remarks))
-    return "".join(f'<div class="said">{word}</div>' for word in words)
+    return words
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:

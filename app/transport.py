@@ -7,12 +7,11 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import Echoes
 from app.state import ANSWER, PACES, SEARCH, PageState, known
-from app.widgets import button
+from app.widgets import button, wrapped
 
 PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
@@ -50,14 +49,12 @@ class Transport:
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin)
-        self.view = pn.FlexBox(
+        self.view = wrapped(
             self._run,
             _button("skip_next", "One iteration (s)", state.step),
             _button("replay", "From the start (r)", state.reset),
             self._pin,
             *self._choices(),
-            sizing_mode=None,
-            margin=0,
         )
         shown = ["settings", "frame", "newest", "running", "is_costly", "pinned"]
         state.param.watch(lambda *events: self._show(), shown)
@@ -76,7 +73,7 @@ class Transport:
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
         pace = pmui.Select.from_param(
-            self._state.param.pace, options=list(PACES), size="small", width=150, margin=(6, 4)
+            self._state.param.pace, options=list(PACES), size="small", width=136, margin=(6, 4)
         )
         # Counted from the newest: so its value rests while a run goes on.
         self._iteration = pmui.IntSlider(
@@ -86,8 +83,8 @@ class Transport:
             value=0,
             show_value=False,
             size="small",
-            width=130,
-            margin=(0, 10),
+            width=110,
+            margin=(0, 8),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
         return [self._way, pace, self._iteration]

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 from urllib.parse import quote
 
+import panel as pn
 import panel_material_ui as pmui
 
 from solver.scenes.entry import Emblem
@@ -16,6 +17,11 @@ def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:
     """A small button."""
     look = {"size": "small", **look}
     return pmui.Button(label=label, on_click=lambda event: act(), **look)
+
+
+def wrapped(*objects: Any, **look: Any) -> pn.Row:
+    """A row that goes on in the next line where there is no room: simpler than a `FlexBox`."""
+    return pn.Row(*objects, margin=0, **{"styles": {"flex-wrap": "wrap"}, **look})
 
 
 def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:

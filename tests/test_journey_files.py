@@ -27,11 +27,6 @@ def download(page: Page, name: str, folder: Path) -> Path:
     return path
 
 
-def open_files(page: Page) -> None:
-    button(page, "Files").click()
-    expect(page.get_by_text("Open settings or a table").first).to_be_visible()
-
-
 def upload(page: Page, path: Path, text: str) -> None:
     """Open a file by the browser's own dialog."""
     path.write_text(text, encoding="utf-8")
@@ -52,7 +47,9 @@ def opens_alone(browser: Browser, path: Path) -> None:
     assert [c for c in complaints if not c.startswith(("file:", "data:", "blob:"))] == []
 
 
-def test_what_if_draws_its_first_chart_by_itself(visit: Visit) -> None:
+def test_what_if_draws_a_chart_by_itself_and_a_run_is_taken_away_as_table_program_and_page(
+    visit: Visit, tmp_path: Path
+) -> None:
     page = visit(f"?{SMALL}")
     is_solved(page)
     button(page, "What if").click()
@@ -60,13 +57,6 @@ def test_what_if_draws_its_first_chart_by_itself(visit: Visit) -> None:
     expect(page.get_by_text(re.compile(r"26 of 26 runs: \d+ converged"))).to_be_visible()
     expect(page.locator(".bk-Figure").locator("visible=true")).to_have_count(1)
     button(page, "Live").click()
-    is_solved(page)
-
-
-def test_a_run_is_taken_away_as_table_program_and_a_page_that_needs_no_network(
-    visit: Visit, tmp_path: Path
-) -> None:
-    page = visit(f"?{SMALL}")
     is_solved(page)
     button(page, "Take away").click()
     table = download(page, "All iterations", tmp_path).read_text(encoding="utf-8").splitlines()
@@ -88,28 +78,21 @@ def test_a_run_is_taken_away_as_table_program_and_a_page_that_needs_no_network(
     opens_alone(page.context.browser, offline)
 
 
-def test_a_path_from_a_file_is_run_and_what_was_understood_is_said(
+def test_what_a_file_has_is_drawn_beside_or_run_and_what_was_understood_is_said(
     visit: Visit, tmp_path: Path
 ) -> None:
     page = visit(f"?{SMALL}")
     is_solved(page)
-    open_files(page)
+    button(page, "Files").click()
+    expect(page.get_by_text("Open settings or a table").first).to_be_visible()
+    upload(page, tmp_path / "theirs.csv", RESULTS)
+    expect(figures(page)).to_contain_text("Distance to theirs.csv")
+    button(page, "Remove theirs.csv").click()
+    expect(figures(page)).not_to_contain_text("Distance to")
+    expect(field(page, "Peak load")).to_have_value("900")
     upload(page, tmp_path / "pulled.csv", LOAD)
     expect(page.get_by_text("The run lasts 2 s").first).to_be_visible()
     is_solved(page)
     assert "load=" in page.url
     upload(page, tmp_path / "bad.csv", "time,force\n0,0\n1,much\n")
     expect(page.get_by_text("much").first).to_be_visible()
-
-
-def test_what_another_program_found_is_drawn_beside_and_its_distance_told(
-    visit: Visit, tmp_path: Path
-) -> None:
-    page = visit(f"?{SMALL}")
-    is_solved(page)
-    open_files(page)
-    upload(page, tmp_path / "theirs.csv", RESULTS)
-    expect(figures(page)).to_contain_text("Distance to theirs.csv")
-    button(page, "Remove theirs.csv").click()
-    expect(figures(page)).not_to_contain_text("Distance to")
-    expect(field(page, "Peak load")).to_have_value("900")

@@ -25,7 +25,7 @@ from processes import wait_for
 from solver.scenes import CATALOGUE
 
 
-def test_whoever_opens_the_page_sees_a_search_and_may_have_the_answer_at_once(
+def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_answer_at_once(
     visit: Visit,
 ) -> None:
     page = visit()
@@ -35,12 +35,39 @@ def test_whoever_opens_the_page_sees_a_search_and_may_have_the_answer_at_once(
     wait_for(lambda: iteration(page) > first)
     is_solved(page)
     expect(status(page)).to_contain_text(re.compile(r"search: \d+ iterations"))
+
+    last = iteration(page)
+    scrub = slider(page, "Iterations back")
+    drag(page, scrub, 0.5, -4.0)
+    expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
+    page.mouse.up()
+    # Pictures follow a hand with some delay; counted back from the answer, which comes after the
+    # last iterate; not each was shown.
+    wait_for(lambda: iteration(page) <= last + 1 + int(scrub.input_value()))
+    back = iteration(page)
+    page.locator(".sentence").click()
+    page.keyboard.press("Shift+ArrowRight")
+    expect(status(page)).not_to_contain_text(f"iteration {back} of")
+    assert back < iteration(page) <= last
+    scrub.press("End")
+    expect(status(page)).to_contain_text("certified")
+
     button(page, "Answer").click()
     expect(status(page)).to_contain_text("answer:")
     button(page, "Watch").click()
     expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
     is_solved(page)
     expect(status(page)).to_contain_text("search:")
+
+    before = figures(page).inner_text()
+    drag(page, slider(page, "Peak load"), 0.5, 2.5)
+    expect(status(page)).to_contain_text("answer:")
+    expect(figures(page)).not_to_have_text(before)
+    page.mouse.up()
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
+    is_solved(page)
+    expect(status(page)).to_contain_text("search:")
+    assert "peak=" in page.url
 
 
 def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(visit: Visit) -> None:
@@ -54,21 +81,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(visit: Visit
     assert len(set(told)) == 1 + len(CATALOGUE)
 
 
-def test_a_slider_that_is_dragged_shows_its_answers_and_let_go_the_search(visit: Visit) -> None:
-    page = visit()
-    is_solved(page)
-    before = figures(page).inner_text()
-    drag(page, slider(page, "Peak load"), 0.5, 2.5)
-    expect(status(page)).to_contain_text("answer:")
-    expect(figures(page)).not_to_have_text(before)
-    page.mouse.up()
-    expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
-    is_solved(page)
-    expect(status(page)).to_contain_text("search:")
-    assert "peak=" in page.url
-
-
-def test_a_value_is_typed_in_its_unit_and_what_cannot_be_is_refused_beside_it(
+def test_what_is_typed_runs_or_is_refused_beside_it_and_leaves_the_pinned_run_and_the_views(
     visit: Visit,
 ) -> None:
     page = visit(f"?{ANSWER}")
@@ -85,25 +98,26 @@ def test_a_value_is_typed_in_its_unit_and_what_cannot_be_is_refused_beside_it(
     expect(friction).to_have_value("0.3")
     expect(figures(page)).to_contain_text("Force −1.2 kN")
 
+    button(page, "Keep this run").click()
+    for value in ("1000", "1100"):
+        typed.fill(value)
+        typed.press("Enter")
+        expect(figures(page)).to_contain_text(f"Force −{int(value) / 1000:g} kN")
+    legend = "model('pulse').document._all_models"
+    holds(page, f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
+    button(page, "Keep this run").click()
+    holds(page, f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
 
-def test_one_goes_back_to_an_iteration_and_on_again(visit: Visit) -> None:
-    page = visit()
-    is_solved(page)
-    last = iteration(page)
-    scrub = slider(page, "Iterations back")
-    drag(page, scrub, 0.5, -4.0)
-    expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
-    page.mouse.up()
-    # Pictures follow a hand with some delay; counted back from the answer, which comes after the
-    # last iterate; not each was shown.
-    wait_for(lambda: iteration(page) <= last + 1 + int(scrub.input_value()))
-    back = iteration(page)
-    page.locator(".sentence").click()
-    page.keyboard.press("Shift+ArrowRight")
-    expect(status(page)).not_to_contain_text(f"iteration {back} of")
-    assert back < iteration(page) <= last
-    scrub.press("End")
-    expect(status(page)).to_contain_text("certified")
+    page.get_by_role("tab", name="Loop").click()
+    titles = "[...model('pulse').document._all_models.values()].filter(m => m.type === 'Title')"
+    holds(page, f"{titles}.some(m => m.text.startsWith('End displacement'))")
+    field(page, "Peak load").fill("1000")
+    field(page, "Peak load").press("Enter")
+    expect(figures(page)).to_contain_text("Force −1 kN")
+    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
+    button(page, "Block").click()
+    expect(page.locator(".sentence")).to_contain_text("block")
+    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
 
 
 def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) -> None:
@@ -142,33 +156,3 @@ def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(visit: Visit
     page.keyboard.press(" ")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     expect(status(page)).not_to_contain_text("paused")
-
-
-def test_a_pinned_run_stays_beside_the_next(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}")
-    is_solved(page)
-    button(page, "Keep this run").click()
-    typed = field(page, "Peak load")
-    for value in ("1000", "1100"):
-        typed.fill(value)
-        typed.press("Enter")
-        expect(figures(page)).to_contain_text(f"Force −{int(value) / 1000:g} kN")
-    legend = "model('pulse').document._all_models"
-    holds(page, f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
-    button(page, "Keep this run").click()
-    holds(page, f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
-
-
-def test_another_view_takes_the_place_of_one_and_is_remembered(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}")
-    is_solved(page)
-    page.get_by_role("tab", name="Loop").click()
-    titles = "[...model('pulse').document._all_models.values()].filter(m => m.type === 'Title')"
-    holds(page, f"{titles}.some(m => m.text.startsWith('End displacement'))")
-    field(page, "Peak load").fill("1000")
-    field(page, "Peak load").press("Enter")
-    expect(figures(page)).to_contain_text("Force −1 kN")
-    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
-    button(page, "Block").click()
-    expect(page.locator(".sentence")).to_contain_text("block")
-    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from bokeh.models import FreehandDrawTool
+from bokeh.models import ColumnDataSource, FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
-from app.views.view import legend, source
+from app.views.view import legend
 from solver.definitions import about
 from solver.lessons.lesson import Lesson
 
@@ -40,7 +40,8 @@ class DrawnCurve:
         made.xaxis.ticker = list(places)
         made.xaxis.major_label_overrides = {place: f"{place:g}" for place in places}
         made.min_border = 4
-        self.drawn, self.measured = source("xs", "ys"), source("x", "y", "text")
+        self.drawn = ColumnDataSource({"xs": [], "ys": []})
+        self.measured = ColumnDataSource({"x": [], "y": [], "text": []})
         line = made.multi_line("xs", "ys", source=self.drawn, color=FORCE, width=3)
         points = made.scatter("x", "y", source=self.measured, color=LATIN, size=11)
         made.text("x", "y", "text", source=self.measured, y_offset=20, text_font_size="12px",

@@ -39,7 +39,7 @@ class Spectra(ExtraView):
         whole(made.xaxis[0])
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
         color = {"field": "part", "transform": self._colors}
-        lines = self.add("values", "multi_line", "xs ys", also="part", color=color, width=1.8)
+        lines = self.add("values", "MultiLine", "xs ys", also="part", color=color, width=1.8)
         hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         self._bar = color_bar(made, self._colors, ticker=ticker)
@@ -63,7 +63,7 @@ class ModePlot(ExtraView):
 
     def _make(self) -> None:
         self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
-        self.add("now", "vspan", "x", color=ERROR, line_width=2)
+        self.add("now", "VSpan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
             self.add(mode, color=color, width=2)
         self.legend(*MODES)
@@ -127,8 +127,8 @@ class ClipErrors(ExtraView):
         colors = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
         lines = [self.add(name, color=color, width=2.5) for name, color in colors.items()]
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
-        lines.append(self.add("alone", "scatter", size=11, **ring))
-        self.add("table", "vspan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
+        lines.append(self.add("alone", "Scatter", size=11, **ring))
+        self.add("table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
         self._glyphs["clips"].append(lines[-1])
         self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})

@@ -6,7 +6,7 @@ import numpy as np
 
 from app.frame import Floats, Frame, InterfaceFields, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
-from app.views.view import View, extent, hover, joined, key_of, source
+from app.views.view import View, extent, hover, joined, key_of
 from solver.scenes import kind_of
 
 ROOM, MOST = 1.15, 2.0
@@ -25,13 +25,14 @@ class ContactForce(View):
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N/m"))
         both = "friction", "pressure"
-        self.sources |= {name: source("x", "latin", "reference") for name in both}
-        self.add("cuts", "vspan", "x", color=CUT, alpha=0.4, line_width=1)
-        self.add("place", "vspan", "x", color=ERROR, alpha=0.7, line_width=1)
+        for name in both:
+            self.source(name, "x", "latin", "reference")
+        self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
+        self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         area = {"x": "x", "y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
         for name in both:
-            self.add("error", "varea", on=name, **area)
+            self.add("error", "VArea", on=name, **area)
         self.add("bound", color=REFERENCE, dash="dashed")
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)

@@ -52,15 +52,15 @@ class Convergence(ErrorPlot):
     def _make(self) -> None:
         made = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST))
         whole(made.xaxis[0])
-        self.add("shown", "vspan", "x", color=REFERENCE, line_width=1.5)
+        self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         lines = [
             self.add(column, color=color, width=width, dash=dash)
             for column, (_, color, width, dash) in reversed(CURVES.items())
         ]
-        self.add("newest", "scatter", color=ERROR, size=8)
+        self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
-        self.add("answer", "scatter", size=11, **ring)
+        self.add("answer", "Scatter", size=11, **ring)
         titles = {column: title for column, (title, *_) in CURVES.items()}
         self.legend(**titles, answer="answer", ghost="ghost")
         hover(made, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
@@ -110,10 +110,10 @@ class ErrorTime(ErrorPlot):
         ticks = [f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)]
         made.xaxis.ticker = FixedTicker(ticks=ticks)
         made.xaxis.formatter = PrintfTickFormatter(format="%g")
-        self.add("reference", "vspan", "x", color=REFERENCE, line_width=2, line_dash="dashed")
+        self.add("reference", "VSpan", "x", color=REFERENCE, line_width=2, line_dash="dashed")
         ghost = self.add("ghost", color=GHOST, width=2, dash="dotted")
         now = self.add("now", color=ERROR, width=3)
-        self.add("newest", "scatter", color=ERROR, size=8)
+        self.add("newest", "Scatter", color=ERROR, size=8)
         self.legend(now="this run", ghost="ghost", reference="incremental")
         hover(made, [now, ghost], {"s": "@x{0.000}", "error": "@y{0.00e+0}"})
 

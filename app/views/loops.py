@@ -35,7 +35,7 @@ class HysteresisLoop(View):
         self.add("reference", color=REFERENCE, width=1.5)
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         latin = self.add("LATIN", color=LATIN, width=2.5)
-        self.add("now", "scatter", color=ERROR, size=10)
+        self.add("now", "Scatter", color=ERROR, size=10)
         self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
         hover(made, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
@@ -100,8 +100,8 @@ class Cycles(CyclePlot):
 
     def _make(self) -> None:
         self.begin()
-        self.add("loops", "multi_line", "xs ys color", width=2)
-        self.add("now", "scatter", color=ERROR, size=10)
+        self.add("loops", "MultiLine", "xs ys color", width=2)
+        self.add("now", "Scatter", color=ERROR, size=10)
         self._add_legend()
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
@@ -128,7 +128,7 @@ class CycleEnergy(CyclePlot):
     def _make(self) -> None:
         made = self.begin(("cycle",), ("energy", "J"))
         whole(made.xaxis[0])
-        bars = self.add("bars", "vbar", "x top color", width=0.7)
+        bars = self.add("bars", "VBar", "x top color", width=0.7)
         self._add_legend()
         hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 

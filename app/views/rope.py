@@ -44,7 +44,7 @@ class WireSection(RopePlot):
         made.axis.visible = made.grid.visible = False
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         self.add(
-            "wires", "circle", "x y radius line_color line_width", also="stress",
+            "wires", "Circle", "x y radius line_color line_width", also="stress",
             fill_color={"field": "stress", "transform": self.colors},
         )  # fmt: skip
         self.bar = color_bar(made, self.colors)
@@ -94,9 +94,9 @@ class Unrolled(RopePlot):
     def _make(self) -> None:
         made = self.begin()
         self.add_status()
-        self.add("wire_layers", "hspan", "y", color=EDGE, line_width=1.5)
+        self.add("wire_layers", "HSpan", "y", color=EDGE, line_width=1.5)
         look = {"fill_alpha": 0, "line_color": ERROR, "line_width": 2}
-        self.add("chosen", "rect", "x y width height", **look)
+        self.add("chosen", "Rect", "x y width height", **look)
         self.legend("stick", "slip →", "slip ←")
         made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
 
@@ -128,7 +128,7 @@ class StressRanges(RopePlot):
 
     def _make(self) -> None:
         made = self.begin(("wire",), ("range", "Pa"))
-        bars = self.add("bars", "vbar", "x top color", also="layer", width=0.8)
+        bars = self.add("bars", "VBar", "x top color", also="layer", width=0.8)
         hover(made, [bars], {"wire": "@x", "layer": "@layer", "range": "@top"})
         made.on_event(Tap, lambda event: self._select(round(event.x) - 1))
 

@@ -55,16 +55,16 @@ class Scene(View):
             made.on_change(size, self._resize)
 
     def _draw(self, made: figure) -> None:
-        self.add("image", "patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
+        self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
         look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8, "line_alpha": 0.55}
-        self.add("bodies", "patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
+        self.add("bodies", "Patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
-        self.add("strokes", "multi_line", "xs ys line_color line_width")
-        self.add("heads", "patches", "xs ys line_color", fill_color="line_color", also="line_width")
+        self.add("strokes", "MultiLine", "xs ys line_color line_width")
+        self.add("heads", "Patches", "xs ys line_color", fill_color="line_color", also="line_width")
         look = {"size": 11, "fill_color": "white", "line_width": 2.5}
-        self.add("marks", "scatter", "x y line_color", **look)
+        self.add("marks", "Scatter", "x y line_color", **look)
         self.add(
-            "words", "text", "x y text text_align text_color", text_font_size="14px",
+            "words", "Text", "x y text text_align text_color", text_font_size="14px",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         for key, color in KEYS.items():
@@ -173,7 +173,7 @@ class Stress(Scene):
     def _draw(self, made: figure) -> None:
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         color = {"field": "value", "transform": self.colors}
-        self.add("quads", "patches", "xs ys", also="value", fill_color=color, line_color=color)
+        self.add("quads", "Patches", "xs ys", also="value", fill_color=color, line_color=color)
         self.bar = color_bar(made, self.colors)
         super()._draw(made)
 

@@ -31,11 +31,11 @@ class SlipPlane(View):
 
     def _make(self) -> None:
         self.begin(("left slip", "m"), ("right slip", "m"))
-        self.add("room", "patch", color=DISPLACEMENT, alpha=0.3)
+        self.add("room", "Patch", color=DISPLACEMENT, alpha=0.3)
         self.add("left", color=LATIN, width=1.5)
         self.add("right", color=FORWARD, width=1.5)
         self.add("path", color=REFERENCE, width=2)
-        self.add("now", "scatter", color=ERROR, size=10)
+        self.add("now", "Scatter", color=ERROR, size=10)
         self.mark("held", CUT, alpha=0.0)
         self.legend(
             left="left slips", right="right slips", path="so far", room="free in the last cycle",

@@ -30,7 +30,7 @@ class Thrust(Scene):
     def _draw(self, made: object) -> None:
         super()._draw(made)
         look = {"line_color": LATIN, "line_alpha": 0.8, "line_cap": "round"}
-        self.add("thrust", "multi_line", "xs ys line_width", **look)
+        self.add("thrust", "MultiLine", "xs ys line_width", **look)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the forces in all joints at the selected instant, as far as the frame has them."""

@@ -36,13 +36,13 @@ class Timeline(View):
         axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
         axis.axis_line_alpha = 0.4
-        self.add("area", "varea", "x y2", y1=0, color=FORCE, alpha=0.16)
+        self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
         # The first is on top.
         for path, color in reversed(PATHS.items()):
             self.add(path, color=color, width=2.0 if path == "first" else 1.4)
         look = {"y": LOW, "length": 0, "angle": np.pi / 2, "color": ERROR, "alpha": 0.5}
-        self.add("instant", "ray", "x", **look)
-        self.add("now", "scatter", color=FORCE, size=13)
+        self.add("instant", "Ray", "x", **look)
+        self.add("now", "Scatter", color=FORCE, size=13)
         self.mark("time", FORCE, alpha=0.0)
         self.legend(*PATHS, "time", place="center")
         # The range has bounds, so that the tool only keeps a touch from scrolling the page.

@@ -9,11 +9,15 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
+from bokeh import models
 from bokeh.core.properties import value
 from bokeh.models import (
+    AllIndices,
+    CDSView,
     ColorBar,
     ColumnDataSource,
     CrosshairTool,
+    Glyph,
     GlyphRenderer,
     HoverTool,
     Legend,
@@ -21,7 +25,9 @@ from bokeh.models import (
     LinearColorMapper,
     NumeralTickFormatter,
     Range1d,
+    Scatter,
     Title,
+    UnionRenderers,
 )
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
@@ -132,19 +138,24 @@ class View:
     @cached_property
     def figure(self) -> figure:
         """The figure."""
+        # Nothing in it is selected or left out: what would say so is shared, as each model counts.
+        self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
+        self._filter = AllIndices()
+        self._nowhere = ColumnDataSource({"x": [np.nan], "y": [np.nan]}, **self._selects)
         self._make()
-        # A page opens sooner without glyphs of what nobody selects or mutes.
-        for renderer in self._made.renderers:
-            renderer.update(nonselection_glyph=None, muted_glyph=None)
-        self.magnify(self._type)
+        self._size_type()
         return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
-        self._type = size
-        if self._made is not None:
-            for model in (self._made, *self._made.legend):
-                model.styles = {**model.styles, "font-size": size}
+        if size != self._type:
+            self._type = size
+            if self._made is not None:
+                self._size_type()
+
+    def _size_type(self) -> None:
+        for model in (self._made, *self._made.legend):
+            model.styles = {**model.styles, "font-size": self._type}
 
     def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
@@ -185,35 +196,46 @@ class View:
     def add(
         self,
         name: str,
-        glyph: str = "line",
+        glyph: str = "Line",
         columns: str = "x y",
         *,
         also: str = "",
         on: str = "",
         **look: Any,
     ) -> GlyphRenderer:
-        """A glyph whose columns are called as its properties, or one on another one's source.
+        """A glyph of Bokeh's, columns called as its properties, or one on another one's source.
 
         Its source has also other columns, for whoever hovers.
         """
         if not on:
             on, look = name, {column: column for column in columns.split()} | look
-            self.sources[name] = source(*columns.split(), *also.split())
-        renderer: GlyphRenderer = getattr(self._made, glyph)(source=self.sources[on], **look)
+            self.source(name, *columns.split(), *also.split())
+        kind = getattr(models, glyph)
+        return self._add(name, self.sources[on], kind(**visuals(kind, look)))
+
+    def _add(self, name: str, source: ColumnDataSource, glyph: Glyph) -> GlyphRenderer:
+        without = {f"{state}_glyph": None for state in ("selection", "nonselection", "muted")}
+        view = CDSView(filter=self._filter)
+        renderer: GlyphRenderer = self._made.add_glyph(source, glyph, view=view, **without)
         self._glyphs.setdefault(name, []).append(renderer)
         return renderer
+
+    def source(self, name: str, *columns: str) -> None:
+        """Add an empty source."""
+        empty: dict[str, Any] = {column: [] for column in columns}
+        self.sources[name] = ColumnDataSource(empty, **self._selects)
 
     def add_status(self) -> GlyphRenderer:
         """An image of statuses, and a mark for each in the legend."""
         for key, color in KEYS.items():
             self.mark(key, color)
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        return self.add("status", "image", "image x y dw dh", color_mapper=colors)
+        return self.add("status", "Image", "image x y dw dh", color_mapper=colors)
 
     def mark(self, name: str, color: str, **look: Any) -> None:
         """A square that stands in the legend only."""
         look = {"marker": "square", "size": 10, "color": color} | look
-        self._glyphs[name] = [self._made.scatter([np.nan], [np.nan], **look)]
+        self._add(name, self._nowhere, Scatter(**visuals(Scatter, look)))
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their own names or by titles."""
@@ -286,9 +308,14 @@ def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str])
     made.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
 
 
-def source(*columns: str) -> ColumnDataSource:
-    """An empty source."""
-    return ColumnDataSource({name: [] for name in columns})
+def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
+    """Properties of a kind of glyph; `color`, `alpha`, `width`, `dash` are of line and fill."""
+    names = kind.properties()
+    properties = {}
+    for trait, given in look.items():
+        both = [trait] if trait in names else [f"line_{trait}", f"fill_{trait}"]
+        properties |= {name: given for name in both if name in names}
+    return properties
 
 
 def _equal(old: Any, new: Any) -> bool:
