@@ -17,7 +17,7 @@ from solver.discrete.stack import Stack
 from solver.files import settings_from_command
 from solver.reference.closed_forms.elastic_bodies import TwoLeaves, cantilever, leaf_spring
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, exact_of, loop_of, structure_of
+from solver.scenes import CATALOGUE, discretise, exact_of, left_out, loop_of, structure_of
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 
@@ -122,6 +122,13 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     acts = {act.where: act.places for act in stack.described().acts}
     np.testing.assert_allclose(acts["top y"][:, 1], [1.0, 2 / 3, 2 / 3])
     np.testing.assert_allclose(acts["bottom y"][:, 1], [0.0, 0.0, 1 / 3])
+
+
+def test_a_run_says_where_leaves_end_elsewhere_than_given() -> None:
+    table = [[1, 1.0], [2, 0.5]]
+    (remark,) = left_out(settings_of(layers=2, elements=5, layer_lengths=table))
+    assert "up to 10 % of the length" in remark
+    assert not left_out(settings_of(layers=2, elements=6, layer_lengths=table))
 
 
 def test_pressure_on_all_that_lies_open_presses_leaves_and_bends_none() -> None:

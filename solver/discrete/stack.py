@@ -91,7 +91,7 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """Rectangular bodies on each other, equally thick; one metre wide.
+    """Rectangular bodies of one height on each other; one metre thick.
 
     Attributes
     ----------

@@ -24,6 +24,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
+from solver.profiles import UNSEEN
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_layers
@@ -235,6 +236,18 @@ class LayersSettings(PlaneSettings):
                 "shares above 0, the largest of them 1",
                 "give each length over that of the longest layer",
             )
+
+    def left_out(self) -> Iterator[str]:
+        """Yield what a run does not see of its tables, and how far layers end from where given."""
+        yield from super().left_out()
+        if self.spans is not None:
+            shares = np.array([share for _, share in self.points("layer_lengths")])
+            off = float(np.abs(np.array(self.spans) / self.elements - shares).max())
+            if off > UNSEEN:
+                yield (
+                    f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} % of "
+                    "the length from where they should; more elements come nearer"
+                )
 
     def bends_by(self, kind: str) -> bool:
         """Whether the end is bent so, as far as a preset and not a table says."""
