@@ -48,12 +48,31 @@ def test_layers_of_a_rope_that_rub_unequally_meet_the_closed_form() -> None:
     assert np.abs(exact - same).max() > 0.05 * exact[-1]
 
 
+def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -> None:
+    """Its force grows by mu p of both sides per length from the break on: 0.6 and 1.4 are 2."""
+    kind = CATALOGUE["strand"].settings
+    changes: dict[str, Any] = {"load": "ramp", "instants": 11}
+    uneven = kind.checked({**changes, "friction_factors": [[1, 0.6], [2, 1.4]]})
+    runs = [reference_of(discretise(one)) for one in (kind.checked(changes), uneven)]
+    for run, factors in zip(runs, ((1.0, 1.0), (0.6, 1.4)), strict=True):
+        for name, factor in zip(("contact 1-2", "contact 2-3"), factors, strict=True):
+            law, contact = run.problem.rubbing[name], run.contact(name)
+            slips = contact.status[:, -1] != 0
+            bound = law.by_point(law.weights) * factor * 0.3 * 5000.0
+            force = np.abs(contact.tangential_force[:, -1])
+            assert slips.any()
+            np.testing.assert_allclose(force[slips], bound[slips], rtol=1e-9)
+    # It holds less where one side has no friction at all.
+    few = {"peak": 1000.0, "friction_factors": [[1, 1.0], [2, 0.0]]}
+    assert "below 750 N" in refusal(lambda: kind.checked({**changes, **few}))
+
+
 @pytest.mark.parametrize("table", [[[1, 0.5]], [[1, 1.0], [2, 1.0], [4, 1.0]], [[0.5, 1.0]]])
 def test_a_table_that_lacks_an_interface_is_refused_with_their_number(table: Any) -> None:
-    for scene in ("layers", "rope"):
+    for scene, count in (("layers", 3), ("rope", 3), ("strand", 2)):
         kind = CATALOGUE[scene].settings
         text = refusal(lambda kind=kind: kind.checked({"friction_factors": table}))
-        assert_names(text, "friction_factors", f"there are {len(table)}", "3 pairs")
+        assert_names(text, "friction_factors", f"there are {len(table)}", f"{count} pairs")
 
 
 def test_factors_come_from_a_file(tmp_path: Path) -> None:

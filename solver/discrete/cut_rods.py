@@ -342,6 +342,8 @@ def _friction(rods: Rods, cut: CutRods, number: int) -> Contact:
     positions[points] = rods.nodes[node]
     below = cut.below(number)
     known = rods.bounds[node] * weights[:, None] / rods.stiffness
+    if rods.factors is not None:
+        known = known * rods.factors[number]
     component, scales = Component(cut.above(number), below), (rods.length, rods.stiffness)
     return Contact(
         tangential=rods.friction_law.at(component, weights, scales, known=known),

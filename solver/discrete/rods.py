@@ -80,6 +80,8 @@ class Rods:
     bound
         Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or where it changes
         with time (n_nodes, n_instants).
+    factors
+        On the bound of each interface between several rods, shape (wires - 1,); None is 1.
     left, right
         The ends of every rod.
     instants, duration
@@ -127,6 +129,7 @@ class Rods:
     body_force: Array | None = None
     strain: Array | None = None
     settlement: Array | None = None
+    factors: Array | None = None
     section: Array | None = None
     pressure: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)

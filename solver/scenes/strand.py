@@ -68,6 +68,7 @@ class StrandSettings(SceneSettings):
     duration = shared.duration()
     instants = shared.instants(101)
     friction = shared.friction("mu between neighbouring wires")
+    friction_factors = shared.friction_factors("between two wires, from the first on")
     pressure = shared.pressure("neighbouring wires on each other", 20_000.0)
     pressure_load = shared.pressure_load()
     wires = count(
@@ -128,6 +129,14 @@ class StrandSettings(SceneSettings):
         return Features(has_break=bool(self.broken), jumps=jumps)
 
     @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces between the wires."""
+        return self.wires - 1
+
+    def _factors(self) -> Array | None:
+        return shared.factors_of(self, self.n_interfaces)
+
+    @property
     def n_nodes(self) -> int:
         """Number of nodes of all wires."""
         return self.wires * (self.elements + 1)
@@ -141,6 +150,7 @@ class StrandSettings(SceneSettings):
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
         shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
+        self._factors()
         tension = self.path("load")
         if tension.min() < 0.0:
             raise SettingError(
@@ -174,6 +184,7 @@ class StrandSettings(SceneSettings):
             duration=self.duration,
             pressure=self.path("pressure_load"),
             wires=self.wires,
+            factors=self._factors(),
             broken=(self.broken, self._break_node()) if self.broken else None,
             friction_law=self.law,
         )
@@ -215,9 +226,13 @@ class StrandSettings(SceneSettings):
         if self.grip != "force" or not self.broken:
             return
         share = 1.0 - self._break_node() / self.elements
-        sides = neighbours(self.broken, self.wires)
-        bound = self.law.without_slip(self.friction * self.path("pressure_load"))
-        most = sides * share * self.length * bound * self.law.strongest
+        sides, factors = neighbours(self.broken, self.wires), self._factors()
+        beside = [1.0] * sides
+        if factors is not None:
+            beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
+        pressed = self.friction * self.path("pressure_load")
+        bound = np.sum([self.law.without_slip(factor * pressed) for factor in beside], axis=0)
+        most = share * self.length * bound * self.law.strongest
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
         if largest > capacity or largest == capacity > 0.0:

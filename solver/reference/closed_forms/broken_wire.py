@@ -55,10 +55,10 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     Returns
     -------
     The solution, or None where no wire is broken, where its neighbours rub on others too and pass
-    on what they took over, where friction is not Coulomb's, or where the bound changes with time
-    and the grip is rigid or wires slip away from the break.
+    on what they took over, where friction is not Coulomb's, or not the same between all wires, or
+    where the bound changes with time and the grip is rigid or wires slip away from the break.
     """
-    if scene.friction_law != FrictionLaw():
+    if scene.friction_law != FrictionLaw() or scene.factors is not None:
         return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None

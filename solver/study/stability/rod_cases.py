@@ -128,6 +128,7 @@ def strand_cases() -> list[Case]:
         case("break at the grip", break_position=1.0, grip="displacement"),
         unsolved("break of an outer wire", broken=1),
         case(grip="displacement"),
+        unsolved("friction on one side", friction_factors=((1.0, 2.0), (2.0, 0.0))),
         case("load zero", peak=0.0),
         unsolved("load one jump", load=JUMP, peak=900.0, pressure=9000.0),
         case("pulled out", MUST_REFUSE, quick=True, peak=2000.0),
