@@ -25,6 +25,8 @@ from solver.study.stability.case import PASSING, Case, Verdict
 
 AT_ROUNDING = 1e-8
 """Residual of a certified solution, at most, by the equations alone."""
+APART = 1e-6
+"""Distance from which on two fields that solve the equations are two solutions."""
 MEANING: dict[str, str] = {
     Verdict.RIGHT: "the errors are as small as they have to be; or certified, and the equations "
     "hold up to rounding where there are several solutions",
@@ -101,7 +103,12 @@ def _measured(problem: Problem, solution: Solution) -> Outcome:
     reference, doubt = _reference(problem)
     distance = None if reference is None else distance_to(reference, problem)
     residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
-    floor = kkt_residual(reference, problem) if reference and residual > AT_ROUNDING else 0.0
+    error = distance.of_friction_force(iterate) if distance else math.nan
+    floor = 0.0
+    if reference and (residual > AT_ROUNDING or (solution.is_certified and error > APART)):
+        floor = kkt_residual(reference, problem)
+    if error > APART and max(residual, floor) <= AT_ROUNDING:
+        doubt = doubt or "there are several solutions: this one, and the reference"
     last = solution.records[-1] if solution.records else None
     return Outcome(
         status.ending,
@@ -113,7 +120,7 @@ def _measured(problem: Problem, solution: Solution) -> Outcome:
         indicator=latin_indicator(iterate),
         behaviour=behaviour_indicator(iterate),
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
-        error_force=distance.of_friction_force(iterate) if distance else math.nan,
+        error_force=error,
         residual=residual,
         floor=floor,
         doubt=doubt,
