@@ -130,7 +130,7 @@ class ColumnsDialog:
         driven = [name for name in self._paths if self._axis_of(name) is not None]
         kinds = {LOOP: LOOP}
         kinds |= {f"{LOOP}, and {titles[name]}": f"{BOTH} {name}" for name in driven}
-        kinds |= {f"{title} over time": name for name, title in titles.items()}
+        kinds |= {title: name for name, title in titles.items()}
         try:
             columns_of(table, self._axes)
             used = LOOP
