@@ -54,7 +54,7 @@ def test_what_if_draws_a_chart_by_itself_and_a_run_is_taken_away_as_table_progra
     is_solved(page)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
-    expect(page.get_by_text(re.compile(r"26 of 26 runs: \d+ converged"))).to_be_visible()
+    expect(page.get_by_text(re.compile(r"13 of 13 runs: \d+ converged"))).to_be_visible()
     expect(page.locator(".bk-Figure").locator("visible=true")).to_have_count(1)
     button(page, "Live").click()
     is_solved(page)

@@ -115,7 +115,7 @@ def fit(
     """
     if not 1 <= len(set(names)) == len(names) <= MOST:
         can = f"one to {MOST} settings, each once, of {', '.join(fittable(settings))}"
-        raise SettingError("--vary", ",".join(names), can, "name these")
+        raise SettingError("fitted settings", ",".join(names), can, "name these")
     runs = ComparedRuns(settings, measured, names, watch)
     rows, count = len(runs.first.differences), len(names)
     if rows <= count + 1:
