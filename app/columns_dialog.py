@@ -15,7 +15,7 @@ from app.refusals import message_of
 from app.state import PageState
 from app.tables import Content, axes_on, opened, path_of, paths_of, table_of, with_path
 from app.units import sizes_of
-from app.widgets import button, dialog
+from app.widgets import button, changing_text, dialog
 from solver.columns import TableColumn, size_in
 from solver.definitions import SettingError, about
 from solver.refusal import RefusedError
@@ -44,7 +44,7 @@ class TableOpener:
         outlined = {**look, "variant": "outlined"}
         self.file = pmui.FileInput(label=label, accept=accept, description=HELP, **outlined)
         self.file.param.watch(lambda event: self._open(), "value")
-        self.message = pmui.Typography("", variant="body2", margin=0)
+        self.message = changing_text(margin=0)
         self.dialog = ColumnsDialog(state, self._tell)
         self._columns = button(
             "Columns and units", self.dialog.show, icon="view_column", **outlined
@@ -109,7 +109,7 @@ class ColumnsDialog:
         self._rows = [
             pn.Row(*pair, margin=0) for pair in zip(self.columns, self.units, strict=True)
         ]
-        self._message = pmui.Typography("", variant="body2", margin=(6, 6))
+        self._message = changing_text(margin=(6, 6))
         fields = self._preview, self.use, *self._rows, self._message
         self.view = dialog("Columns and units", *fields, width_option="sm")
         self.use.param.watch(lambda event: self._on_use(), "value")

@@ -22,7 +22,7 @@ from app.jobs import OUT, SETTINGS, Job, follow
 from app.state import PageState
 from app.tables import TABLES, axes_on
 from app.units import number, unit_of
-from app.widgets import button
+from app.widgets import button, changing_text
 from solver.checked import dump
 from solver.definitions import about
 from solver.files import scene_settings
@@ -63,7 +63,7 @@ class FitTab:
         look = {"variant": "outlined", **FIELD}
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
         self.use_button = button("Use these settings", self.use, icon="check", **FIELD)
-        self.message = pmui.Typography("", variant="body2", margin=(2, 8))
+        self.message = changing_text(margin=(2, 8))
         self.table = pn.pane.HTML("", margin=(4, 8), stylesheets=[TABLE])
         self._keys = pn.pane.HTML("", margin=(4, 8))
         self._pipe = hv.streams.Pipe(data=None)

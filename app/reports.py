@@ -11,7 +11,7 @@ import panel_material_ui as pmui
 from app.jobs import OUT, SETTINGS, Job, follow
 from app.questions import PLAIN
 from app.state import PageState
-from app.widgets import button, download
+from app.widgets import button, changing_text, download
 from app.worker.references import has_reference
 from solver.checked import dump
 from solver.study.proof.report import PAGE
@@ -71,8 +71,8 @@ class Reports:
             field.param.watch(lambda event: self._show(), "value")
         self._start = button("Start", self.start, icon="play_arrow", **LOOKS)
         self._cancel = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
-        self._words = pmui.Typography("", variant="body2", margin=(0, 8))
-        self._progress = pmui.Typography("", variant="body2", margin=(6, 8))
+        self._words = changing_text(margin=(0, 8))
+        self._progress = changing_text(margin=(6, 8))
         self.files = pn.FlexBox()
         self.page = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 8))
         self.view = pn.Column(

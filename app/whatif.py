@@ -18,7 +18,7 @@ from app.questions import FIELD, READY, TENTH, Question, Span, quantities, quest
 from app.refusals import message_of
 from app.state import ANSWER, PageState, answer
 from app.units import sizes_of, unit_for
-from app.widgets import button, download
+from app.widgets import button, changing_text, download
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
@@ -87,9 +87,9 @@ class WhatIf:
         self._ready = {
             title: button(title, partial(self._on_ready, title), **look) for title in READY
         }
-        self._help = pmui.Typography("", variant="body2", margin=(2, 8))
-        self.message = pmui.Typography("", variant="body2", margin=(2, 8))
-        self._meshed = pmui.Typography("", variant="body2", margin=(10, 8))
+        self._help = changing_text(margin=(2, 8))
+        self.message = changing_text(margin=(2, 8))
+        self._meshed = changing_text(margin=(10, 8))
         self._keys = pn.pane.HTML("", margin=(4, 8))
 
     def start(self) -> None:

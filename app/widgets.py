@@ -12,6 +12,17 @@ import panel_material_ui as pmui
 
 from solver.scenes.entry import Emblem
 
+TEXT = "p { margin: 0; font-size: 14px; line-height: 1.43 }"
+
+
+def changing_text(**options: Any) -> pn.pane.Markdown:
+    """Text that may change as soon as it is in sight.
+
+    A component of panel-material-ui begins to listen once it is painted, and loses what changes
+    before.
+    """
+    return pn.pane.Markdown("", stylesheets=[TEXT], **options)
+
 
 def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:
     """A small button."""
