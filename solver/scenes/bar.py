@@ -81,78 +81,35 @@ class BarSettings(SceneSettings):
     duration = shared.duration()
     instants = shared.instants(101)
     right_end = bar_ends.end("right", "pulled")
-    right_displacement = bar_ends.size(
-        "right_load",
-        "m",
-        (1e12, 1e-3),
-        "Displacement of the right end",
-        "Largest displacement of what holds the right end; 0 leaves it where it is.",
-        bar_ends.is_end("right", *bar_ends.HOLDING),
-    )
-    right_load = bar_ends.path_over_time(
-        "right_load",
-        "ramp",
-        "displacement",
-        "m",
-        "displacement of the right end",
-        bar_ends.is_end("right", *bar_ends.HOLDING),
-    )
+    right_displacement, right_load = bar_ends.moved_end("right", "right_load", "ramp")
     right_spring = bar_ends.spring("right")
     left_end = bar_ends.end("left", "held")
-    support_displacement = bar_ends.size(
-        "support_load",
-        "m",
-        (1e12, 1e-3),
-        "Displacement of the left end",
-        "Largest displacement of what holds the left end; 0 leaves it where it is.",
-        bar_ends.is_end("left", *bar_ends.HOLDING),
-    )
-    support_load = bar_ends.path_over_time(
-        "support_load",
-        "sine",
-        "displacement",
-        "m",
-        "displacement of the left end",
-        bar_ends.is_end("left", *bar_ends.HOLDING),
-    )
+    support_displacement, support_load = bar_ends.moved_end("left", "support_load", "sine")
     left_spring = bar_ends.spring("left")
-    left_force = bar_ends.size(
+    left_force, left_load = bar_ends.given(
         "left_load",
+        "force at the left end",
+        "Largest axial force at the left end, positive to the right.",
         "N",
         (1e15, 2400.0),
-        "Force at the left end",
-        "Largest axial force at the left end, positive to the right.",
-        bar_ends.is_end("left", "pulled"),
-    )
-    left_load = bar_ends.path_over_time(
-        "left_load",
         "sine",
-        "force",
-        "N",
-        "force at the left end",
-        bar_ends.is_end("left", "pulled"),
+        applies=bar_ends.is_end("left", "pulled"),
+        group="Ends",
     )
-    body_force = bar_ends.size(
+    body_force, body_load = bar_ends.given(
         "body_load",
+        "body force",
+        "Largest axial force per length inside the bar; 0 leaves it out.",
         "N/m",
         (1e15, 3000.0),
-        "Body force",
-        "Largest axial force per length inside the bar; 0 leaves it out.",
-        group="Load",
     )
-    body_load = bar_ends.path_over_time(
-        "body_load", "ramp", "force", "N/m", "body force", group="Load"
-    )
-    temperature = bar_ends.size(
+    temperature, temperature_load = bar_ends.given(
         "temperature_load",
+        "temperature",
+        "Largest change of the temperature of the bar; 0 leaves it out.",
         "K",
         (1e9, 60.0),
-        "Heating",
-        "Largest change of the temperature of the bar; 0 leaves it out.",
-        group="Load",
-    )
-    temperature_load = bar_ends.path_over_time(
-        "temperature_load", "ramp", "temperature", "K", "temperature", group="Load"
+        title="Heating",
     )
     temperature_profile = curve(
         "uniform",
@@ -176,17 +133,13 @@ class BarSettings(SceneSettings):
         applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
         logarithmic=True,
     )
-    settlement = bar_ends.size(
+    settlement, settlement_load = bar_ends.given(
         "settlement_load",
-        "m",
-        (1e12, 1e-3),
-        "Settlement",
+        "settlement",
         "Largest displacement of the support along the bar, as of soil that settles or a slab that "
         "shrinks; 0 leaves it where it is. The ends are not on it.",
-        group="Load",
-    )
-    settlement_load = bar_ends.path_over_time(
-        "settlement_load", "ramp", "displacement", "m", "settlement", group="Load"
+        "m",
+        (1e12, 1e-3),
     )
     settlement_profile = curve(
         "linear",

@@ -72,48 +72,71 @@ def spring(side: str) -> param.Number[float]:
     )
 
 
-def size(
+def given(
     path: str,
+    what: str,
+    doc: str,
     unit: str,
     most: tuple[float, float],
-    title: str,
-    doc: str,
+    preset: str = "ramp",
+    *,
+    title: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
-    group: str = "Ends",
-) -> param.Number[float]:
-    """Define the largest value that the preset of a path reaches; `most`: allowed, on a slider."""
-    return quantity(
+    group: str = "Load",
+) -> tuple[param.Number[float], CurveParameter]:
+    """Define the largest value that a preset reaches, and the path over time.
+
+    Parameters
+    ----------
+    path
+        Name of the setting of the path.
+    what, title
+        What it is of, and what the value is called where that is another word.
+    doc
+        Of the value.
+    unit, most
+        Its unit; the largest size that is allowed, and that a slider shows.
+    preset
+        The default of the path.
+    applies, group
+        As of `About`.
+    """
+    name = f"{what[:1].upper()}{what[1:]}"
+    size = quantity(
         0.0,
         (-most[0], most[0]),
         (0.0, most[1]),
         doc,
         group=group,
-        title=title,
+        title=title or name,
         unit=unit,
         applies=lambda settings: applies(settings) and isinstance(getattr(settings, path), str),
     )
-
-
-def path_over_time(
-    name: str,
-    default: str,
-    ordinate: str,
-    unit: str,
-    what: str,
-    applies: Callable[[Any], bool] = lambda settings: True,
-    group: str = "Ends",
-) -> CurveParameter:
-    """Define how it goes on over time."""
-    return curve(
-        default,
+    over_time = curve(
+        preset,
         PRESETS,
         "time",
-        ordinate,
+        {"m": "displacement", "K": "temperature"}.get(unit, "force"),
         ("s", unit),
-        f"{what[:1].upper()}{what[1:]} over time: a preset, or points (s, {unit}).",
+        f"{name} over time: a preset, or points (s, {unit}).",
         group=group,
         title=f"Path of the {what}",
-        applies=lambda settings: applies(settings) and acts(settings, name),
+        applies=lambda settings: applies(settings) and acts(settings, path),
+    )
+    return size, over_time
+
+
+def moved_end(side: str, path: str, preset: str) -> tuple[param.Number[float], CurveParameter]:
+    """Define how far what holds an end is moved, and its path."""
+    return given(
+        path,
+        f"displacement of the {side} end",
+        f"Largest displacement of what holds the {side} end; 0 leaves it where it is.",
+        "m",
+        (1e12, 1e-3),
+        preset,
+        applies=is_end(side, *HOLDING),
+        group="Ends",
     )
 
 
