@@ -116,6 +116,14 @@ def test_what_friction_could_hold_is_mu_times_all_that_presses(
     assert taken("holding_force", ran(scene, **changes, **sizes)) == pytest.approx(most, rel=1e-3)
 
 
+def test_what_holds_one_side_balances_the_other() -> None:
+    """Layers that are bent at one end and held at the other carry nothing else along y."""
+    run = ran("layers", elements=12, instants=11, substructures=2)
+    assert taken("left_force", run) == pytest.approx(taken("right_force", run), rel=1e-6)
+    assert taken("right_force", run) == pytest.approx(np.abs(run.force).max(), rel=1e-9)
+    assert math.isnan(taken("top_force", run))
+
+
 def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     run = ran(
         "bar", errors=True, method="paper", max_iterations=40, **{**SMALL, "substructures": 5}

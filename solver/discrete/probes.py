@@ -85,11 +85,16 @@ def end_rotation(problem: Problem, side: str = "right") -> Probe:
     return _probe(inside, weights)
 
 
-def reaction(problem: Problem, name: str) -> Probe:
-    """Sum of the forces that hold an interface of prescribed displacements, N."""
+def reaction(problem: Problem, name: str, component: int | None = None) -> Probe:
+    """Sum of the forces that hold an interface of prescribed displacements, N.
+
+    In the plane those of one component are counted, 0 along x and 1 along y, or of both.
+    """
     law = problem.interfaces[name]
     held = np.zeros(problem.n_dofs)
     held[problem.row_dofs[law.rows]] = 1.0
+    if component is not None:
+        held[_inside(problem).components != component] = 0.0
     weights, constant = np.zeros(problem.n_dofs), np.zeros(problem.n_instants)
     for part in problem.substructures:
         own = held[part.dofs]

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
 from solver.discrete.elements import von_mises
-from solver.discrete.probes import AxialForce
-from solver.discrete.rods import Rods, Side
+from solver.discrete.probes import AxialForce, reaction
+from solver.discrete.rods import Rods
+from solver.discrete.stack import Stack
+from solver.discrete.wall import Wall
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.scenes import features_of, kind_of, law_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.quantity import CYCLE, Parameter, quantity
+from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantity
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
@@ -78,29 +80,38 @@ def axial_force(run: FinishedRun, at: float | None) -> float:
     return float(force.flat[np.abs(force).argmax()])
 
 
-def _end_force(run: FinishedRun, side: Side) -> float:
-    """Largest axial force at an end of a rod, N, positive to the right."""
-    rods = structure_of(run.settings)
-    assert isinstance(rods, Rods)
-    given = rods.end_force(run.problem, side)
-    force = given if isinstance(given, np.ndarray) else given(run.iterate)
-    return float(force[np.abs(force).argmax()])
+def _force_at(side: str) -> Quantity:
+    """Largest force that holds a side, or pulls the end of a rod there."""
+
+    def force(run: FinishedRun) -> float:
+        problem, structure = run.problem, structure_of(run.settings)
+        if isinstance(structure, Rods):
+            given = structure.end_force(problem, "right" if side == "right" else "left")
+            values = given if isinstance(given, np.ndarray) else given(run.iterate)
+            return float(values[np.abs(values).argmax()])
+        moved = run.iterate.displacement
+        return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
+
+    force.__name__ = f"{side}_force"
+    title = f"Largest force at the {side}"
+    return quantity(title, "N", applies=lambda settings: side in holding_sides(settings))(force)
 
 
-def _is_rod(settings: Settings) -> bool:
-    return kind_of(settings) == "rod"
+def holding_sides(settings: Settings) -> Collection[str]:
+    """Sides that have a force to tell: ends of a rod, and sides of prescribed displacement."""
+    if kind_of(settings) == "rod":
+        return "left", "right"
+    structure = structure_of(settings)
+    if isinstance(structure, Stack):
+        sides = structure.sides.items()
+        return [side for side, given in sides if any(each.prescribed for each in given)]
+    return ["top"] if isinstance(structure, Wall) and structure.moved is not None else []
 
 
-@quantity("Largest force at the left end", "N", applies=_is_rod)
-def left_force(run: FinishedRun) -> float:
-    """Largest force that pulls or holds the left end, N, positive to the right."""
-    return _end_force(run, "left")
-
-
-@quantity("Largest force at the right end", "N", applies=_is_rod)
-def right_force(run: FinishedRun) -> float:
-    """Largest force that pulls or holds the right end, N, positive to the right."""
-    return _end_force(run, "right")
+left_force, right_force, top_force, bottom_force = map(
+    _force_at, ("left", "right", "top", "bottom")
+)
+"""N; of a rod's end along it, positive to the right, and in the plane its size."""
 
 
 @quantity("Largest slip", "m")
