@@ -1,0 +1,57 @@
+"""A person finds a case like theirs, brings a measured loop, and leaves with its parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved
+from playwright.sync_api import expect
+
+from app.state import default_settings
+from solver.study.quantities.finished import finished_run
+
+SIZES = {"elements": 20, "instants": 21, "substructures": 4}
+QUERY = "&".join([f"{name}={number}" for name, number in SIZES.items()])
+
+
+def measured() -> str:
+    """The loop of a bar whose friction is 0.25, in kN and mm."""
+    made = default_settings("bar").replace(load="cycle", friction=0.25, **SIZES)
+    run = finished_run(made, errors=False, indicators=False)
+    rows = zip(run.problem.instants, 1e3 * run.displacement, 1e-3 * run.force, strict=True)
+    lines = [",".join(map(str, row)) for row in rows]
+    return "\n".join(["time [s],displacement [mm],force [kN]", *lines])
+
+
+def test_a_case_is_opened_by_its_picture_and_meets_its_number(visit: Visit) -> None:
+    page = visit()
+    is_solved(page)
+    button(page, "Cases").click()
+    page.get_by_role("button", name="Bolted lap joint").click()
+    expect(page.get_by_role("heading", name="Bolted lap joint")).to_be_visible()
+    expect(page.get_by_text("% off")).to_be_visible()
+    assert "case=" in page.url
+    page.go_back()
+    expect(page.get_by_role("heading", name="Bolted lap joint")).to_have_count(0)
+    expect(field(page, "Peak load")).to_have_value("900")
+
+
+def test_a_measured_loop_is_compared_and_fitted_and_the_fit_is_run(
+    visit: Visit, tmp_path: Path
+) -> None:
+    path = tmp_path / "rig.csv"
+    path.write_text(measured(), encoding="utf-8")
+    page = visit(f"?{QUERY}&{ANSWER}&load=cycle&friction=0.4")
+    is_solved(page)
+    button(page, "Fit").click()
+    with page.expect_file_chooser() as chooser:
+        page.locator("label, button").filter(has=page.locator("input[type=file]")).first.click()
+    chooser.value.set_files(path)
+    expect(page.get_by_role("dialog").get_by_text("Columns and units")).to_be_visible()
+    close_dialog(page)
+    page.get_by_role("checkbox", name="Friction coefficient").check()
+    button(page, "Start").click()
+    button(page, "Use these settings").click()
+    is_solved(page)
+    expect(field(page, "Friction coefficient")).to_have_value("0.25")
+    expect(figures(page)).to_contain_text("Distance to rig.csv")
