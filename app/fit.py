@@ -22,14 +22,14 @@ from app.jobs import OUT, SETTINGS, Job, follow
 from app.state import PageState
 from app.tables import TABLES, axes_on
 from app.units import number, unit_of
-from app.widgets import button, changing_text
+from app.widgets import button, changing_text, download
 from solver.checked import dump
 from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.fit import MOST
-from solver.study.fit_report import LOOP
+from solver.study.fit_report import LOOP, PAGE
 from solver.study.fittable import fittable
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.page import plain_table
@@ -57,12 +57,14 @@ class FitTab:
         self.job: Job | None = None
         self.found: dict[str, Any] | None = None
         self._nearest: pd.DataFrame | None = None
+        self._page = b""
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
         self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
         self.start_button = button("Start", self.start, icon="play_arrow", **FIELD)
         look = {"variant": "outlined", **FIELD}
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
         self.use_button = button("Use these settings", self.use, icon="check", **FIELD)
+        self._take_away = download("Take away (.html)", "fit.html", lambda: self._page, **FIELD)
         self.message = changing_text(margin=(2, 8))
         self.table = pn.pane.HTML("", margin=(4, 8), stylesheets=[TABLE])
         self._keys = pn.pane.HTML("", margin=(4, 8))
@@ -71,7 +73,7 @@ class FitTab:
         self.view = pn.Column(
             opener.view,
             self.chosen,
-            pn.FlexBox(self.start_button, self._cancel, self.use_button),
+            pn.FlexBox(self.start_button, self._cancel, self.use_button, self._take_away),
             self.message,
             self.table,
             self._keys,
@@ -100,7 +102,7 @@ class FitTab:
             self.message.object = NO_LOOP if measured is None else READY
             return
         self._close()
-        self.found = self._nearest = None
+        self.found, self._nearest, self._page = None, None, b""
         arguments = ["fit", SETTINGS, "--with", MEASURED, "--vary", ",".join(names), "--out", OUT]
         self.job = Job([*arguments, "--json"], dump(self.state.settings))
         (self.job.folder / MEASURED).write_text(measured.csv(), encoding="utf-8")
@@ -129,18 +131,19 @@ class FitTab:
         file = job.folder / OUT / LOOP
         if file.exists():
             self._nearest = pd.read_csv(file)
-        self.message.object = job.progress.removeprefix("slipfront: ")
-        found = None
         with suppress(ValueError, IndexError):
             found = json.loads(job.lines[-1])
-        if isinstance(found, dict):
-            # The files that the command writes after this are not wanted here.
-            self.found = found
+            self.found = found if isinstance(found, dict) else None
+        if self.found is None:
+            self.message.object = job.progress.removeprefix("slipfront: ")
+        else:
+            found = self.found
             near, far = (number(100.0 * found[name]) for name in ("distance", "distance_before"))
             head = f"{near} % away, before {far} %; {found['runs']} runs."
             sentences = [self._in_titles(sentence) for sentence in found["messages"]]
             self.message.object = "  \n".join([head, *sentences])
-        if self.found is not None or job.is_over:
+        if job.is_over:
+            self._page = job.files.get(PAGE, b"")
             self._close()
         self._show()
 
@@ -182,6 +185,7 @@ class FitTab:
             self.message.object = NO_LOOP if measured is None else READY
         self.start_button.disabled = measured is None or self.job is not None
         self._cancel.visible, self.use_button.visible = self.job is not None, bool(self.found)
+        self._take_away.visible = bool(self._page)
         self.table.object = plain_table(self._rows()) if self.found else ""
         chart = self._panel(measured)
         self._keys.object = keys([chart]) if chart is not None else ""
