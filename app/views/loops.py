@@ -11,7 +11,7 @@ from bokeh.models import Range1d
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE, SCALE, scaled
-from app.views.view import ExtraView, View, extent, hover, key_of, whole
+from app.views.view import ExtraView, View, end_of, extent, hover, key_of, whole
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
 from solver.study.quantities.cycles import cycles_in
@@ -49,7 +49,7 @@ class HysteresisLoop(View):
         beside = _beside(frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
             low, high = extent([frame.loop[row], exact[row], reference[row], beside[row]])
-            axis.hold(key_of(run), min(low, 0.0), max(high, 0.0), 0.08)
+            axis.hold(end_of(frame), min(low, 0.0), max(high, 0.0), 0.08)
         is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
         self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)

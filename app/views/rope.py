@@ -12,7 +12,7 @@ from bokeh.palettes import Cividis256
 from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.view import ExtraView, color_bar, extent, hover, joined, key_of
+from app.views.view import ExtraView, color_bar, end_of, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
 
@@ -162,7 +162,7 @@ class AxialForces(ExtraView):
         run = frame.run
         column, known = run.column(selection.phase), run.known("axial force")
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
-        key = (*key_of(run), *names)
+        key = (*end_of(frame), *names)
         along = run.interfaces[selection.interface_of(run)].positions
         self.x.hold(key, *extent([x] if stuck is not None else [x, along]))
         bent = [] if stuck is None else [stuck]

@@ -359,6 +359,11 @@ def key_of(run: Run) -> tuple[int, bool]:
     return run.number, bool(run.reference)
 
 
+def end_of(frame: Frame) -> tuple[int, bool, bool]:
+    """The same, and anew for the last iterate, as those before may have been far from it."""
+    return (*key_of(frame.run), frame.status is not None)
+
+
 def whole(axis: Any) -> None:
     """Have an axis say whole numbers only."""
     axis.ticker.update(min_interval=1, num_minor_ticks=0)
