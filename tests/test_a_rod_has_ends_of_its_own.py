@@ -11,6 +11,7 @@ from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
+from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.study.quantities import QUANTITIES
@@ -199,6 +200,28 @@ def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(left, r
     solution = solve(problem, method_of(settings), distance=distance)
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-2
+
+
+def test_points_that_stood_still_while_slipping_do_not_end_the_search():
+    """The incremental solver once ended here out of balance, as such a point went back at once."""
+    section = [[0.2, 4.0], [0.33, 3.6], [0.34, 0.216], [0.74, 0.34], [0.85, 0.17]]
+    settled = [[0.205, 0.37], [0.511, 5.06], [0.578, 1.7], [0.595, 3.1]]
+    pressed = [[0.178, 0.167], [0.486, 0.172], [0.66, 5.52], [0.752, 0.0]]
+    fields, _, _ = answer(
+        bar(
+            right_end="free",
+            support_displacement=0.0435,
+            settlement=2.88e-4,
+            settlement_profile=settled,
+            friction=1.239,
+            pressure=6036.0,
+            pressure_profile=pressed,
+            section_profile=section,
+            elements=420,
+            instants=17,
+        )
+    )
+    assert kkt_residual(fields, fields.problem) < 1e-10
 
 
 def test_forces_beyond_all_friction_are_refused_where_nothing_else_holds():

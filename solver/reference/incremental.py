@@ -31,6 +31,9 @@ from solver.reference.solution import Interrupted, Reference
 
 DEARER = 30
 """Points that make a system of the general solver cost one more of the band's (measured)."""
+BALANCED = 1e-6
+"""KKT residual over all that acts up to which an instant is solved; rounding leaves 1e-15, and more
+beside loads of 1e9 times what friction holds."""
 
 
 def rubs_on_supports(problem: Problem) -> bool:
@@ -155,6 +158,8 @@ class IncrementalRod:
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
         for instant, least in enumerate(minima):
             increments[instant], pulls[instant] = least.increment, least.pull
+        solved = np.zeros(problem.n_instants, dtype=bool)
+        solved[: len(minima)] = [least.residual <= BALANCED for least in minima]
         moved = np.cumsum(increments, axis=0).T
         inside = self._band.largest_row * float(np.abs(moved).max(initial=0.0))
         displacement = moved * problem.scales.displacement
@@ -167,7 +172,8 @@ class IncrementalRod:
             residual=max([0.0, *(least.residual for least in minima)]),
             unbalanced=max([0.0, *(least.violation for least in minima)]) * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,
-            converged=np.arange(problem.n_instants) < len(minima),
+            converged=solved,
+            is_lost=not solved[: len(minima)].all(),
             ambiguous=np.zeros(problem.n_instants, dtype=bool),
             steps=steps,
             seconds=seconds,

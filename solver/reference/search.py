@@ -192,6 +192,7 @@ class Search:
         status = status * (status * increment > 0.0)
         increment *= self._free + np.abs(status)
         goes_on = np.ones(len(self._starts), dtype=bool)
+        released = np.zeros(len(force), dtype=bool)
         while goes_on.any():
             target = self._slip(force, status)
             share = np.full(len(force), np.inf)
@@ -200,26 +201,30 @@ class Search:
             least = np.minimum.reduceat(share, self._starts)
             stops = goes_on & np.isfinite(least)
             first = self._first(share == least[rod], stops)
-            # Those without any increment were released a moment ago, within rounding of the bound.
-            goes_on[rod[first[increment[first] == 0.0]]] = False
+            # One that goes back before it has moved was released within rounding of its bound; but
+            # one that was slipping may have stood still all the while.
+            goes_on[rod[first[released[first] & (increment[first] == 0.0)]]] = False
             increment += np.where(stops, least, 1.0)[rod] * (target - increment)
             increment[first] = status[first] = 0.0
+            released[first] = False
             status = np.where(stops[rod], status * (status * increment > 0.0), status)
             increment *= self._free + np.abs(status)
-            goes_on &= stops | self._release(force, increment, status, largest, goes_on & ~stops)
+            points = self._release(force, increment, status, largest, goes_on & ~stops)
+            released[points] = True
+            goes_on &= stops | np.isin(np.arange(len(goes_on)), rod[points])
         return status
 
     def _release(
         self, force: Array, increment: Array, status: Array, largest: float, rods: Flags
-    ) -> Flags:
-        """Release the point of each rod that is pulled most beyond its bound; which have one."""
+    ) -> Indices:
+        """Release the point of each rod that is pulled most beyond its bound; those released."""
         pull = force - self._band.product(increment)
         excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
         most = np.maximum.reduceat(excess, self._starts)
-        released = rods & (most > self._rounding(largest, increment))
-        points = self._first(excess == most[self._rod], released)
+        beyond = rods & (most > self._rounding(largest, increment))
+        points = self._first(excess == most[self._rod], beyond)
         status[points] = np.sign(pull[points])
-        return released
+        return points
 
     def _first(self, is_one: Flags, rods: Flags) -> Indices:
         """First of these degrees of freedom on each of the rods."""
