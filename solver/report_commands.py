@@ -18,7 +18,7 @@ from solver.study.figures.figure import FILE, write_figures
 from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned
 from solver.study.proof import report as proof
-from solver.study.proof.case import known_case, rows_of
+from solver.study.proof.known_case import known_case, rows_of
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.sizes import times_at_sizes
 from solver.study.speed.study_report import (
@@ -29,7 +29,6 @@ from solver.study.speed.study_report import (
     write_curves,
     write_study,
 )
-from solver.study.stability.case import Case
 from solver.study.stability.draws import random_cases
 from solver.study.stability.outcome import JudgedRun, judged_runs
 from solver.study.stability.report import (
@@ -44,6 +43,7 @@ from solver.study.stability.report import (
     line,
     write_stability,
 )
+from solver.study.stability.stability_case import StabilityCase
 
 REFUSED = 2
 """Exit code of refused input."""
@@ -144,7 +144,7 @@ def _stability(chosen: argparse.Namespace) -> int:
         value = getattr(chosen, name)
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
-    cases: Iterable[Case] = cases_of(scenes, quick=chosen.quick)
+    cases: Iterable[StabilityCase] = cases_of(scenes, quick=chosen.quick)
     title, notes = TITLE, NOTES
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)

@@ -12,7 +12,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import read_bytes, why
 from solver.files import settings_from_command
-from solver.latin import Ending, solve
+from solver.latin import Ending, Status, solve
 from solver.latin.cost import run_cost
 from solver.lessons.lesson import check
 from solver.lessons.reading import lesson_from_file
@@ -121,22 +121,27 @@ def _compare(chosen: argparse.Namespace) -> int:
         can = f"at least {FEWEST} rows that both cover"
         raise SettingError("--with", str(chosen.file), can, "give points along this interface")
     solution = solve(problem, method_of(settings))
-    distance, rows = comparison.of(solution.iterate), len(results.times)
-    if chosen.json:
-        figures = {
-            "quantity": results.quantity,
-            "interface": comparison.interface if results.quantity == FRICTION else None,
-            "distance": distance,
-            "rows": rows,
-            "rows_compared": comparison.counted,
-            "status": str(solution.status.ending),
-            "tables": tables,
-        }
-        print(json.dumps(figures))
+    figures = {
+        "quantity": results.quantity,
+        "interface": comparison.interface if results.quantity == FRICTION else None,
+        "distance": comparison.of(solution.iterate),
+        "rows": len(results.times),
+        "rows_compared": comparison.counted,
+        "tables": tables,
+    }
+    return _print_distance(figures, results.source, solution.status, as_json=chosen.json)
+
+
+def _print_distance(
+    figures: Mapping[str, Any], source: str, status: Status, *, as_json: bool
+) -> int:
+    """Print how far a run is from what was brought; the command's exit code."""
+    if as_json:
+        print(json.dumps({**figures, "status": str(status.ending)}))
     else:
-        far = f"{results.quantity}: {100.0 * distance:.4g} % from {results.source}"
-        print(f"{far}, at {comparison.counted} of {rows} rows")
-    return 0 if solution.status.ending is Ending.CONVERGED else 1
+        far = f"{figures['quantity']}: {100.0 * figures['distance']:.4g} % from {source}"
+        print(f"{far}, at {figures['rows_compared']} of {figures['rows']} rows")
+    return 0 if status.ending is Ending.CONVERGED else 1
 
 
 def _compare_loop(
@@ -150,26 +155,19 @@ def _compare_loop(
     beside = LoopComparison(measured, loop, problem)
     solution = solve(problem, method_of(settings))
     differences, drive = beside.differences(*beside.both(solution.iterate))
-    rows, counted = len(measured.force), len(differences)
-    if chosen.json:
-        figures = {
-            "quantity": beside.quantity,
-            "interface": None,
-            "distance": rms(differences),
-            "given": beside.given,
-            "distance_given": rms(drive),
-            "rows": rows,
-            "rows_compared": counted,
-            "status": str(solution.status.ending),
-            "tables": tables,
-        }
-        print(json.dumps(figures))
-    else:
-        far = f"{beside.quantity}: {100.0 * rms(differences):.4g} % from {measured.source}"
-        print(f"{far}, at {counted} of {rows} rows")
+    figures = {
+        "quantity": beside.quantity,
+        "interface": None,
+        "distance": rms(differences),
+        "given": beside.given,
+        "distance_given": rms(drive),
+        "rows": len(measured.force),
+        "rows_compared": len(differences),
+        "tables": tables,
+    }
     if rms(drive) > ALIKE:
         warn(beside.drive_message(drive))
-    return 0 if solution.status.ending is Ending.CONVERGED else 1
+    return _print_distance(figures, measured.source, solution.status, as_json=chosen.json)
 
 
 def _lesson(chosen: argparse.Namespace) -> int:

@@ -19,17 +19,6 @@ from solver.reference.incremental import reference_of
 from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
-from solver.study.stability.case import (
-    METHODS,
-    MUST_REFUSE,
-    NOT_WRONG,
-    PASSING,
-    RIGHT,
-    UNCLEAR,
-    UNSOLVED,
-    Case,
-    Verdict,
-)
 from solver.study.stability.draws import draw, random_case
 from solver.study.stability.outcome import (
     AT_ROUNDING,
@@ -39,6 +28,17 @@ from solver.study.stability.outcome import (
     judged_runs,
 )
 from solver.study.stability.report import COLUMNS, cases_of, counts, last_lines
+from solver.study.stability.stability_case import (
+    METHODS,
+    MUST_REFUSE,
+    NOT_WRONG,
+    PASSING,
+    RIGHT,
+    UNCLEAR,
+    UNSOLVED,
+    StabilityCase,
+    Verdict,
+)
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -93,7 +93,7 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
         (GOOD, {RIGHT, UNSOLVED, UNCLEAR, NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = JudgedRun(Case("a", {}, expected).by("fast"), found)
+            row = JudgedRun(StabilityCase("a", {}, expected).by("fast"), found)
             assert row.passed is (expected in passing)
 
 
@@ -102,7 +102,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
     monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
-    (row,) = judged_runs([Case("zero", {"peak": 0.0}).by("fast")])
+    (row,) = judged_runs([StabilityCase("zero", {"peak": 0.0}).by("fast")])
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
     assert row.verdict is Verdict.WRONG
@@ -110,7 +110,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
 
 @pytest.fixture
 def written(tmp_path, monkeypatch, capsys):
-    case = Case("zero <N>", {"peak": 0.0}, quick=True)
+    case = StabilityCase("zero <N>", {"peak": 0.0}, quick=True)
     given = [case.by(method) for method in METHODS]
     monkeypatch.setattr(report_commands, "cases_of", lambda scene, quick: given)
     folder = tmp_path / "made by" / "the command"

@@ -19,7 +19,7 @@ from solver.reference.closed_forms.fluid_driven_slip import (
     slip_under_growing_strength,
 )
 from solver.scenes import loop_of
-from solver.study.proof.case import PUBLISHED, Answer, KnownCase, Number
+from solver.study.proof.known_case import PUBLISHED, Answer, KnownCase, Number
 
 JOHNSON = "K. L. Johnson, Contact Mechanics, Cambridge 1985, section"
 HERTZ = f"{JOHNSON} 4.2 (Hertz)"

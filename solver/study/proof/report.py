@@ -10,7 +10,7 @@ from pathlib import Path
 from solver.study.cases.case import all_cases
 from solver.study.page import cell, table, write_csv, write_page
 from solver.study.proof.bodies import body_cases
-from solver.study.proof.case import (
+from solver.study.proof.known_case import (
     CLOSED_FORMS,
     INCREMENTAL,
     LATIN,

@@ -16,7 +16,7 @@ from solver.reference.closed_forms.pulled_bar import (
     pulled_compliant_bar,
 )
 from solver.scenes import structure_of
-from solver.study.proof.case import Answer, KnownCase, Number
+from solver.study.proof.known_case import Answer, KnownCase, Number
 
 OWN = "solver/README.md, 6: equilibrium of the part that slips"
 PLAY = f"{OWN}; M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, Springer 1989"

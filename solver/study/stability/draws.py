@@ -19,8 +19,8 @@ from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE, points_of
 from solver.settings import Settings
-from solver.study.stability.case import NOT_WRONG, Case
 from solver.study.stability.random_loads import LOADS
+from solver.study.stability.stability_case import NOT_WRONG, StabilityCase
 
 LARGEST_FIELD = 12_000
 """Displacements times instants of a run, at most: a thousand iterations then stay within seconds;
@@ -58,7 +58,7 @@ CHANGED = 0.15
 TRIALS = 1000
 
 
-def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Case]:
+def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[StabilityCase]:
     """Random runs of scenes in turn; row n is of scene n modulo their number.
 
     Parameters
@@ -73,11 +73,11 @@ def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Case
         yield random_case(draw(names[row % len(names)], seed, row), seed, row)
 
 
-def random_case(settings: Settings, seed: int, row: int) -> Case:
+def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
     """Case of settings that were drawn; right are errors of its force within its accuracy."""
     own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
     method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
-    return Case(
+    return StabilityCase(
         f"row {row} of seed {seed}",
         settings.changed(),
         NOT_WRONG,

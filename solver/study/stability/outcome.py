@@ -21,7 +21,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.quantities.finished import BROKEN, REFUSED
-from solver.study.stability.case import PASSING, Case, Verdict
+from solver.study.stability.stability_case import PASSING, StabilityCase, Verdict
 
 AT_ROUNDING = 1e-8
 """Residual of a certified solution, at most, by the equations alone."""
@@ -172,7 +172,7 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Ver
 class JudgedRun:
     """A case, what it came to, and what that is worth."""
 
-    case: Case
+    case: StabilityCase
     outcome: Outcome
 
     @property
@@ -186,7 +186,7 @@ class JudgedRun:
         return self.verdict in PASSING[self.case.expected]
 
 
-def judged_runs(cases: Iterable[Case]) -> Iterator[JudgedRun]:
+def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[JudgedRun]:
     """Run cases, and yield each as soon as it is done."""
     for case in cases:
         yield JudgedRun(case, run(case.scene, case.values))

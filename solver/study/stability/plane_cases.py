@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from solver.study.stability.case import (
+from solver.study.stability.stability_case import (
     GENERAL,
     MUST_REFUSE,
     UNCLEAR,
     UNSOLVED,
-    Case,
+    StabilityCase,
     cases_with,
     reversals,
 )
@@ -26,12 +26,12 @@ PRESSED = {
 """Held by contact alone: pressed from above, then sheared by two thirds of what friction holds."""
 
 
-def plane_cases() -> list[Case]:
+def plane_cases() -> list[StabilityCase]:
     """All of them."""
     return [*fault_cases(), *block_cases(), *layers_cases(), *incline_cases(), *wall_cases()]
 
 
-def block_cases() -> list[Case]:
+def block_cases() -> list[StabilityCase]:
     """All cases of the scene `block`."""
     common = {
         **{"elements": 16, "elements_up": 8, "substructures": 4, "substructures_up": 2},
@@ -81,7 +81,7 @@ def block_cases() -> list[Case]:
     ]
 
 
-def layers_cases() -> list[Case]:
+def layers_cases() -> list[StabilityCase]:
     """All cases of the scene `layers`."""
     common = {
         **{"elements": 24, "elements_up": 2, "substructures": 3, "substructures_up": 1},
@@ -120,7 +120,7 @@ def layers_cases() -> list[Case]:
     ]
 
 
-def incline_cases() -> list[Case]:
+def incline_cases() -> list[StabilityCase]:
     """All cases of the scene `incline`."""
     common = {"elements": 16, "elements_up": 8, "instants": 41, "max_iterations": 1000}
     case, unsolved = cases_with("incline", common), cases_with("incline", common, UNSOLVED)
@@ -140,7 +140,7 @@ def incline_cases() -> list[Case]:
     ]
 
 
-def fault_cases() -> list[Case]:
+def fault_cases() -> list[StabilityCase]:
     """All cases of the scene `fault`."""
     common = {
         **{"elements": 24, "elements_up": 12, "substructures": 4, "substructures_up": 2},
@@ -166,7 +166,7 @@ def fault_cases() -> list[Case]:
     ]
 
 
-def wall_cases() -> list[Case]:
+def wall_cases() -> list[StabilityCase]:
     """All cases of the scene `wall`: what is pressed and moved scales with E, as what gives way."""
     common = {
         **{"bricks": 4, "courses": 4, "elements": 4, "elements_up": 2, "displacement": 5e-5},

@@ -12,10 +12,10 @@ from statistics import median_high
 
 from solver.scenes import CATALOGUE
 from solver.study.page import aligned, bullets, cell, plain_table, table, write_csv, write_page
-from solver.study.stability.case import METHODS, Case, Verdict
 from solver.study.stability.outcome import MEANING, JudgedRun
 from solver.study.stability.plane_cases import plane_cases
 from solver.study.stability.rod_cases import rod_cases
+from solver.study.stability.stability_case import METHODS, StabilityCase, Verdict
 
 FILES = "stability.csv", "stability.html"
 COLUMNS = (
@@ -41,7 +41,7 @@ NOTES = (
 RANDOM_NOTES = ("Right are errors of the contact force of at most the accuracy.", ERRORS)
 
 
-def cases_of(scenes: Sequence[str] = (), *, quick: bool = False) -> list[Case]:
+def cases_of(scenes: Sequence[str] = (), *, quick: bool = False) -> list[StabilityCase]:
     """Cases of some scenes, or of all, by each method; with `quick` only the few for a check."""
     return [
         case.by(method)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from solver.definitions import Pairs
-from solver.study.stability.case import (
+from solver.study.stability.stability_case import (
     GENERAL,
     MUST_REFUSE,
     RIGHT,
     UNSOLVED,
-    Case,
+    StabilityCase,
     cases_with,
     reversals,
 )
@@ -37,12 +37,12 @@ JUMP_WIDTH = 1e-9
 """Share of an element beside its ends, within which a section changes to that of the next."""
 
 
-def rod_cases() -> list[Case]:
+def rod_cases() -> list[StabilityCase]:
     """All of them."""
     return [*bar_cases(), *strand_cases(), *rope_cases()]
 
 
-def bar_cases() -> list[Case]:
+def bar_cases() -> list[StabilityCase]:
     """All cases of the bar."""
     case, unsolved = cases_with("bar", {}), cases_with("bar", {}, UNSOLVED)
     scales = (1e-6, 1e-4, 1e-2, 1e-1, 10.0, 1e2, 1e4, 1e6)
@@ -84,18 +84,7 @@ def bar_cases() -> list[Case]:
         case("load plateaus", load=PLATEAUS),
         case("load moved support", support_displacement=1e-3),
         case("load body force", body_force=1000.0),
-        *(
-            unsolved(left_spring=stiffness, left_end="spring", peak=2000.0)
-            for stiffness in (1e-3, 1e3, 1e9, 5e14)
-        ),
-        case("left spring 1e18 N/m", MUST_REFUSE, left_end="spring", left_spring=1e18),
-        case("left end free", quick=True, left_end="free"),
-        case("left end free, almost pulled out", left_end="free", peak=1499.0),
-        case("right end on a spring that is moved", quick=True, **MOVED),
-        case("heat alone, between clamps", right_end="held", temperature=40.0),
-        case("heat alone, both ends free", quick=True, temperature=40.0, **FREE),
-        case("settlement alone, both ends free", quick=True, settlement=1e-3, **FREE),
-        unsolved("settlement 1e6 m", settlement=1e6),
+        *end_cases(),
         *(unsolved(substructures=parts) for parts in (1, 2, 5, 25, 50)),
         unsolved("substructures as many as 20 elements", **{**small, "substructures": 20}),
         case("soft friction spring", quick=True, **SOFT),
@@ -113,7 +102,26 @@ def bar_cases() -> list[Case]:
     ]
 
 
-def strand_cases() -> list[Case]:
+def end_cases() -> list[StabilityCase]:
+    """Cases of the bar's ends, of heat, and of a support that moves."""
+    case, unsolved = cases_with("bar", {}), cases_with("bar", {}, UNSOLVED)
+    return [
+        *(
+            unsolved(left_spring=stiffness, left_end="spring", peak=2000.0)
+            for stiffness in (1e-3, 1e3, 1e9, 5e14)
+        ),
+        case("left spring 1e18 N/m", MUST_REFUSE, left_end="spring", left_spring=1e18),
+        case("left end free", quick=True, left_end="free"),
+        case("left end free, almost pulled out", left_end="free", peak=1499.0),
+        case("right end on a spring that is moved", quick=True, **MOVED),
+        case("heat alone, between clamps", right_end="held", temperature=40.0),
+        case("heat alone, both ends free", quick=True, temperature=40.0, **FREE),
+        case("settlement alone, both ends free", quick=True, settlement=1e-3, **FREE),
+        unsolved("settlement 1e6 m", settlement=1e6),
+    ]
+
+
+def strand_cases() -> list[StabilityCase]:
     """All cases of the strand."""
     common = {"elements": 24, "substructures": 4, "instants": 31, "max_iterations": 1000}
     case, unsolved = cases_with("strand", common), cases_with("strand", common, UNSOLVED)
@@ -143,7 +151,7 @@ def strand_cases() -> list[Case]:
     ]
 
 
-def rope_cases() -> list[Case]:
+def rope_cases() -> list[StabilityCase]:
     """All cases of the strand of helical wires."""
     common = {
         **{"layers": 1, "length": 0.3, "tension": 5e4, "elements": 32, "substructures": 8},

@@ -43,7 +43,7 @@ METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"
 
 
 @dataclass(frozen=True)
-class Case:
+class StabilityCase:
     """A run that is to be made, and what may come of it.
 
     Attributes
@@ -73,7 +73,7 @@ class Case:
     error_force: float = RIGHT_UP_TO
     error_displacement: float = RIGHT_UP_TO
 
-    def by(self, method: str) -> Case:
+    def by(self, method: str) -> StabilityCase:
         """The same by one of `METHODS`, precisely."""
         return replace(self, method=method, values={**PRECISE, **METHODS[method], **self.values})
 
@@ -90,7 +90,7 @@ class Case:
 
 def cases_with(
     scene: str, common: Mapping[str, object], usually: str = RIGHT
-) -> Callable[..., Case]:
+) -> Callable[..., StabilityCase]:
     """A function that makes cases of a scene, which have some settings in common.
 
     It takes what a case is called, what is expected of it, whether it is quick, and the settings
@@ -99,9 +99,9 @@ def cases_with(
 
     def case(
         title: str = "", expected: str = usually, *, quick: bool = False, **values: object
-    ) -> Case:
+    ) -> StabilityCase:
         title = title or ", ".join(f"{name}={value}" for name, value in values.items())
-        return Case(title, {**common, **values}, expected, quick, scene)
+        return StabilityCase(title, {**common, **values}, expected, quick, scene)
 
     return case
 

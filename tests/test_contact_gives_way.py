@@ -1,0 +1,93 @@
+"""Contact that gives way before it slips: closed forms, every scene (solver/README.md, 8)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from small_scenes import SMALL
+
+from solver.latin import Ending, solve
+from solver.reference.closed_forms.pulled_bar import pulled_compliant_bar
+from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+
+LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
+COMPLIANT = {"friction_law": "compliant"}
+
+
+def run(scene="bar", **values):
+    chosen = CATALOGUE[scene].settings.checked({**SMALL[scene], **COMPLIANT, **values})
+    problem = discretise(chosen)
+    return solve(problem, method_of(chosen), distance=distance_to(reference_of(problem), problem))
+
+
+def pulled(force, stiffness):
+    """Give the end displacement of a clamped bar under a monotone pull, and its slip zone."""
+    density = stiffness * AXIAL / LENGTH**2
+    return pulled_compliant_bar(force, LENGTH, AXIAL, BOUND, density)
+
+
+@pytest.mark.parametrize("stiffness", [3.0, 1e3])
+@pytest.mark.parametrize("peak", [100.0, 1400.0])
+def test_a_pulled_bar_moves_as_in_closed_form_and_the_better_the_finer(stiffness, peak):
+    exact, _ = pulled(peak, stiffness)
+    errors = []
+    for elements in (50, 200):
+        found = run(
+            load=[[0.0, 0.0], [1.0, peak]],
+            instants=11,
+            elements=elements,
+            contact_stiffness=stiffness,
+        )
+        assert found.status.ending is Ending.CONVERGED
+        errors.append(abs(found.iterate.displacement[-1, -1] - exact) / exact)
+    assert errors[1] < 2e-3
+    assert errors[1] < 0.6 * errors[0]
+
+
+def test_where_nothing_slips_the_bar_stands_on_springs():
+    peak, stiffness = 100.0, 100.0
+    assert pulled(peak, stiffness)[1] == 0.0
+    found = run(
+        load=[[0.0, 0.0], [1.0, peak]], instants=5, elements=400, contact_stiffness=stiffness
+    )
+    assert not found.iterate.status.any()
+    x = np.linspace(0.0, LENGTH, 401)
+    beta = np.sqrt(stiffness) / LENGTH
+    exact = peak * np.sinh(beta * x) / (AXIAL * beta * np.cosh(beta * LENGTH))
+    np.testing.assert_allclose(found.iterate.displacement[:, -1], exact, atol=1e-3 * exact[-1])
+
+
+def test_unloading_and_reloading_follow_masings_rule():
+    peak, stiffness = 1200.0, 100.0
+    path = [[0.0, 0.0], [0.2, peak], [0.6, -peak], [1.0, peak]]
+    found = run(load=path, instants=81, elements=200, contact_stiffness=stiffness).iterate
+    end = found.displacement[-1]
+    load = np.interp(np.linspace(0.0, 1.0, 81), *np.array(path).T)
+    top = pulled(peak, stiffness)[0]
+    for instant in range(20, 49, 4):
+        exact = top - 2.0 * pulled((peak - load[instant]) / 2.0, stiffness)[0]
+        assert abs(end[instant] - exact) < 3e-3 * top
+    assert abs(end[-1] - end[16]) < 1e-6 * top
+    forces = np.linspace(0.0, peak, 400)
+    curve = np.array([pulled(force, stiffness)[0] for force in forces])
+    exact = 8.0 * np.trapezoid(forces, curve) - 4.0 * peak * top
+    loop = np.trapezoid(load[16:], end[16:])
+    assert loop == pytest.approx(exact, rel=0.02)
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+@pytest.mark.parametrize("stiffness", [1.0, 300.0])
+def test_every_scene_ends_with_a_certified_solution(scene, stiffness):
+    found = run(scene, contact_stiffness=stiffness)
+    assert found.is_certified
+    assert found.records[-1].error_force < 1e-8
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_a_contact_that_hardly_gives_way_is_coulombs(scene):
+    stiff = run(scene, contact_stiffness=1e9).iterate.friction_force
+    rigid = run(scene, friction_law="coulomb").iterate.friction_force
+    np.testing.assert_allclose(stiff, rigid, atol=1e-5 * np.abs(rigid).max())
