@@ -62,14 +62,15 @@ class Live:
         self._is_open = False
         look = {"styles": {"flex-wrap": "wrap", "justify-content": "space-between"}}
         below = wrapped(self._sentence, self._figures, sizing_mode="stretch_width", **look)
-        parts = self._above, below, self._scene, self._timeline, self._plots
-        self.view = column("live", *parts)
+        self.view = column("live", self._above, below)
         state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
         """Make the figures."""
-        for view in (*self._views, *(card.views[0] for card in self._cards)):
+        for card in self._cards:
+            card.fit()
+        for view in self._in_sight():
             view.figure  # noqa: B018  # it is made when it is first asked for
 
     def open(self) -> None:
@@ -84,6 +85,8 @@ class Live:
         timeline.param.update(sizing_mode="stretch_width", height=56)
         self._scene.append(scene)
         self._timeline.append(timeline)
+        # All at once: each change goes through all models of the document.
+        self.view.extend([self._scene, self._timeline, self._plots])
 
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
@@ -109,10 +112,11 @@ class Live:
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
-        seen: list[View] = []
-        if self._is_open and self.state.tab == TABS[0]:
-            seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
-        self.display.look_at(seen)
+        is_seen = self._is_open and self.state.tab == TABS[0]
+        self.display.look_at(self._in_sight() if is_seen else [])
+
+    def _in_sight(self) -> list[View]:
+        return [*self._views, *(view for card in self._cards if (view := card.seen))]
 
     def _fit(self) -> None:
         if self._is_open:

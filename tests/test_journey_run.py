@@ -108,6 +108,11 @@ def test_what_is_typed_runs_or_is_refused_beside_it_and_leaves_the_pinned_run_an
     button(page, "Keep this run").click()
     holds(page, f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
 
+    hidden = f"[...{legend}.values()].filter(m => m.type === 'GlyphRenderer' && !m.visible).length"
+    for count in (1, 0):
+        page.get_by_text("closed form", exact=True).first.click()
+        holds(page, f"{hidden} === {count}")
+
     page.get_by_role("tab", name="Loop").click()
     titles = "[...model('pulse').document._all_models.values()].filter(m => m.type === 'Title')"
     holds(page, f"{titles}.some(m => m.text.startsWith('End displacement'))")

@@ -46,7 +46,7 @@ class DrawnCurve:
         points = made.scatter("x", "y", source=self.measured, color=LATIN, size=11)
         made.text("x", "y", "text", source=self.measured, y_offset=20, text_font_size="12px",
                   text_align="center", text_color=LATIN)  # fmt: skip
-        legend(made, {"drawn by hand": [line], "measured": [points]})
+        legend(made, [("drawn by hand", [line]), ("measured", [points])])
         tool = FreehandDrawTool(renderers=[line], num_objects=1)
         made.add_tools(tool)
         made.toolbar.active_drag = tool

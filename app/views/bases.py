@@ -129,7 +129,7 @@ class ClipErrors(ExtraView):
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         lines.append(self.add("alone", "Scatter", size=11, **ring))
         self.add("table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
-        self._glyphs["clips"].append(lines[-1])
+        self._drawn["clips"].append(lines[-1])
         self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 

@@ -20,6 +20,8 @@ KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENE
 BODY, EDGE = "#8FAAC2", "#607D8B"
 CUT = "#8A8A8A"
 """Of the lines where substructures meet."""
+UNSEEN = "#00000000"
+"""Of a mark that only carries a text into a legend."""
 RANKS = (LATIN, ERROR, DISPLACEMENT, PRESSURE, "#B58500", REFERENCE)
 """Of curves side by side, as modes and wires."""
 SCALE = ("#7A4FB5", "#0072B2", "#008577", "#5C8700", "#B07A00", "#C24E00")

@@ -10,7 +10,17 @@ from bokeh.models import Range1d
 
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
-from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE, SCALE, scaled
+from app.views.colors import (
+    BESIDE,
+    ERROR,
+    EXACT,
+    GHOST,
+    LATIN,
+    REFERENCE,
+    SCALE,
+    UNSEEN,
+    scaled,
+)
 from app.views.view import ExtraView, View, end_of, extent, hover, key_of, whole
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
@@ -83,9 +93,7 @@ class CyclePlot(ExtraView):
 
     def _add_legend(self) -> None:
         """Name the first and the last cycle, and what becomes of slip."""
-        for name, color in (("first", SCALE[0]), ("last", SCALE[-1])):
-            self.mark(name, color)
-        self.mark("text", CUT, alpha=0.0)
+        self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
         self.legend(first="cycle 1", last="last", text="text")
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:

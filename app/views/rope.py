@@ -49,8 +49,7 @@ class WireSection(RopePlot):
         )  # fmt: skip
         self.bar = color_bar(made, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
-        for name, color in rings.items():
-            self.mark(name, "white", line_color=color, line_width=3, marker="circle")
+        self.mark(rings, fill_color="white", line_width=3, marker="circle")
         self.legend(*rings)
         made.on_event(Tap, self._tap)
 
@@ -153,9 +152,9 @@ class AxialForces(ExtraView):
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
-        self._lines = [self.add(wire, width=2) for wire in WIRES]
+        lines = [self.add(wire, width=2) for wire in WIRES]
         self.legend(*WIRES, stuck="all stick", exact="closed form")
-        hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
+        hover(made, lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
         """Show the force in each wire, the broken one in its own colour."""
@@ -176,7 +175,7 @@ class AxialForces(ExtraView):
                 self.draw(wire, [], [])
                 continue
             is_broken = "broken" in names[number]
-            look = {"line_color": ERROR if is_broken else next(colors)}
-            self._lines[number].glyph.update(**look, line_width=3.5 if is_broken else 2)
+            look = (ERROR, 3.5) if is_broken else (next(colors), 2.0)
+            self.restyle(wire, *look)
             title = names[number] if bent or number or len(names) == 1 else f"wire {names[0]}"
             self.draw(wire, x, axial["force"][number, :, column], title)

@@ -14,7 +14,7 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import number, unit_for
-from app.views.colors import BODY, EDGE, GHOST, KEYS
+from app.views.colors import BODY, EDGE, GHOST, KEYS, UNSEEN
 from app.views.layout import layout_of
 from app.views.picture import Handle, Picture
 from app.views.view import View, bare, color_bar, rounded_up
@@ -67,9 +67,7 @@ class Scene(View):
             "words", "Text", "x y text text_align text_color", text_font_size="14px",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
-        for key, color in KEYS.items():
-            self.mark(key, color)
-        self.mark("note", EDGE, alpha=0.0)
+        self.mark(KEYS | {"note": UNSEEN})
         keys = KEYS if self.shows_status else ()
         self._keys = self.legend(*keys, "note", place="center")
         self._keys.location = "bottom_left"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, Selection
-from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
+from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE, UNSEEN
 from app.views.view import View, extent
 from solver.laws import FrictionLaw
 from solver.scenes import features_of, law_of
@@ -36,7 +36,7 @@ class SlipPlane(View):
         self.add("right", color=FORWARD, width=1.5)
         self.add("path", color=REFERENCE, width=2)
         self.add("now", "Scatter", color=ERROR, size=10)
-        self.mark("held", CUT, alpha=0.0)
+        self.mark({"held": UNSEEN})
         self.legend(
             left="left slips", right="right slips", path="so far", room="free in the last cycle",
             held="contact alone holds the block",

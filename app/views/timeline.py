@@ -12,7 +12,7 @@ from bokeh.models import PanTool
 from app.frame import Frame, Run, Selection
 from app.units import number, unit_for
 from app.views.acts import unit_of
-from app.views.colors import ERROR, FORCE
+from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_opposite
 from app.views.view import View, bare
 from solver.arrays import Array
@@ -37,13 +37,11 @@ class Timeline(View):
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
         axis.axis_line_alpha = 0.4
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
-        # The first is on top.
-        for path, color in reversed(PATHS.items()):
-            self.add(path, color=color, width=2.0 if path == "first" else 1.4)
+        self.add("paths", "MultiLine", "xs ys line_color line_width")
         look = {"y": LOW, "length": 0, "angle": np.pi / 2, "color": ERROR, "alpha": 0.5}
         self.add("instant", "Ray", "x", **look)
         self.add("now", "Scatter", color=FORCE, size=13)
-        self.mark("time", FORCE, alpha=0.0)
+        self.mark(PATHS | {"time": UNSEEN})
         self.legend(*PATHS, "time", place="center")
         # The range has bounds, so that the tool only keeps a touch from scrolling the page.
         made.add_tools(PanTool(dimensions="width"))
@@ -68,11 +66,19 @@ class Timeline(View):
         times = run.instants / np.float32(unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
         self.figure.x_range.update(start=ends[0], end=ends[1], bounds=ends)
-        given = paths_of(run)[: len(PATHS)]
-        for path, (title, values, _) in zip_longest(PATHS, given, fillvalue=("", times[:0], False)):
-            y = np.float32(values / (np.abs(values).max(initial=0.0) or 1.0))
-            self.fill(path, title, x=times[: len(y)], y=y)
-        self.fill("area", x=times, y2=self.sources["first"].data["y"])
+        titles, values, _ = zip(*paths_of(run)[: len(PATHS)], strict=True)
+        ups = [np.float32(each / (np.abs(each).max(initial=0.0) or 1.0)) for each in values]
+        # The first is on top.
+        self.fill(
+            "paths",
+            xs=[times] * len(ups),
+            ys=ups[::-1],
+            line_color=list(PATHS.values())[: len(ups)][::-1],
+            line_width=[1.4] * (len(ups) - 1) + [2.0],
+        )
+        self.fill("area", x=times, y2=ups[0])
+        for path, title in zip_longest(PATHS, titles, fillvalue=""):
+            self.show(path, title)
         self.show("time", f"t in {unit.name}")
 
     def _select(self, event: Any) -> None:

@@ -4,30 +4,35 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 from bokeh import models
 from bokeh.core.properties import value
+from bokeh.events import LegendItemClick
 from bokeh.models import (
     AllIndices,
     CDSView,
     ColorBar,
     ColumnDataSource,
     CrosshairTool,
+    CustomJS,
     Glyph,
     GlyphRenderer,
     HoverTool,
     Legend,
     LegendItem,
     LinearColorMapper,
+    MultiLine,
     NumeralTickFormatter,
+    Patch,
     Range1d,
     Scatter,
     Title,
     UnionRenderers,
+    VArea,
 )
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
@@ -47,10 +52,25 @@ ABOVE = {"margin-left": "-44px", "top": "-3px"}
 """Has a legend begin at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 8px !important; }
-.bk-item { gap: 4px !important; }
+.bk-item { gap: 4px !important; cursor: pointer; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
 """Lets a legend of seven entries stand in one line; the theme keeps them farther apart."""
+
+
+COPIED = "line_color", "line_alpha", "line_width", "line_dash"
+"""What a legend shows of a glyph."""
+WIDE = 8.0
+"""Width of a line from which on it is an area, px."""
+HIDE = """
+const place = items.indexOf(cb_obj.item)
+if (place == -1) return
+const {line_alpha} = copies.data
+for (const each of drawn[place]) each.visible = !each.visible
+line_alpha[place] *= drawn[place][0].visible ? 5 : 0.2
+copies.change.emit()
+"""
+"""Hides a glyph and fades its copy in the legend, or shows it again."""
 
 
 class Axis:
@@ -132,7 +152,9 @@ class View:
         self.state, self._type = state, TEXT
         self._made: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
-        self._glyphs: dict[str, list[GlyphRenderer]] = {}
+        self._drawn: dict[str, list[GlyphRenderer]] = {}
+        self._looks: dict[str, tuple[Any, ...]] = {}
+        self._marks: dict[str, tuple[GlyphRenderer, int]] = {}
         self._items: dict[str, LegendItem] = {}
 
     @cached_property
@@ -141,7 +163,6 @@ class View:
         # Nothing in it is selected or left out: what would say so is shared, as each model counts.
         self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
         self._filter = AllIndices()
-        self._nowhere = ColumnDataSource({"x": [np.nan], "y": [np.nan]}, **self._selects)
         self._make()
         self._size_type()
         return self._made
@@ -211,39 +232,84 @@ class View:
             on, look = name, {column: column for column in columns.split()} | look
             self.source(name, *columns.split(), *also.split())
         kind = getattr(models, glyph)
-        return self._add(name, self.sources[on], kind(**visuals(kind, look)))
+        renderer = self._render(self.sources[on], kind(**visuals(kind, look)))
+        self._drawn.setdefault(name, []).append(renderer)
+        self._looks[name] = _copy_of(kind, look)
+        return renderer
 
-    def _add(self, name: str, source: ColumnDataSource, glyph: Glyph) -> GlyphRenderer:
+    def _render(self, source: ColumnDataSource, glyph: Glyph) -> GlyphRenderer:
         without = {f"{state}_glyph": None for state in ("selection", "nonselection", "muted")}
         view = CDSView(filter=self._filter)
         renderer: GlyphRenderer = self._made.add_glyph(source, glyph, view=view, **without)
-        self._glyphs.setdefault(name, []).append(renderer)
         return renderer
 
     def source(self, name: str, *columns: str) -> None:
         """Add an empty source."""
-        empty: dict[str, Any] = {column: [] for column in columns}
-        self.sources[name] = ColumnDataSource(empty, **self._selects)
+        self.sources[name] = self._source({column: [] for column in columns})
+
+    def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
+        return ColumnDataSource(columns, **self._selects)
 
     def add_status(self) -> GlyphRenderer:
         """An image of statuses, and a mark for each in the legend."""
-        for key, color in KEYS.items():
-            self.mark(key, color)
+        self.mark(KEYS)
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
         return self.add("status", "Image", "image x y dw dh", color_mapper=colors)
 
-    def mark(self, name: str, color: str, **look: Any) -> None:
-        """A square that stands in the legend only."""
-        look = {"marker": "square", "size": 10, "color": color} | look
-        self._add(name, self._nowhere, Scatter(**visuals(Scatter, look)))
+    def mark(self, colors: Mapping[str, str], **look: Any) -> None:
+        """Marks that stand in the legend only, by name; they share a glyph, as each costs time."""
+        nowhere = [np.nan] * len(colors)
+        columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
+        look = {"marker": "square", "size": 10, "color": "color"} | look
+        marks = self._render(self._source(columns), Scatter(**visuals(Scatter, look)))
+        self._marks |= {name: (marks, place) for place, name in enumerate(colors)}
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
-        """Name glyphs in a legend, in this order, by their own names or by titles."""
+        """Name glyphs in a legend, in this order, by their own names or by titles.
+
+        It shows a copy of them: it is made anew whenever what it shows gets other data.
+        """
         titles = {name: name for name in names} | titles
-        entries = {title: self._glyphs[name] for name, title in titles.items()}
-        box = legend(self._made, entries, place)
-        self._items = dict(zip(titles, box.items, strict=True))
+        copied = {name: self._looks[name] for name in titles if name not in self._marks}
+        if copied:
+            self._copy(copied)
+        self._items = {
+            name: LegendItem(
+                label=value(title), renderers=[self._marks[name][0]], index=self._marks[name][1]
+            )
+            for name, title in titles.items()
+        }
+        box = legend(self._made, list(self._items.values()), place)
+        if copied:
+            items = [self._items[name] for name in copied]
+            drawn = [self._drawn[name] for name in copied]
+            args = {"items": items, "drawn": drawn, "copies": self._copies}
+            box.js_on_event(LegendItemClick, CustomJS(args=args, code=HIDE))
         return box
+
+    def _copy(self, looks: Mapping[str, tuple[Any, ...]]) -> None:
+        """Have marks that look as glyphs do: lines, and squares for what is as wide as an area."""
+        columns = dict(zip(COPIED, map(list, zip(*looks.values(), strict=True)), strict=True))
+        nowhere = {"x": [np.nan] * len(looks), "xs": [[] for _ in looks]}
+        self._copies = self._source(nowhere | columns)
+        square = {"marker": "square", "fill_color": "line_color", "fill_alpha": "line_alpha"}
+        line = dict(zip(COPIED, COPIED, strict=True))
+        kinds = {
+            False: lambda: MultiLine(xs="xs", ys="xs", **line),
+            True: lambda: Scatter(x="x", y="x", line_color=None, **square),
+        }
+        is_wide = [width >= WIDE for width in columns["line_width"]]
+        shown = {wide: self._render(self._copies, kinds[wide]()) for wide in set(is_wide)}
+        self._marks |= {name: (shown[is_wide[n]], n) for n, name in enumerate(looks)}
+
+    def restyle(self, name: str, color: str, width: float) -> None:
+        """Give a curve another look, and its copy in the legend."""
+        for renderer in self._drawn[name]:
+            renderer.glyph.update(line_color=color, line_width=width)
+        place = self._marks[name][1]
+        for column, new in (("line_color", color), ("line_width", width)):
+            if self._copies.data[column][place] != new:
+                self._copies.patch({column: [(place, new)]})
 
     def show(self, name: str, wanted: bool | str) -> None:
         """Show or hide an entry of the legend, or give it another title."""
@@ -318,6 +384,13 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
     return properties
 
 
+def _copy_of(kind: type[Glyph], look: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Colour, opacity, width and dash of a glyph."""
+    line = {trait.removeprefix("line_"): given for trait, given in look.items()}
+    width = WIDE if kind in (Patch, VArea) else line.get("width", 1.0)
+    return line.get("color"), line.get("alpha", 1.0), width, line.get("dash", "solid")
+
+
 def _equal(old: Any, new: Any) -> bool:
     if isinstance(new, np.ndarray):
         return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
@@ -333,19 +406,15 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
     return np.concatenate(pieces[:-1] or [gap[:, :0]], axis=1)
 
 
-def legend(made: figure, entries: dict[str, list[GlyphRenderer]], place: str = "above") -> Legend:
-    """A legend in one line, above the plot, where it covers no curve, or in it.
-
-    A click hides a curve.
-    """
+def legend(made: figure, items: Sequence[Any], place: str = "above") -> Legend:
+    """A legend in one line, above the plot, where it covers no curve, or in it."""
     box = Legend(
-        items=list(entries.items()),
+        items=items,
         orientation="horizontal",
         location="top_left",
         padding=0,
         margin=2,
         label_height=12,
-        click_policy="hide",
         background_fill_alpha=0.0,
         styles={"font-size": TEXT} | (ABOVE if place == "above" else {}),
         stylesheets=[CLOSE],
