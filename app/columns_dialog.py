@@ -16,11 +16,11 @@ from app.state import PageState
 from app.tables import Content, axes_on, opened, path_of, paths_of, table_of, with_path
 from app.units import sizes_of
 from app.widgets import button, changing_text, dialog
-from solver.columns import TableColumn, size_in
+from solver.columns import BY_UNIT, TableColumn, quantities_of, size_in
 from solver.definitions import SettingError, about
 from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.measured_loop import KINDS, MeasuredLoop, columns_of, loop_in
+from solver.study.measured_loop import MeasuredLoop, columns_of, loop_in
 from solver.tables import Table
 
 HELP = (
@@ -168,9 +168,9 @@ class ColumnsDialog:
         if self.use.value in self._paths:
             definition = self._paths[self.use.value]
             unit = self._state.settings.curve_units(self.use.value)[1].split(" or ")[0]
-            kinds = TableColumn(0, name=definition.ordinate).quantities[0] | KINDS.get(unit, set())
-            return [time, (about(definition).title, unit, set(kinds))]
-        return [time, *((title, unit, KINDS[unit]) for title, unit in self._axes)]
+            kinds = {*quantities_of(definition.ordinate, unit)}
+            return [time, (about(definition).title, unit, kinds)]
+        return [time, *((title, unit, BY_UNIT[unit]) for title, unit in self._axes)]
 
     def _fit(self) -> None:
         """Have the fields that the use needs, with what the head says."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from app.state import PageState
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
@@ -62,11 +64,8 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 def table_of(data: bytes | str, source: str) -> Table:
     """Table of a file, whatever it is of."""
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError("the table", source, "a table of time and value", remedy)
-
-    return read_table(data, refuse)
+    can = "a table of time and value"
+    return read_table(data, partial(SettingError, "the table", source, can))
 
 
 def paths_of(settings: Settings) -> dict[str, CurveParameter]:

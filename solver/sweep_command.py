@@ -10,12 +10,11 @@ from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
+from solver.console import add_command_of_scene, print_tables, warn, writing
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import settings_from_command
-from solver.remarks import print_tables
-from solver.report_commands import writing
 from solver.study.page import write_page
 from solver.study.sweep import Plan, Row, patience, plan_of, sweep
 from solver.study.sweep.plan import FORM, LOST, STUCK
@@ -39,10 +38,9 @@ OFTEN, SELDOM = 0.2, 10.0
 
 def add_sweep(commands: Any) -> None:
     """Add the command."""
-    parser = commands.add_parser("sweep", help="quantities of a run over up to two settings")
-    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    purpose = "quantities of a run over up to two settings"
+    parser = add_command_of_scene(commands, "sweep", purpose, _sweep)
     parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
     parser.add_argument("--out", type=Path, default=Path("sweep"), metavar="DIR")
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
@@ -52,7 +50,6 @@ def add_sweep(commands: Any) -> None:
         "--adaptive", type=int, metavar="N", help="no more than N runs, where the answer bends"
     )
     parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
-    parser.set_defaults(command=_sweep)
 
 
 def _sweep(chosen: argparse.Namespace) -> int:
@@ -64,9 +61,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
     print_tables(tables)
-    for name in plan.idle():
-        message = f"slipfront: {name} does nothing with the other settings as they are"
-        print(message, file=sys.stderr)
+    warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
         try:

@@ -32,8 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import Refuse, TableColumn, are_units, column_of, is_spelt_as_unit, size_in
-from solver.disk import LARGEST, TOO_LARGE
+from solver.columns import TableColumn, are_units, column_of, examples_of, is_spelt_as_unit, size_in
+from solver.disk import LARGEST, TOO_LARGE, Refuse
 
 Row = tuple[int, list[str]]
 """Number of a line, and its cells."""
@@ -49,30 +49,6 @@ class Table:
     rows: Sequence[Row]
     separator: str
     refuse: Refuse
-
-    def message(
-        self,
-        columns: Sequence[TableColumn],
-        names: Sequence[str],
-        units: Sequence[str],
-        numbers: Array,
-        each: str = "points",
-    ) -> str:
-        """Describe what was understood of columns, with names and units for those that lack them.
-
-        `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named. `each`
-        is what its lines are called.
-        """
-        parts = [
-            column.message(name, unit)
-            for column, name, unit in zip(columns, names, units, strict=True)
-        ]
-        unit = columns[-1].unit or units[-1]
-        low, high = numbers[-1].min(), numbers[-1].max()
-        ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
-        others = [repr(column.name) for column in self.columns if column not in columns]
-        passed = f"; passed over: {', '.join(others)}" if others else ""
-        return f"{', '.join(parts)}, {numbers.shape[1]} {each}, {ends}{passed}"
 
     def find(
         self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
@@ -101,14 +77,64 @@ class Table:
                 return likely[0]
         return None
 
-    def numbers(self, columns: Sequence[TableColumn]) -> Array:
-        """Numbers of some columns as they are written, shape (n_columns, n_rows).
+    def choose(
+        self,
+        columns: Sequence[TableColumn],
+        kinds: Collection[str],
+        unit: str,
+        key: str = "",
+        remedy: str = "add that column",
+    ) -> TableColumn:
+        """Column of a quantity among some, as described above; refuse a head that names none."""
+        column = self.find(columns, kinds, unit, key)
+        if column is None:
+            wanted = f"{' or '.join(sorted(kinds))} in {examples_of(unit)}"
+            has = ", ".join(repr(column.name) for column in self.columns)
+            raise self.refuse(f"its head names no {wanted} (it has {has}): {remedy}")
+        return column
+
+    def read(
+        self,
+        columns: Sequence[TableColumn],
+        names: Sequence[str],
+        units: Sequence[str],
+        each: str = "points",
+    ) -> tuple[Array, str]:
+        """Read numbers of some columns.
+
+        Parameters
+        ----------
+        columns
+            Which of them.
+        names, units
+            What they are called where they lack a name, and the units that they are read in.
+        each
+            What lines are called.
+
+        Returns
+        -------
+        Numbers in these units, shape (n_columns, n_rows), and what was understood.
 
         Raises
         ------
         SettingError
-            For a cell that is no finite number, named with its line.
+            For a unit of another quantity, and a cell that is no finite number, with its line.
         """
+        sizes = [
+            column.size(unit, self.refuse) for column, unit in zip(columns, units, strict=True)
+        ]
+        numbers = self._numbers(columns)
+        heads = zip(columns, names, units, strict=True)
+        parts = ", ".join(column.message(name, unit) for column, name, unit in heads)
+        unit = columns[-1].unit or units[-1]
+        low, high = numbers[-1].min(), numbers[-1].max()
+        ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
+        others = [repr(column.name) for column in self.columns if column not in columns]
+        passed = f"; passed over: {', '.join(others)}" if others else ""
+        message = f"{parts}, {numbers.shape[1]} {each}, {ends}{passed}"
+        return numbers * np.array(sizes)[:, None], message
+
+    def _numbers(self, columns: Sequence[TableColumn]) -> Array:
         places = [column.place for column in columns]
         cells = [
             [row[place] if place < len(row) else "" for place in places] for _, row in self.rows

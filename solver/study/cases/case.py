@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.files import scene_settings
+from solver.files import check_keys, placed, read_toml, scene_settings
 from solver.scenes import CATALOGUE
 from solver.scenes.entry import Emblem
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
-from solver.toml_files import check_keys, placed, read_toml
 
 KEYS = {
     "order": int,
