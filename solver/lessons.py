@@ -94,8 +94,8 @@ class Claim:
         """
         quantity, value = self.quantity, self.quantity(run)
         holds, words = self.low <= value <= self.high, _written(value, quantity.unit)
-        if quantity.at_instant is not None:
-            seen = quantity.at_instant(run, round(share * (run.problem.n_instants - 1)))
+        if quantity.when is not None:
+            seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
             if not self.low <= seen <= self.high:
                 holds = False
                 words += f", but {_written(seen, quantity.unit)} at the instant of the plots"
