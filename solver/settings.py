@@ -197,7 +197,6 @@ class Settings(Checked):
         "is then put beside them. none: only iterate.",
         group="Method",
         title="Finish",
-        aliases={"status": "at-once", "at once": "at-once"},
     )
     accuracy = quantity(
         0.01,
