@@ -6,7 +6,7 @@ from functools import partial
 
 from app.state import PageState
 from solver.curves import curve_of
-from solver.definitions import CurveParameter, SettingError, about
+from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
 from solver.remarks import ends_of_tables
 from solver.scenes import discretise, loop_of
@@ -68,29 +68,17 @@ def table_of(data: bytes | str, source: str) -> Table:
     return read_table(data, partial(SettingError, "the table", source, can))
 
 
-def paths_of(settings: Settings) -> dict[str, CurveParameter]:
-    """Paths over time that do something."""
-    return {
-        name: definition
-        for name, definition in settings.definitions().items()
-        if isinstance(definition, CurveParameter)
-        and definition.abscissa == "time"
-        and settings.applies(name)
-    }
-
-
 def path_of(table: Table, settings: Settings) -> str:
     """The path over time that the head of a table names, or the only one, or that of the load."""
-    paths = paths_of(settings)
-    named = paths.keys() & {column.key for column in table.columns}
-    loads = [name for name, definition in paths.items() if about(definition).group == "Load"]
+    paths, definitions = settings.paths, settings.definitions()
+    named = {*paths} & {column.key for column in table.columns}
+    loads = [name for name in paths if about(definitions[name]).group == "Load"]
     chosen = list(named or (paths if len(paths) == 1 else loads))
     if len(chosen) == 1:
         return chosen[0]
     if not paths:
         raise table.refuse("no load path applies: have a side displaced or loaded first")
-    first = next(iter(paths))
-    raise table.refuse(f"name one of {', '.join(paths)} in its first line, as in time,{first}")
+    raise table.refuse(f"name one of {', '.join(paths)} in its first line, as in time,{paths[0]}")
 
 
 def axes_on(state: PageState) -> Axes:

@@ -182,7 +182,7 @@ def _print_figures(
         return
     for name, value in figures.items():
         for line in value if isinstance(value, list) else [value]:
-            print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+            print(f"{name:<20} {f'{line:.6g}' if isinstance(line, float) else line}")
     for figure in of_loop:
         when = "in all" if figure.name == "energy" else f"at {time_of_load:.6g} s"
         number = f"{figure.value:.6g} {figure.unit}".strip()
@@ -197,12 +197,6 @@ def _finite(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _finite(entry) for name, entry in value.items()}
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _number(name: str, value: float) -> str:
-    """Text of a relative error, or the ratio of squares that the indicator is: rounding as 0."""
-    rounding = float(np.finfo(float).eps) ** (2 if name == "indicator" else 1)
-    return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
 def _distance(problem: Problem, limit: float) -> Distance | None:

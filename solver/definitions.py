@@ -226,7 +226,7 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
         if value not in definition.objects:
             raise refuse("choose one of these")
         return value
-    if not _is_number(value):
+    if not is_number(value):
         raise refuse("write a number")
     low, high = definition.bounds
     if not low <= value <= high:
@@ -238,7 +238,8 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     return int(value)
 
 
-def _is_number(value: object) -> TypeGuard[float]:
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether it is a number, and no truth value."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -256,7 +257,7 @@ def _checked_curve(
         if not isinstance(row, list | tuple) or len(row) != size:
             what = "a pair of numbers" if definition.is_path else f"{size} numbers"
             raise refuse(f"row {number} must be {what}")
-        if not all(map(_is_number, row)):
+        if not all(map(is_number, row)):
             raise refuse(f"row {number} has an entry that is not a number")
         columns = definition.columns, definition.units, definition.bounds
         for entry, name, unit, (low, high) in zip(row, *columns, strict=True):

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.checked import dump
-from solver.definitions import SettingError
+from solver.definitions import SettingError, is_number
 from solver.files import check_keys, placed, read_toml, scene_settings
 from solver.settings import Settings
 from solver.study.quantities import reading
@@ -311,9 +311,9 @@ def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
     if value == "never" and tolerance is None:
         return math.inf, math.inf, "never"
     if isinstance(value, list) and tolerance is None and len(value) == 2:
-        if all(map(_is_number, value)) and value[0] <= value[1]:
+        if all(map(is_number, value)) and value[0] <= value[1]:
             return value[0], value[1], f"{value[0]:g} to {value[1]:g}"
-    elif _is_number(value) and tolerance is not None:
+    elif is_number(value) and tolerance is not None:
         if not 0.0 <= tolerance < 1.0:
             raise SettingError("tolerance", tolerance, "a share from 0 to below 1", "mend it")
         off = abs(value) * tolerance
@@ -321,7 +321,3 @@ def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
     allowed = 'a number with a tolerance, a range [low, high], or "never"'
     remedy = "write a tolerance beside a number, and only there"
     raise SettingError("expected", value, allowed, remedy)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

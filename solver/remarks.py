@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.definitions import CurveParameter
 from solver.discrete.rigid_stack import is_upright
 from solver.discrete.small_strain import beyond_small_strain
 from solver.discrete.stack import Stack
@@ -43,14 +42,7 @@ def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
 def ends_of_tables(settings: Settings) -> dict[str, float]:
     """Last time, s, of every load path that is a table, by the name of its setting."""
     values = settings.values()
-    return {
-        name: values[name][-1][0]
-        for name, definition in settings.definitions().items()
-        if isinstance(definition, CurveParameter)
-        and definition.abscissa == "time"
-        and isinstance(values[name], tuple)
-        and settings.applies(name)
-    }
+    return {name: values[name][-1][0] for name in settings.paths if isinstance(values[name], tuple)}
 
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:

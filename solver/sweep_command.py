@@ -32,8 +32,8 @@ from solver.study.sweep.run import field_file
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0
 """Seconds that a run may take, unless somebody says otherwise."""
-OFTEN, SELDOM = 0.2, 10.0
-"""Seconds between two lines of progress, on a terminal and elsewhere."""
+OFTEN = 3.0
+"""Seconds between two lines of progress."""
 
 
 def add_sweep(commands: Any) -> None:
@@ -114,15 +114,12 @@ def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace)
 
 def followed(rows: Iterable[Row], size: int, done: int) -> Iterator[Row]:
     """Print on stderr, as rows pass, how many there are and how long the others will take."""
-    on_terminal = sys.stderr.isatty()
-    start, ends = ("\r", "") if on_terminal else ("", "\n")
     began = printed = time.monotonic()
     for number, row in enumerate(rows, start=1):
         yield row
         now = time.monotonic()
-        is_last = done + number == size
-        if now - printed > (OFTEN if on_terminal else SELDOM) or (is_last and on_terminal):
+        if now - printed > OFTEN:
             left = (now - began) / number * (size - done - number)
             line = f"{done + number} of {size} runs, {left:.0f} s left"
-            print(f"{start}{line:<40}", end="\n" if is_last else ends, file=sys.stderr, flush=True)
+            print(line, file=sys.stderr, flush=True)
             printed = now

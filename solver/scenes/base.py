@@ -281,12 +281,6 @@ class SceneSettings(Settings):
         shapes = (self._shapes.get(getattr(self, name)) for name in self.paths)
         return any(shape is not None and shape.repeats is not None for shape in shapes)
 
-    @property
-    def paths(self) -> tuple[str, ...]:
-        """Names of the settings that are paths over time and do something."""
-        names = (name for name in self.definitions() if f"_{name}".endswith("_load"))
-        return tuple(name for name in names if self.applies(name))
-
     def times(self) -> Array:
         """Instants, shape (n_instants,), s: points of all paths, and others spread between them."""
         return self._times
