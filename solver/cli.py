@@ -19,7 +19,6 @@ import numpy as np
 
 from solver.console import (
     add_command,
-    add_command_of_scene,
     announce,
     given,
     refusing,
@@ -94,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     prog = "slipfront" if is_installed else "python -m solver"
     parser = argparse.ArgumentParser(prog=prog, description=__doc__)
     commands = parser.add_subparsers(required=True)
-    run = add_command_of_scene(commands, "run", "run one scene to its stop rule", _run)
+    run = add_command(commands, "run", "run one scene to its stop rule", _run, of_scene=True)
     run.add_argument("--out", type=Path, metavar="FILE.npz", help="write the result here")
     run.add_argument("--json", action="store_true", help="print the key figures as JSON")
     run.add_argument(

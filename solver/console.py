@@ -22,21 +22,22 @@ from solver.settings import Settings
 
 
 def add_command(
-    commands: Any, name: str, purpose: str, command: Callable[[argparse.Namespace], int]
+    commands: Any,
+    name: str,
+    purpose: str,
+    command: Callable[[argparse.Namespace], int],
+    *,
+    of_scene: bool = False,
 ) -> argparse.ArgumentParser:
-    """Add a command."""
+    """Add a command; one of a scene takes that and its settings."""
     parser: argparse.ArgumentParser = commands.add_parser(name, help=purpose)
     parser.set_defaults(command=command)
-    return parser
-
-
-def add_command_of_scene(
-    commands: Any, name: str, purpose: str, command: Callable[[argparse.Namespace], int]
-) -> argparse.ArgumentParser:
-    """Add a command that takes a scene and its settings."""
-    parser = add_command(commands, name, purpose, command)
-    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    if of_scene:
+        scene = "a name of the catalogue, or a saved settings file (.toml)"
+        parser.add_argument("scene", help=scene)
+        parser.add_argument(
+            "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes"
+        )
     return parser
 
 
@@ -77,16 +78,8 @@ def announce(
 ) -> None:
     """Print what a long or large run will take, before it begins.
 
-    Parameters
-    ----------
-    settings, problem
-        Of the run.
-    run
-        What it is called.
-    reference
-        Whether there is a reference beside it.
-    limit
-        Seconds after which it ends.
+    `run` is what it is called, `reference` whether there is one beside it, and `limit` the seconds
+    after which it ends.
     """
     cost = run_cost(problem, method_of(settings), settings.max_iterations, with_reference=reference)
     if not cost.is_large:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from solver.console import add_command, add_command_of_scene, given, writing
+from solver.console import add_command, given, writing
 from solver.definitions import SettingError
 from solver.files import scene_settings
 from solver.study.cases.case import case_from_file
@@ -49,7 +49,7 @@ def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
     figures = add_command(commands, "figures", "draw the paper's Figs. 3 to 8 again", _figures)
     purpose = "error against run time, all methods side by side"
-    study = add_command_of_scene(commands, "study", purpose, _study)
+    study = add_command(commands, "study", purpose, _study, of_scene=True)
     study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
     study.add_argument("--large", action="store_true", help="sizes that take minutes, too")
     purpose = "stiff and extreme cases, or random runs, each with a verdict"

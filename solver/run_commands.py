@@ -11,7 +11,6 @@ from typing import Any
 
 from solver.console import (
     add_command,
-    add_command_of_scene,
     announce,
     given,
     print_tables,
@@ -53,13 +52,13 @@ OFTEN = 0.3
 def add_checks(commands: Any) -> None:
     """Add the commands."""
     purpose = "whether elements and instants are enough for a quantity"
-    mesh = add_command_of_scene(commands, "mesh", purpose, _mesh)
+    mesh = add_command(commands, "mesh", purpose, _mesh, of_scene=True)
     mesh.add_argument("--of", required=True, metavar="NAME", help="what is asked of a run")
     purpose = "how far a run is from a measured loop, or another program"
-    compare = add_command_of_scene(commands, "compare", purpose, _compare)
+    compare = add_command(commands, "compare", purpose, _compare, of_scene=True)
     compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
     purpose = "settings that bring a run nearest to a measured loop"
-    fitting = add_command_of_scene(commands, "fit", purpose, _fit)
+    fitting = add_command(commands, "fit", purpose, _fit, of_scene=True)
     most = f"up to {MOST} settings"
     fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
     fitting.add_argument("--out", type=Path, default=Path("fit"), metavar="DIR")

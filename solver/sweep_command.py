@@ -10,7 +10,7 @@ from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
-from solver.console import add_command_of_scene, print_tables, warn, writing
+from solver.console import add_command, print_tables, warn, writing
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
@@ -39,7 +39,7 @@ OFTEN = 3.0
 def add_sweep(commands: Any) -> None:
     """Add the command."""
     purpose = "quantities of a run over up to two settings"
-    parser = add_command_of_scene(commands, "sweep", purpose, _sweep)
+    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True)
     parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
     parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
     parser.add_argument("--out", type=Path, default=Path("sweep"), metavar="DIR")

@@ -207,22 +207,20 @@ def read_table(data: bytes | str, refuse: Refuse) -> Table:
 
 
 def _text(data: bytes | str, refuse: Refuse) -> str:
-    text = data if isinstance(data, str) else _decoded(data)
+    if isinstance(data, str):
+        text = data
+    elif data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        text = data.decode("utf-16", "replace")
+    elif 0 in data[:2]:
+        text = data.decode("utf-16-le" if data[0] else "utf-16-be", "replace")
+    else:
+        try:
+            text = data.decode("utf-8")
+        except UnicodeDecodeError:
+            text = data.decode("cp1252", "replace")
     if "\0" in text:
         raise refuse("it is no text: save the table as CSV")
     return text.removeprefix("\ufeff")
-
-
-def _decoded(data: bytes) -> str:
-    encoding = "utf-8-sig"
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        encoding = "utf-16"
-    elif data and 0.4 < data.count(0) / len(data) <= 0.5:
-        encoding = "utf-16-be" if data[0] == 0 else "utf-16-le"
-    try:
-        return data.decode(encoding)
-    except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")
 
 
 def _is_number(cell: str) -> bool:
@@ -247,8 +245,6 @@ def _rows(lines: Sequence[str]) -> tuple[str, list[Row]]:
         return sum(2 * numbers - cells for numbers, cells in counts if numbers > 1)
 
     separator = max(SEPARATORS, key=score)
-    if score(separator) <= 0:
-        separator = next((sign for sign in SEPARATORS if any(sign in line for line in last)), ",")
     rows = [(number, _cells(line, separator)) for number, line in enumerate(lines, start=1)]
     return separator, [(number, cells) for number, cells in rows if cells]
 
