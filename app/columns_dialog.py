@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -14,14 +13,14 @@ import panel_material_ui as pmui
 
 from app.refusals import message_of
 from app.state import PageState
-from app.tables import Content, axes_on, opened, path_of, table_of, with_path
+from app.tables import Content, axes_on, opened, path_of, paths_of, table_of, with_path
 from app.units import sizes_of
 from app.widgets import button, changing_text, dialog
-from solver.columns import BY_UNIT, TableColumn, quantities_of, size_in
+from solver.columns import TableColumn, size_in
 from solver.definitions import SettingError, about
 from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.measured_loop import MeasuredLoop, columns_of, loop_in
+from solver.study.measured_loop import KINDS, MeasuredLoop, columns_of, loop_in
 from solver.tables import Table
 
 HELP = (
@@ -101,12 +100,21 @@ class ColumnsDialog:
     """
 
     def __init__(self, state: PageState, tell: Callable[[str], None]) -> None:
-        self._state, self._tell = state, tell
+        self._state, self._tell, self._is_updating = state, tell, False
+        look: dict[str, Any] = {"size": "small", "margin": (6, 6)}
         self._preview = pn.pane.DataFrame(None, index=False, margin=(0, 6), max_height=190)
+        self.use = pmui.Select(label="Use it as", width=460, **look)
+        self.columns = [pmui.Select(width=220, **look) for _ in range(3)]
+        self.units = [pmui.Select(label="in", width=110, **look) for _ in range(3)]
+        self._rows = [
+            pn.Row(*pair, margin=0) for pair in zip(self.columns, self.units, strict=True)
+        ]
         self._message = changing_text(margin=(6, 6))
-        self.columns: list[pmui.Select] = []
-        self.units: list[pmui.Select] = []
-        self.view = dialog("Columns and units", width_option="sm")
+        fields = self._preview, self.use, *self._rows, self._message
+        self.view = dialog("Columns and units", *fields, width_option="sm")
+        self.use.param.watch(lambda event: self._on_use(), "value")
+        for field in (*self.columns, *self.units):
+            field.param.watch(lambda event: self._on_field(event.obj), "value")
 
     def load(self, table: Table, source: str) -> bool:
         """Have another table; whether there are columns to choose."""
@@ -117,27 +125,32 @@ class ColumnsDialog:
         names = names_of(table)
         cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
         self._preview.object = pd.DataFrame([row[: len(names)] for row in cells], columns=names)
-        self._paths = settings.paths
-        titles = {name: about(settings.definitions()[name]).title for name in self._paths}
+        self._paths = paths_of(settings)
+        titles = {name: about(definition).title for name, definition in self._paths.items()}
         driven = [name for name in self._paths if self._axis_of(name) is not None]
         kinds = {LOOP: LOOP}
         kinds |= {f"{LOOP}, and {titles[name]}": f"{BOTH} {name}" for name in driven}
         kinds |= {title: name for name, title in titles.items()}
-        used = LOOP
         try:
             columns_of(table, self._axes)
+            used = LOOP
         except SettingError:
-            with suppress(SettingError):
-                used = path_of(table, settings)
-        self.use = _select("Use it as", 460, options=kinds, value=used)
+            used = self._guessed_path(table, settings)
+        self._is_updating = True
+        self.use.param.update(options=kinds, value=used)
         self._fit()
-        self.use.param.watch(lambda event: self._fit(), "value")
-        self.use.param.watch(lambda event: self._take(), "value")
+        self._is_updating = False
         return True
+
+    def _guessed_path(self, table: Table, settings: Settings) -> str:
+        with suppress(SettingError):
+            return path_of(table, settings)
+        return LOOP
 
     def show(self) -> None:
         """Open it, for the scene as it is now."""
-        if (axes_on(self._state), self._state.settings.paths) != (self._axes, self._paths):
+        now = axes_on(self._state), paths_of(self._state.settings).keys()
+        if now != (self._axes, self._paths.keys()):
             self.load(self._given, self._source)
         self._message.object = self._refused() or ""
         self.view.open = True
@@ -153,50 +166,61 @@ class ColumnsDialog:
         """Title, unit and quantities of the columns that are wanted."""
         time = ("Time", "s", {"time"})
         if self.use.value in self._paths:
-            definition = self._state.settings.definitions()[self.use.value]
+            definition = self._paths[self.use.value]
             unit = self._state.settings.curve_units(self.use.value)[1].split(" or ")[0]
-            kinds = {*quantities_of(definition.ordinate, unit)}
-            return [time, (about(definition).title, unit, kinds)]
-        return [time, *((title, unit, BY_UNIT[unit]) for title, unit in self._axes)]
+            kinds = TableColumn(0, name=definition.ordinate).quantities[0] | KINDS.get(unit, set())
+            return [time, (about(definition).title, unit, set(kinds))]
+        return [time, *((title, unit, KINDS[unit]) for title, unit in self._axes)]
 
     def _fit(self) -> None:
-        """Show the fields that the use needs, with what the head says."""
+        """Have the fields that the use needs, with what the head says."""
+        columns, roles = self._table.columns, self._roles
         known = {name: place for place, name in enumerate(names_of(self._given))}
-        free = list(self._table.columns[:-1])
-        pairs = []
-        for place, (title, si, kinds) in enumerate(self._roles):
-            found, other = None, {}
+        row, free = len(known), list(columns[:-1])
+        for place, (column, unit) in enumerate(zip(self.columns, self.units, strict=True)):
+            self._rows[place].visible = place < len(roles)
+            if place >= len(roles):
+                continue
+            title, si, kinds = roles[place]
+            found = None
             with suppress(SettingError):
                 found = self._table.find(free, kinds, si)
-            if place == 0:
-                other = {NONE: -1} if self.use.value == LOOP else {}
-                other |= {ROW: len(known)}
-            elif found is None and free:
+            if found is None and place > 0 and free:
                 found = free[0]
             if found in free:
                 free.remove(found)
+            other = {ROW: row} if place == 0 else {}
+            if place == 0 and self.use.value == LOOP:
+                other = {NONE: -1, **other}
             value = found.place if found is not None else next(iter(other.values()), 0)
-            column = _select(title, 220, options={**other, **known}, value=value)
-            pairs.append((column, _select("in", 110, **self._units_of(value, si))))
-            column.param.watch(partial(self._offer, place, si), "value")
-        self.columns, self.units = map(list, zip(*pairs, strict=True))
-        for field in (*self.columns, *self.units):
-            field.param.watch(lambda event: self._take(), "value")
-        rows = [pn.Row(*pair, margin=0) for pair in pairs]
-        self.view[:] = [self._preview, self.use, *rows, self._message]
+            column.param.update(label=title, options={**other, **known}, value=value)
+            self._offer(unit, found, si)
 
-    def _offer(self, place: int, si: str, event: Any) -> None:
-        """Offer the units of another column."""
-        self.units[place].param.update(**self._units_of(event.new, si))
-
-    def _units_of(self, place: int, si: str) -> dict[str, Any]:
-        """Units of a quantity, and that of the head of a column."""
+    def _offer(self, field: Any, column: TableColumn | None, si: str) -> None:
+        """Offer the units of a quantity, with that of the head."""
         units = TIMES if si == "s" else list(sizes_of(si))
-        given = self._table.columns[place].unit if place >= 0 else ""
-        size = size_in(given, si) if given else None
-        same = [unit for unit in units if size is not None and size_in(unit, si) == size]
-        value = same[0] if same else given if size is not None else si
-        return {"options": units if value in units else [value, *units], "value": value}
+        given = column.unit if column is not None and size_in(column.unit, si) else ""
+        same = [unit for unit in units if given and size_in(unit, si) == size_in(given, si)]
+        value = same[0] if same else given or si
+        field.param.update(options=[*units] if value in units else [value, *units], value=value)
+
+    def _on_use(self) -> None:
+        if not self._is_updating:
+            self._is_updating = True
+            self._fit()
+            self._is_updating = False
+            self._take()
+
+    def _on_field(self, field: Any) -> None:
+        if self._is_updating:
+            return
+        if field in self.columns:
+            place = self.columns.index(field)
+            chosen = self._table.columns[field.value] if field.value >= 0 else None
+            self._is_updating = True
+            self._offer(self.units[place], chosen, self._roles[place][1])
+            self._is_updating = False
+        self._take()
 
     def _take(self) -> None:
         """Use the table as it is said."""
@@ -216,10 +240,11 @@ class ColumnsDialog:
 
     def _read(self, settings: Settings) -> tuple[list[Content], str]:
         """What the table is, as it is used, and what was understood."""
-        columns = self._table.columns
+        columns, count = self._table.columns, len(self._roles)
+        pairs = zip(self.columns[:count], self.units[:count], strict=True)
         time, *rest = (
             replace(columns[column.value], unit=unit.value) if column.value >= 0 else None
-            for column, unit in zip(self.columns, self.units, strict=True)
+            for column, unit in pairs
         )
         use: str = self.use.value
         if use in self._paths:
@@ -241,10 +266,6 @@ class ColumnsDialog:
         """The table with the columns of a path alone, named as it wants them."""
         named = [replace(c, name=n) for c, n in zip(columns, ("time", name), strict=True)]
         return replace(self._table, columns=named)
-
-
-def _select(label: str, width: int, **rest: Any) -> pmui.Select:
-    return pmui.Select(label=label, width=width, size="small", margin=(6, 6), **rest)
 
 
 def names_of(table: Table) -> list[str]:

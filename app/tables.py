@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from app.state import PageState
 from solver.curves import curve_of
-from solver.definitions import SettingError, about
+from solver.definitions import CurveParameter, SettingError, about
 from solver.files import settings_from_toml
 from solver.remarks import ends_of_tables
 from solver.scenes import discretise, loop_of
@@ -64,21 +62,36 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 def table_of(data: bytes | str, source: str) -> Table:
     """Table of a file, whatever it is of."""
-    can = "a table of time and value"
-    return read_table(data, partial(SettingError, "the table", source, can))
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError("the table", source, "a table of time and value", remedy)
+
+    return read_table(data, refuse)
+
+
+def paths_of(settings: Settings) -> dict[str, CurveParameter]:
+    """Paths over time that do something."""
+    return {
+        name: definition
+        for name, definition in settings.definitions().items()
+        if isinstance(definition, CurveParameter)
+        and definition.abscissa == "time"
+        and settings.applies(name)
+    }
 
 
 def path_of(table: Table, settings: Settings) -> str:
     """The path over time that the head of a table names, or the only one, or that of the load."""
-    paths, definitions = settings.paths, settings.definitions()
-    named = {*paths} & {column.key for column in table.columns}
-    loads = [name for name in paths if about(definitions[name]).group == "Load"]
+    paths = paths_of(settings)
+    named = paths.keys() & {column.key for column in table.columns}
+    loads = [name for name, definition in paths.items() if about(definition).group == "Load"]
     chosen = list(named or (paths if len(paths) == 1 else loads))
     if len(chosen) == 1:
         return chosen[0]
     if not paths:
         raise table.refuse("no load path applies: have a side displaced or loaded first")
-    raise table.refuse(f"name one of {', '.join(paths)} in its first line, as in time,{paths[0]}")
+    first = next(iter(paths))
+    raise table.refuse(f"name one of {', '.join(paths)} in its first line, as in time,{first}")
 
 
 def axes_on(state: PageState) -> Axes:

@@ -40,7 +40,7 @@ WORDS = {
     "frequency": "frequency frequenz",
 }
 """Quantities, and what heads call them beside that, in small letters."""
-BY_UNIT = {
+KINDS = {
     "m": {"displacement"},
     "N": {"force", "friction force"},
     "N/m": {"force"},
@@ -181,7 +181,7 @@ def column_of(place: int, line: int, head: str) -> TableColumn:
 def quantities_of(title: str, units: str) -> Collection[str]:
     """Quantities that a title names, or else those of one of some units, such as `Pa or m`."""
     named = TableColumn(0, name=title).quantities[0]
-    return named or set().union(*(BY_UNIT.get(unit, ()) for unit in units.split(" or ")))
+    return named or set().union(*(KINDS.get(unit, ()) for unit in units.split(" or ")))
 
 
 def are_units(cells: list[str]) -> bool:

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import BY_UNIT, TableColumn
+from solver.columns import KINDS, TableColumn
 from solver.definitions import SettingError
 from solver.discrete.structure import Loop
 from solver.study.comparison import FEWEST, MOST
@@ -109,7 +109,7 @@ def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColum
     both = []
     for title, unit in axes:
         remedy = f"name that of {title}, {unit}"
-        both.append(table.choose(rest, BY_UNIT[unit], unit, remedy=remedy))
+        both.append(table.choose(rest, KINDS[unit], unit, remedy=remedy))
         rest.remove(both[-1])
     return time, both[0], both[1]
 
