@@ -20,20 +20,17 @@ class Parameter:
     words
         What it adds to the title, with a place for the number.
     bounds
-        Smallest and largest.
-    whole
-        Whether only whole numbers have a meaning.
+        Smallest and largest, integers where only whole numbers have a meaning.
     needed
         Whether the quantity has no meaning without it.
     """
 
     words: str
     bounds: tuple[float, float]
-    whole: bool = False
     needed: bool = False
 
 
-CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
+CYCLE = Parameter(" in cycle {:g}", (1, 10_000))
 WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 """An error that is to be reached."""
 

@@ -19,7 +19,7 @@ from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun, finished_run, settle
 from solver.study.quantities.quantity import WITHIN, Parameter, Quantity, quantity
 
-ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
+ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000))
 STATUS = Path("/proc/self/status")
 PROGRAM = f"import sys\nfrom {__name__} import growth\nprint(growth(sys.stdin.read()))"
 ROOT = Path(__file__).resolve().parents[3]
