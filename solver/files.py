@@ -125,6 +125,12 @@ def check_keys(
             raise SettingError(name, None, known, "this key is needed: write it")
 
 
+def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -> None:
+    """Refuse a value that does not meet what is required of it."""
+    if not is_met:
+        raise SettingError(name, value, allowed, remedy)
+
+
 @contextlib.contextmanager
 def placed(place: str) -> Iterator[None]:
     """Put the file, or the place in it, before what is refused in it."""

@@ -15,7 +15,7 @@ from typing import Any
 
 from solver.checked import dump
 from solver.definitions import SettingError, is_number
-from solver.files import check_keys, placed, read_toml, scene_settings
+from solver.files import check_keys, placed, read_toml, require, scene_settings
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -55,7 +55,6 @@ OF_CHECKPOINT = {
 """Keys of a checkpoint; `settings` and `tolerance` may be left out."""
 OF_ENDING = {"claim": str, "settings": dict, "says": str}
 """Keys of one that tells with which words a run ends; `settings` may be left out."""
-INTERVAL = "a share of the interval, from 0 to 1"
 MOST_CONTROLS = 2
 FEWEST_POINTS = 3
 """Of a curve that one may draw."""
@@ -231,49 +230,48 @@ def _lesson(name: str, values: dict[str, Any]) -> Lesson:
     kind = scene_settings(values.pop("scene"))
     with placed("settings"):
         settings = kind.checked(values["settings"])
-    for key in {"choices", "controls", "views", "beside"} & values.keys():
-        names = values[key]
-        if not names or not all(isinstance(text, str) and text for text in names):
-            raise SettingError(key, names, "a list of texts, at least one", "write them in quotes")
+    for key in ("choices", "controls", "views", "beside"):
+        names = values.get(key)
+        if names is None:
+            continue
+        are_names = bool(names) and all(isinstance(text, str) and text for text in names)
+        require(are_names, key, names, "a list of texts, at least one", "write them in quotes")
         values[key] = tuple(names)
-    count, until, controls = len(values["choices"]), values.get("until", 1.0), values["controls"]
-    working = [own for own in settings.definitions() if settings.applies(own)]
-    idle = [control for control in controls if control not in working]
-    allowed = f"the number of one of at least two choices, of which there are {count}"
-    for key, is_right, can, remedy in (
-        ("right", 1 <= values["right"] <= count >= 2, allowed, "count from 1"),
-        ("instant", 0.0 <= values["instant"] <= 1.0, INTERVAL, "say where its plots stand"),
-        ("until", 0.0 < until <= 1.0, f"{INTERVAL} and above 0", "say how far its picture moves"),
-        ("subject", values["subject"] in SUBJECTS, ", ".join(SUBJECTS), "say what it is about"),
-        (
-            "beside",
-            {*values.get("beside", ())} <= {*values["views"]},
-            ", ".join(values["views"]),
-            "choose some of its views",
-        ),
-        (
-            "controls",
-            len(controls) <= MOST_CONTROLS,
-            f"at most {MOST_CONTROLS} settings",
-            "a lesson is about one thing",
-        ),
-    ):
-        if not is_right:
-            raise SettingError(key, values.get(key), can, remedy)
-    if idle:
-        remedy = "name a setting that does something with the lesson's settings"
-        raise SettingError("controls", idle[0], ", ".join(working), remedy)
+    _check(values, settings)
     for key in ("text", "explanation"):
         with placed(key):
-            values[key] = _paragraphs(values[key], controls)
+            values[key] = _paragraphs(values[key], values["controls"])
     checkpoints = tuple(_checkpoints(values["checkpoints"], settings))
     changed = {"settings": settings, "right": values["right"] - 1, "checkpoints": checkpoints}
     lesson = Lesson(name=name, **(values | changed))
     points = [place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)]
-    if lesson.draw and len(points) < FEWEST_POINTS:
-        allowed = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
-        raise SettingError("draw", lesson.draw, allowed, "write more checkpoints, or leave it out")
+    is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
+    can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
+    require(is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out")
     return lesson
+
+
+def _check(values: Mapping[str, Any], settings: Settings) -> None:
+    """Refuse numbers out of range, and names of what there is not."""
+    right, count, controls = values["right"], len(values["choices"]), values["controls"]
+    can = f"the number of one of at least two choices, of which there are {count}"
+    require(1 <= right <= count >= 2, "right", right, can, "count from 1")
+    subject, instant, until = values["subject"], values["instant"], values.get("until", 1.0)
+    known = ", ".join(SUBJECTS)
+    require(subject in SUBJECTS, "subject", subject, known, "say what it is about")
+    can = "a share of the interval, from 0 to 1"
+    require(0.0 <= instant <= 1.0, "instant", instant, can, "say where its plots stand")
+    can += " and above 0"
+    require(0.0 < until <= 1.0, "until", until, can, "say how far its picture moves")
+    beside, views = values.get("beside", ()), values["views"]
+    require({*beside} <= {*views}, "beside", beside, ", ".join(views), "choose some of its views")
+    can = f"at most {MOST_CONTROLS} settings"
+    is_few = len(controls) <= MOST_CONTROLS
+    require(is_few, "controls", controls, can, "a lesson is about one thing")
+    working = [own for own in settings.definitions() if settings.applies(own)]
+    for control in controls:
+        remedy = "name a setting that does something with the lesson's settings"
+        require(control in working, "controls", control, ", ".join(working), remedy)
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
@@ -290,12 +288,11 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | EndingClaim]:
-    if not values:
-        raise SettingError("checkpoints", values, "at least one", "say what the lesson claims")
+    require(bool(values), "checkpoints", values, "at least one", "say what the lesson claims")
     for number, entry in enumerate(values, start=1):
         with placed(f"checkpoint {number}"):
-            if not isinstance(entry, dict):
-                raise SettingError("checkpoints", entry, "a table", "write [[checkpoints]]")
+            is_table = isinstance(entry, dict)
+            require(is_table, "checkpoints", entry, "a table", "write [[checkpoints]]")
             keys = OF_ENDING if "says" in entry else OF_CHECKPOINT
             check_keys(entry, keys, optional=("settings", "tolerance"))
             claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
