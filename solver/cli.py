@@ -9,7 +9,7 @@ import math
 import os
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -17,26 +17,25 @@ from typing import Any
 
 import numpy as np
 
+from solver.console import (
+    add_command,
+    announce,
+    given,
+    refusing,
+    warn,
+)
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.disk import check_place, why
-from solver.files import (
-    save_result,
-    scene_settings,
-    settings_from_command,
-    summary,
-)
-from solver.fit_command import add_fit
+from solver.files import save_result, scene_settings, summary
 from solver.latin import Ending, solve, solve_in_slabs
-from solver.latin.cost import RunCost, run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
-from solver.remarks import print_tables, remarks_before, warn
-from solver.report_commands import REFUSED, add_reports
+from solver.report_commands import add_reports
 from solver.run_commands import add_checks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -46,8 +45,8 @@ from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import Quantity
 from solver.sweep_command import add_sweep
 
-OUT_OF_MEMORY, INTERRUPTED = 3, 130
-"""Exit codes; the other is what shells have for a program that is ended by Ctrl-C."""
+REFUSED, OUT_OF_MEMORY, INTERRUPTED = 2, 3, 130
+"""Exit codes; the last is what shells have for a program that is ended by Ctrl-C."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -94,9 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     prog = "slipfront" if is_installed else "python -m solver"
     parser = argparse.ArgumentParser(prog=prog, description=__doc__)
     commands = parser.add_subparsers(required=True)
-    run = commands.add_parser("run", help="run one scene to its stop rule")
-    run.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
-    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    run = add_command(commands, "run", "run one scene to its stop rule", _run, of_scene=True)
     run.add_argument("--out", type=Path, metavar="FILE.npz", help="write the result here")
     run.add_argument("--json", action="store_true", help="print the key figures as JSON")
     run.add_argument(
@@ -120,16 +117,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--of", default="", metavar="NAME,...", help="print quantities of the run, too"
     )
-    run.set_defaults(command=_run)
-    scenes = commands.add_parser("scenes", help="list the scenes")
-    scenes.set_defaults(command=_scenes)
-    settings = commands.add_parser("settings", help="list the settings of a scene")
+    add_command(commands, "scenes", "list the scenes", _scenes)
+    settings = add_command(commands, "settings", "list the settings of a scene", _settings)
     settings.add_argument("scene")
-    settings.set_defaults(command=_settings)
     add_reports(commands)
     add_sweep(commands)
     add_checks(commands)
-    add_fit(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             further.load()(commands)
@@ -137,14 +130,15 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(chosen: argparse.Namespace) -> int:
-    settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    if chosen.out is not None:
-        with _writing(chosen.out):  # before the run, and not after it
-            check_place(chosen.out)
-    limit = _limit(chosen)
+    limit = math.inf if chosen.limit is None else chosen.limit
+    if not 0.0 < limit <= math.inf:
+        raise SettingError("--limit", limit, "seconds above 0", "give more, or leave it out")
     asked = [reading(name.strip()) for name in chosen.of.split(",") if name.strip()]
-    print_tables(tables)
-    warn(*remarks_before(settings, chosen.changes))
+    place = "a file in an existing folder that can be written"
+    if chosen.out is not None:
+        with refusing(chosen.out, place):  # before the run, and not after it
+            check_place(chosen.out)
+    settings, tables = given(chosen)
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
@@ -152,16 +146,15 @@ def _run(chosen: argparse.Namespace) -> int:
         warn("nothing acts on the structure: all loads are zero")
     method = method_of(settings)
     method = replace(method, stop=replace(method.stop, seconds=limit))
-    most, beside = settings.max_iterations, chosen.reference
-    watch = beside or any(one.reads == "indicators" for one in asked)
-    _announce(run_cost(problem, method, most, with_reference=beside), limit)
+    watch = chosen.reference or any(one.reads == "indicators" for one in asked)
+    announce(settings, problem, reference=chosen.reference, limit=limit)
     distance = _distance(problem, limit) if chosen.reference else None
     if chosen.slab is None:
         solution = solve(problem, method, distance=distance, watch=watch, spent=spent)
     else:
         solution = solve_in_slabs(problem, method, chosen.slab, distance=distance, spent=spent)
     if chosen.out is not None:
-        with _writing(chosen.out):
+        with refusing(chosen.out, place):
             save_result(chosen.out, settings, solution)
     loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
     if loose:
@@ -173,38 +166,6 @@ def _run(chosen: argparse.Namespace) -> int:
         run = FinishedRun(settings, solution)
         _print_figures(run, asked, tables, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
-
-
-def _limit(chosen: argparse.Namespace) -> float:
-    """Seconds that the run may take."""
-    if chosen.limit is None:
-        return math.inf
-    if not 0.0 < chosen.limit < math.inf:
-        raise SettingError("--limit", chosen.limit, "seconds above 0", "give more, or leave it out")
-    return float(chosen.limit)
-
-
-def _announce(cost: RunCost, limit: float) -> None:
-    """Print what a long or large run will take, before it begins."""
-    if not cost.is_large:
-        return
-    line = f"this will take about {cost}"
-    if cost.reference > 0.2 * cost.seconds:
-        share = round(100.0 * cost.reference / cost.seconds)
-        line += f", {share} % of the time for the reference, which --no-reference leaves out"
-    if limit < cost.seconds:
-        line += f"; --limit ends it after {limit:g} s"
-    warn(line)
-
-
-@contextlib.contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    """Refuse a file that cannot be written."""
-    try:
-        yield
-    except OSError as problem:
-        can = "a file in an existing folder that can be written"
-        raise SettingError("--out", str(path), can, why(problem)) from None
 
 
 def _print_figures(
@@ -220,7 +181,7 @@ def _print_figures(
         return
     for name, value in figures.items():
         for line in value if isinstance(value, list) else [value]:
-            print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+            print(f"{name:<20} {f'{line:.6g}' if isinstance(line, float) else line}")
     for figure in of_loop:
         when = "in all" if figure.name == "energy" else f"at {time_of_load:.6g} s"
         number = f"{figure.value:.6g} {figure.unit}".strip()
@@ -235,12 +196,6 @@ def _finite(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _finite(entry) for name, entry in value.items()}
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _number(name: str, value: float) -> str:
-    """Text of a relative error, or the ratio of squares that the indicator is: rounding as 0."""
-    rounding = float(np.finfo(float).eps) ** (2 if name == "indicator" else 1)
-    return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
 def _distance(problem: Problem, limit: float) -> Distance | None:

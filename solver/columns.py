@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
-from solver.definitions import SettingError
+from solver.disk import Refuse
 
-Refuse = Callable[[str], SettingError]
 WORDS = {
     "time": "time t zeit",
     "position": "position x ort stelle",
@@ -41,6 +40,18 @@ WORDS = {
     "frequency": "frequency frequenz",
 }
 """Quantities, and what heads call them beside that, in small letters."""
+KINDS = {
+    "m": {"displacement"},
+    "N": {"force", "friction force"},
+    "N/m": {"force"},
+    "Pa": {"pressure"},
+    "N·m": {"moment"},
+    "N·m/m": {"moment"},
+    "1/m": {"curvature"},
+    "rad": {"angle"},
+    "°": {"angle"},
+}
+"""Quantities by the unit of what they are read for."""
 _ENDINGS = "zeit", "kraft", "weg", "verschiebung", "druck", "spannung"
 _BRACKETS = re.compile(r"(.*?)\s*[\[(](?:in )?([^\[\]()]*)[\])][^\[\]()]*")
 _BEHIND = re.compile(r"(.*?)[\s,_/.:;-]+([^\s,_]+)")
@@ -165,6 +176,12 @@ def column_of(place: int, line: int, head: str) -> TableColumn:
         return TableColumn(place, line, re.sub(r"\s+in$", "", behind[1]), behind[2])
     match = match or _IN_OR_SLASH.fullmatch(head)
     return TableColumn(place, line, *(match.groups() if match else (head,)))
+
+
+def quantities_of(title: str, units: str) -> Collection[str]:
+    """Quantities that a title names, or else those of one of some units, such as `Pa or m`."""
+    named = TableColumn(0, name=title).quantities[0]
+    return named or set().union(*(KINDS.get(unit, ()) for unit in units.split(" or ")))
 
 
 def are_units(cells: list[str]) -> bool:

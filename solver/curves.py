@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.columns import TableColumn, examples_of
+from solver.columns import TableColumn, quantities_of
 from solver.definitions import CurveParameter, SettingError, allowed
-from solver.disk import read_bytes, why
+from solver.disk import read_bytes
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import Table, read_table
 
-_BY_UNIT = {"Pa": "pressure", "m": "displacement", "N·m/m": "moment", "N/m": "force"}
-"""Quantities of settings whose ordinate is called value."""
 _SETTINGS = {
     name
     for entry in CATALOGUE.values()
@@ -27,29 +25,17 @@ _SETTINGS = {
 """Names of curves that are no common words: a column of another one is not taken."""
 
 
-@dataclass(frozen=True)
-class GivenCurve:
-    """A curve out of a table.
-
-    Attributes
-    ----------
-    points
-        Abscissa and ordinate, or rows of a table, in the units of the setting.
-    message
-        What was understood.
-    """
+class GivenCurve(NamedTuple):
+    """Points of a curve, or rows of a table, in the units of the setting, and a message."""
 
     points: list[list[float]]
     message: str
 
 
 def curve_of(
-    table: Table,
-    definition: CurveParameter,
-    name: str,
-    units: Sequence[str],
+    table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> GivenCurve:
-    """Choose the columns of a curve, and read its points.
+    """Points of a curve in a table, and what was understood.
 
     Parameters
     ----------
@@ -66,68 +52,40 @@ def curve_of(
         If its columns cannot be chosen, for another unit, what is no number, or an abscissa that
         does not increase.
     """
-    columns = _chosen(table, definition, name, units)
-    sizes = [column.size(unit, table.refuse) for column, unit in zip(columns, units, strict=True)]
-    numbers = table.numbers(columns)
+    columns, each = table.columns, "points" if definition.is_path else "rows"
+    if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):
+        columns = _chosen(table, definition, name, units)
+    elif len(columns) != len(units):
+        *others, last = definition.columns
+        names = f"{', '.join(others)} and {last}"
+        raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
+    numbers, message = table.read(columns, definition.columns, units, each)
     falls = np.flatnonzero(np.diff(numbers[0]) <= 0.0)
     if definition.is_path and len(falls):
         line = table.rows[falls[0] + 1][0]
         remedy = f"line {line}: {definition.abscissa} must increase from row to row"
         loop = "; of a loop, as force over displacement, give the time of every row"
         raise table.refuse(remedy + (loop if definition.abscissa == "time" else ""))
-    each = "points" if definition.is_path else "rows"
-    message = table.message(columns, definition.columns, units, numbers, each)
-    return GivenCurve((numbers.T * sizes).tolist(), message)
+    return GivenCurve(numbers.T.tolist(), message)
 
 
 def _chosen(
-    table: Table,
-    definition: CurveParameter,
-    name: str,
-    units: Sequence[str],
-) -> Sequence[TableColumn]:
-    """Choose the columns of abscissa and ordinate, or of a table."""
-    columns = table.columns
-    if not any(c.is_known for c in columns) and not _SETTINGS.intersection(c.key for c in columns):
-        *others, last = definition.columns
-        if len(columns) != len(others) + 1:
-            names = f"{', '.join(others)} and {last}"
-            raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
-        return columns
-    likely = [column for column in columns if column.key == name or column.key not in _SETTINGS]
-    if not definition.is_path:
-        return _each(table, definition.columns, units)
-    kinds: Collection[str] = TableColumn(0, name=definition.ordinate).quantities[0]
-    kinds = kinds or {_BY_UNIT[unit] for unit in units[1].split(" or ")}
-    names = ", ".join(repr(column.name) for column in columns)
-    first = table.find(likely, {definition.abscissa}, units[0])
-    if first is None:
-        loop = ": a loop, as force over displacement, is no path over time"
-        raise table.refuse(
-            f"its head names no {definition.abscissa} (it has {names})"
-            f"{loop if definition.abscissa == 'time' else ''}; add that column"
-        )
-    rest = [column for column in likely if column is not first]
-    second = table.find(rest, kinds, units[1], name)
-    if second is None and len(columns) == 2 and rest:
-        second = None if rest[0].quantities[0] else rest[0]
-    if second is None:
-        wanted = f"{' or '.join(sorted(kinds))} in {examples_of(units[1])}"
-        remedy = f"its head names no {wanted} (it has {names}): name one of them {name}"
-        raise table.refuse(remedy)
-    return first, second
-
-
-def _each(table: Table, names: Sequence[str], units: Sequence[str]) -> Sequence[TableColumn]:
-    """Choose a column of every name."""
-    chosen = []
-    for name, unit in zip(names, units, strict=True):
-        rest = [column for column in table.columns if column not in chosen]
-        column = table.find(rest, {name}, unit)
-        if column is None:
-            has = ", ".join(repr(column.name) for column in table.columns)
-            raise table.refuse(f"its head names no {name} (it has {has}): add that column")
-        chosen.append(column)
+    table: Table, definition: CurveParameter, name: str, units: Sequence[str]
+) -> list[TableColumn]:
+    """Columns of a curve that a head names."""
+    free = [column for column in table.columns if column.key == name or column.key not in _SETTINGS]
+    chosen: list[TableColumn] = []
+    remedy, named, last = "add that column", "", len(units) - 1
+    if definition.is_path and definition.abscissa == "time":
+        remedy += "; a loop, as force over displacement, is no path over time"
+    for place, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
+        kinds: Collection[str] = {title}
+        if definition.is_path and place == last:
+            kinds, remedy, named = quantities_of(title, unit), f"name one of them {name}", name
+            if len(table.columns) == 2 and free and not free[0].quantities[0]:
+                return [*chosen, *free]
+        chosen.append(table.choose(free, kinds, unit, named, remedy))
+        free.remove(chosen[-1])
     return chosen
 
 
@@ -163,11 +121,6 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
 
 
 def _read_file(path: Path, definition: CurveParameter, name: str) -> Table:
-    def refuse(remedy: str) -> SettingError:
-        return SettingError(name, str(path), allowed(definition), remedy)
-
-    try:
-        data = read_bytes(path)
-    except (OSError, ValueError) as problem:  # no path at all is a ValueError
-        raise refuse(f"it is no preset, and no readable CSV file ({why(problem)})") from None
-    return read_table(data, refuse)
+    refuse = partial(SettingError, name, str(path), allowed(definition))
+    no_file = "it is no preset, and no readable CSV file"
+    return read_table(read_bytes(path, lambda why: refuse(f"{no_file} ({why})")), refuse)

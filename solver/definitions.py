@@ -9,10 +9,10 @@ import copy
 import difflib
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, TypeGuard
 
 import param
 
@@ -21,6 +21,7 @@ from solver.refusal import RefusedError, plain
 Pairs = tuple[tuple[float, float], ...]
 Rows = tuple[tuple[float, ...], ...]
 Parameter = param.Parameter[Any]
+ANY = -1e15, 1e15
 FAR = 1e6
 """Numbers from here on are no limits to anybody's problem, but to the digits of a computer."""
 
@@ -45,8 +46,6 @@ class About:
         Whether a slider over it should be logarithmic.
     applies
         Whether it does anything, given all the settings.
-    aliases
-        What files and scripts may say for one of its values.
     """
 
     group: str
@@ -54,15 +53,13 @@ class About:
     unit: str = ""
     logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
-    aliases: Mapping[str, str] = field(default_factory=dict)
 
 
 class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
     With more than two columns it is a table, whose rows stand in any order. `units` are those of
-    the columns, empty for a pure number; `bounds` their ends, of integers for whole numbers, or
-    empty.
+    the columns, empty for a pure number; `bounds` their ends, of integers for whole numbers.
     """
 
     __slots__ = ["bounds", "columns", "presets", "units"]
@@ -71,16 +68,13 @@ class CurveParameter(Parameter):
         self,
         default: str,
         presets: Iterable[str],
-        columns: Sequence[str],
-        units: Sequence[str],
-        bounds: Sequence[tuple[float, float]] = (),
+        columns: Mapping[str, tuple[str, tuple[float, float]]],
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
         self.presets = tuple(presets)
         self.columns = tuple(columns)
-        self.units = tuple(units)
-        self.bounds = tuple(bounds)
+        self.units, self.bounds = zip(*columns.values(), strict=True)
 
     @property
     def abscissa(self) -> str:
@@ -147,8 +141,8 @@ def curve(
     **record: Any,
 ) -> CurveParameter:
     """Path: a preset's name or a table of points."""
-    columns = abscissa, ordinate
-    return CurveParameter(default, presets, columns, units, **_common(doc, record))
+    columns = {name: (unit, ANY) for name, unit in zip((abscissa, ordinate), units, strict=True)}
+    return CurveParameter(default, presets, columns, **_common(doc, record))
 
 
 def table(
@@ -159,8 +153,7 @@ def table(
     **record: Any,
 ) -> CurveParameter:
     """Table: a preset's name or rows, with unit and bounds of each column."""
-    units, bounds = zip(*columns.values(), strict=True)
-    return CurveParameter(default, presets, [*columns], units, bounds, **_common(doc, record))
+    return CurveParameter(default, presets, columns, **_common(doc, record))
 
 
 def redefined(
@@ -222,10 +215,7 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     SettingError
         For a wrong type, or a value out of range.
     """
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError(name, value, allowed(definition), remedy)
-
+    refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(definition, CurveParameter):
         return _checked_curve(definition, value, refuse)
     if isinstance(definition, param.Boolean):
@@ -233,22 +223,24 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
             raise refuse("write true or false")
         return value
     if isinstance(definition, param.Selector):
-        meant = about(definition).aliases.get(value, value) if isinstance(value, str) else value
-        if meant not in definition.objects:
+        if value not in definition.objects:
             raise refuse("choose one of these")
-        return meant
-    if isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    if not is_number(value):
         raise refuse("write a number")
-    if isinstance(value, float) and not math.isfinite(value):
-        raise refuse("write a finite number")
     low, high = definition.bounds
     if not low <= value <= high:
         raise refuse("choose a value inside this range")
-    if isinstance(definition, param.Integer):
-        if value != int(value):
-            raise refuse("write a whole number")
-        return int(value)
-    return float(value)
+    if not isinstance(definition, param.Integer):
+        return float(value)
+    if value != int(value):
+        raise refuse("write a whole number")
+    return int(value)
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether it is a number, and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _checked_curve(
@@ -265,36 +257,21 @@ def _checked_curve(
         if not isinstance(row, list | tuple) or len(row) != size:
             what = "a pair of numbers" if definition.is_path else f"{size} numbers"
             raise refuse(f"row {number} must be {what}")
-        if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in row):
+        if not all(map(is_number, row)):
             raise refuse(f"row {number} has an entry that is not a number")
-        if not all(math.isfinite(entry) for entry in row if isinstance(entry, float)):
-            raise refuse(f"row {number} has an entry that is not finite")
-        if definition.bounds:
-            _check_row(definition, number, row, refuse)
-        elif any(abs(entry) > 1e15 for entry in row):
-            raise refuse(f"row {number} has an entry beyond {plain(1e15)} in size")
+        columns = definition.columns, definition.units, definition.bounds
+        for entry, name, unit, (low, high) in zip(row, *columns, strict=True):
+            if isinstance(entry, float) and not math.isfinite(entry):
+                raise refuse(f"row {number} has an entry that is not finite")
+            is_counted = isinstance(low, int)
+            if not low <= entry <= high or (is_counted and entry != int(entry)):
+                kind = "a whole number" if is_counted else "a number"
+                ends = " to ".join(f"{plain(end)} {unit}".strip() for end in (low, high))
+                raise refuse(f"row {number}: {name} is {plain(entry)}, give {kind} from {ends}")
         rows.append(tuple(map(float, row)))
-    for number, (before, after) in enumerate(pairwise(rows), start=2):
-        if definition.is_path and after[0] <= before[0]:
+        if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:
             raise refuse(f"row {number}: {definition.abscissa} must increase from row to row")
     return tuple(rows)
-
-
-def _check_row(
-    definition: CurveParameter,
-    number: int,
-    row: Sequence[float],
-    refuse: Callable[[str], SettingError],
-) -> None:
-    """Refuse an entry beyond the bounds of its column, and a share of what is counted."""
-    for name, unit, (low, high), entry in zip(
-        definition.columns, definition.units, definition.bounds, row, strict=True
-    ):
-        is_counted = isinstance(low, int)
-        if not low <= entry <= high or (is_counted and entry != int(entry)):
-            kind = "a whole number" if is_counted else "a number"
-            ends = " to ".join(f"{plain(end)} {unit}".strip() for end in (low, high))
-            raise refuse(f"row {number}: {name} is {plain(entry)}, give {kind} from {ends}")
 
 
 def parse(text: str) -> object:

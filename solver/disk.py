@@ -5,42 +5,43 @@ from __future__ import annotations
 import errno
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+from solver.definitions import SettingError
+
+Refuse = Callable[[str], SettingError]
+"""What makes a refusal out of what is to be done."""
 LARGEST = 4_000_000
 """Bytes of a file of settings, a table or a lesson, at most: some 200 000 points of a load path."""
 TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
-def read_bytes(path: Path) -> bytes:
+def read_bytes(path: Path, refuse: Refuse) -> bytes:
     """Bytes of a file; of one that is too large, or has no end, no more than it takes to know.
 
+    Parameters
+    ----------
+    path
+        Of the file.
+    refuse
+        Makes the refusal out of why it cannot be read.
+
     Raises
     ------
-    OSError
+    SettingError
         If it cannot be read, or is too large.
     """
-    with path.open("rb") as file:
-        data = file.read(LARGEST + 1)
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
+    except (OSError, ValueError) as problem:  # no path at all is a ValueError
+        raise refuse(why(problem)) from None
     if len(data) > LARGEST:
-        raise OSError(errno.EFBIG, TOO_LARGE)
+        raise refuse(TOO_LARGE)
     return data
-
-
-def read_text(path: Path) -> str:
-    """Text of a file, read as above.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read, or is too large.
-    UnicodeDecodeError
-        If it is no text in UTF-8.
-    """
-    return read_bytes(path).decode("utf-8-sig").replace("\r\n", "\n")
 
 
 @contextmanager

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +15,14 @@ import numpy as np
 
 from solver.curves import messages, read_tables
 from solver.definitions import SettingError, parse
-from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
+from solver.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
 from solver.latin import Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
 from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
+WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
 INDICATORS = "indicator", "behaviour", "estimated_error"
 ERRORS = "error_displacement", "error_force"
 """What is known of every iteration, beside its time; errors where there is a reference."""
@@ -42,20 +45,9 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
     SettingError
         For text that is no TOML, an unknown scene, or a refused setting.
     """
-    kind, values = _scene_and_values(text, source)
-    return kind.checked(values)
-
-
-def _scene_and_values(text: str, source: str) -> tuple[type[Settings], dict[str, object]]:
-    if len(text) > LARGEST:
-        raise SettingError(source, text[:60], "TOML", TOO_LARGE)
-    try:
-        values = tomllib.loads(text)
-    except (ValueError, RecursionError) as problem:
-        raise SettingError(source, text, "TOML", f"mend it: {problem}") from None
-    # What a case says beside its settings.
+    values = _parsed(text, source, text)
     values.pop("case", None)
-    return scene_settings(values.pop("scene", None)), values
+    return scene_settings(values.pop("scene", None)).checked(values)
 
 
 def settings_from_command(
@@ -70,14 +62,10 @@ def settings_from_command(
     """
     settings, tables = None, {}
     if scene.endswith(".toml"):
-        path = Path(scene)
-        try:
-            kind, values = _scene_and_values(read_text(path), f"settings file {scene}")
-        except (OSError, UnicodeDecodeError) as problem:
-            raise SettingError(
-                "settings file", scene, "a readable TOML file", why(problem)
-            ) from None
-        tables = read_tables(kind, values, path.parent)
+        values = read_toml(Path(scene), "settings file")
+        values.pop("case", None)
+        kind = scene_settings(values.pop("scene", None))
+        tables = read_tables(kind, values, Path(scene).parent)
         settings = kind.checked(values)
     else:
         kind = scene_settings(scene)
@@ -91,6 +79,66 @@ def settings_from_command(
     tables |= read_tables(kind, changes, Path())
     settings = settings.replace(**changes) if settings else kind.checked(changes)
     return settings, messages(tables, settings)
+
+
+def read_toml(path: Path, kind: str) -> dict[str, Any]:
+    """Content of a file in TOML.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    kind
+        What it is to be, used in messages.
+
+    Raises
+    ------
+    SettingError
+        For a file that cannot be read, or is no TOML.
+    """
+    refuse = partial(SettingError, kind, str(path), "a file that can be read")
+    return _parsed(read_bytes(path, refuse), kind, str(path))
+
+
+def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
+    if len(data) > LARGEST:
+        raise SettingError(name, shown[:60], "TOML", TOO_LARGE)
+    try:
+        return tomllib.loads(data if isinstance(data, str) else data.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as problem:
+        reason = " ".join(str(problem).split())
+        raise SettingError(name, shown, "TOML", f"mend it: {reason}") from None
+
+
+def check_keys(
+    values: Mapping[str, Any], keys: Mapping[str, Any], optional: tuple[str, ...] = ()
+) -> None:
+    """Refuse keys that there are not, keys that lack, and values of a wrong type."""
+    known = ", ".join(keys)
+    for name, value in values.items():
+        if name not in keys:
+            raise SettingError(name, value, known, "there is no such key: leave it out")
+        if not isinstance(value, keys[name]) or isinstance(value, bool):
+            raise SettingError(name, value, WORDS.get(keys[name], "a number"), "mend the value")
+    for name in keys:
+        if name not in values and name not in optional:
+            raise SettingError(name, None, known, "this key is needed: write it")
+
+
+def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -> None:
+    """Refuse a value that does not meet what is required of it."""
+    if not is_met:
+        raise SettingError(name, value, allowed, remedy)
+
+
+@contextlib.contextmanager
+def placed(place: str) -> Iterator[None]:
+    """Put the file, or the place in it, before what is refused in it."""
+    try:
+        yield
+    except SettingError as refusal:
+        name = f"{place}: {refusal.name}"
+        raise SettingError(name, refusal.value, refusal.allowed, refusal.remedy) from None
 
 
 def scene_settings(scene: object) -> type[Settings]:

@@ -6,7 +6,7 @@ A preset is a path over the phase of an interval, from 0 to 1.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,7 @@ LOOSE = 0.2
 SAME = 1e-12
 """Share of the interval by which rounding may set one time apart from another."""
 NO_KNOTS = np.zeros(0)
+Wave = Callable[[Array], Array]
 
 
 def interpolate(points: Pairs | Array, where: Array) -> Array:
@@ -40,55 +41,67 @@ def interpolate(points: Pairs | Array, where: Array) -> Array:
 
 @dataclass(frozen=True)
 class Preset:
-    """A path with a name.
+    """A path with a name: straight lines between points after a beginning that has the first.
 
     Attributes
     ----------
-    value
-        Values at phases, for a seed of what is random.
-    corners
-        Phases inside the interval at which it turns back or bends, for such a seed.
+    points
+        Phases after the beginning, and ordinates, for a seed of what is random.
+    begins
+        Share of the interval that the beginning takes.
+    repeats
+        Share of the interval from which on it comes back to where it is; None if it does not.
+    wave
+        Ordinates at phases after the beginning in place of straight lines, where it bends.
     """
 
-    value: Callable[[Array, int], Array]
-    corners: Callable[[int], Array] = lambda seed: NO_KNOTS
+    points: Callable[[int], tuple[Array, Array]]
+    begins: float = 0.0
+    repeats: float | None = None
+    wave: Wave | None = None
+
+    def value(self, phase: Array, seed: int, cycles: int = 1) -> Array:
+        """Values at phases; what comes back is gone through so many times in the same time."""
+        if cycles > 1 and self.repeats is not None:
+            turns = cycles * (phase - self.repeats) / (1.0 - self.repeats)
+            again = self.repeats + (1.0 - self.repeats) * (turns - np.floor(turns))
+            phase = np.where(phase > self.repeats, again, phase)
+        after = np.maximum(phase - self.begins, 0.0) / (1.0 - self.begins)
+        return self.wave(after) if self.wave else np.interp(after, *self.points(seed))
+
+    def corners(self, seed: int, cycles: int = 1) -> Array:
+        """Phases inside the interval at which it turns back or bends."""
+        corners = self.begins + (1.0 - self.begins) * self.points(seed)[0][:-1]
+        corners = corners[corners > 0.0]
+        if cycles == 1 or self.repeats is None:
+            return corners
+        turn = np.append(self.repeats, corners[corners > self.repeats]) - self.repeats
+        later = (np.arange(cycles)[:, None] * (1.0 - self.repeats) + turn) / cycles
+        return np.append(corners[corners < self.repeats], self.repeats + later)
 
 
-def _even_corners(pieces: int, begins: float = 0.0) -> Callable[[int], Array]:
-    """Corners between equal pieces of what comes after a beginning, and where that ends."""
-    phases = begins + (1.0 - begins) * np.linspace(0.0, 1.0, pieces + 1)[:-1]
-    return lambda seed: phases[phases > 0.0]
+def _lines(
+    *ordinates: float, begins: float = 0.0, repeats: float | None = None, wave: Wave | None = None
+) -> Preset:
+    """Preset of ordinates that are evenly spaced."""
+    points = np.linspace(0.0, 1.0, len(ordinates)), np.array(ordinates)
+    return Preset(lambda seed: points, begins, repeats, wave)
 
 
-def _polyline(ordinates: Sequence[float] | Array, begins: float = 0.0) -> Preset:
-    """Straight lines between ordinates, evenly spaced after a beginning that has the first."""
-    return Preset(
-        lambda phase, seed: _evenly(ordinates, _after(begins, phase)),
-        _even_corners(len(ordinates) - 1, begins),
-    )
-
-
-def _evenly(ordinates: Sequence[float] | Array, phase: Array) -> Array:
-    return np.interp(phase, np.linspace(0.0, 1.0, len(ordinates)), ordinates)
-
-
-def _after(begins: float, phase: Array) -> Array:
-    return np.maximum(phase - begins, 0.0) / (1.0 - begins)
-
-
-def _walk(seed: int) -> Array:
-    """Ordinates of a random walk."""
+def _walk(seed: int) -> tuple[Array, Array]:
+    """Points of a random walk."""
     steps = np.random.default_rng(seed).uniform(-1.0, 1.0, RANDOM_POINTS)
     walk = np.concatenate([[0.0], np.cumsum(steps)])
-    return np.asarray(walk / np.max(np.abs(walk)))
+    return np.linspace(0.0, 1.0, len(walk)), walk / np.max(np.abs(walk))
 
 
-def _corners_of_size(seed: int) -> Array:
-    """Corners of a random walk's size: its own, and where it changes its sign."""
-    walk = _walk(seed)
+def _size_of_walk(seed: int) -> tuple[Array, Array]:
+    """Points of a random walk's size: its own, and where it changes its sign."""
+    phases, walk = _walk(seed)
     crossed = np.flatnonzero(walk[:-1] * walk[1:] < 0.0)
     zeros = crossed + walk[crossed] / (walk[crossed] - walk[crossed + 1])
-    return np.sort(np.concatenate([np.arange(1, RANDOM_POINTS), zeros])) / RANDOM_POINTS
+    every = np.union1d(phases, zeros / RANDOM_POINTS)
+    return every, np.where(np.isin(every, phases), np.abs(np.interp(every, phases, walk)), 0.0)
 
 
 def _sine(phase: Array) -> Array:
@@ -96,121 +109,48 @@ def _sine(phase: Array) -> Array:
     return np.where(np.abs(wave) < NO_LOAD, 0.0, wave)
 
 
+QUARTERS = 0.0, 1.0, 0.0, -1.0, 0.0
 PRESETS: dict[str, Preset] = {
-    "ramp": _polyline([0.0, 1.0]),
-    "triangle": _polyline([0.0, 1.0, 0.0]),
-    "cycle": _polyline([0.0, 1.0, 0.0, -1.0, 0.0, 1.0]),
-    "sine": Preset(lambda phase, seed: _sine(phase), _even_corners(4)),
-    "decaying": _polyline([0.0, *DECAY, 0.0]),
-    "random": Preset(lambda phase, seed: _evenly(_walk(seed), phase), _even_corners(RANDOM_POINTS)),
-    "hold": Preset(lambda phase, seed: np.minimum(phase / HELD, 1.0), _even_corners(1, HELD)),
-    "delayed": Preset(lambda phase, seed: _sine(_after(HELD, phase)), _even_corners(4, HELD)),
-    "cycles": _polyline([0.0, *[1.0, 0.0, -1.0, 0.0] * CYCLES], HELD),
+    "ramp": _lines(0.0, 1.0),
+    "triangle": _lines(0.0, 1.0, 0.0, repeats=0.0),
+    "cycle": _lines(*QUARTERS, 1.0, repeats=0.2),
+    "sine": _lines(*QUARTERS, repeats=0.0, wave=_sine),
+    "decaying": _lines(0.0, *DECAY, 0.0, repeats=0.0),
+    "random": Preset(_walk),
+    "hold": Preset(lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0]))),
+    "delayed": _lines(*QUARTERS, begins=HELD, repeats=HELD, wave=_sine),
+    "cycles": _lines(0.0, *QUARTERS[1:] * CYCLES, begins=HELD, repeats=HELD),
 }
 
 PULLS: dict[str, Preset] = {
     "ramp": PRESETS["ramp"],
     "triangle": PRESETS["triangle"],
-    "cycle": _polyline([0.0, 1.0, 0.0, 1.0, 0.0, 1.0]),
-    "sine": Preset(lambda phase, seed: _sine(phase) ** 2, _even_corners(4)),
-    "decaying": _polyline([0.0, *(0.5 + 0.5 * DECAY), 0.0]),
-    "random": Preset(lambda phase, seed: np.abs(_evenly(_walk(seed), phase)), _corners_of_size),
+    "cycle": _lines(0.0, 1.0, 0.0, 1.0, 0.0, 1.0, repeats=0.2),
+    "sine": _lines(*QUARTERS, repeats=0.0, wave=lambda phase: _sine(phase) ** 2),
+    "decaying": _lines(0.0, *(0.5 + 0.5 * DECAY), 0.0, repeats=0.0),
+    "random": Preset(_size_of_walk),
     "hold": PRESETS["hold"],
-    "delayed": Preset(lambda phase, seed: _sine(_after(HELD, phase)) ** 2, _even_corners(4, HELD)),
-    "cycles": _polyline([0.0, *[1.0, 0.0] * CYCLES], HELD),
+    "delayed": _lines(*QUARTERS, begins=HELD, repeats=HELD, wave=lambda phase: _sine(phase) ** 2),
+    "cycles": _lines(0.0, *[1.0, 0.0] * CYCLES, begins=HELD, repeats=HELD),
 }
 """Presets that never push, for what carries tension alone."""
 
 PRESSURES: dict[str, Preset] = {
-    "steady": Preset(lambda phase, seed: np.ones_like(phase)),
-    "loosening": _polyline([1.0, LOOSE], HELD),
-    "tightening": _polyline([LOOSE, 1.0], HELD),
-    "shaken": _polyline([1.0, *[LOOSE, 1.0] * CYCLES], HELD),
+    "steady": _lines(1.0, 1.0),
+    "loosening": _lines(1.0, LOOSE, begins=HELD),
+    "tightening": _lines(LOOSE, 1.0, begins=HELD),
+    "shaken": _lines(1.0, *[LOOSE, 1.0] * CYCLES, begins=HELD, repeats=HELD),
 }
 """Presets of what presses: all of it at first, or in the end, and never nothing."""
 
 INJECTIONS: dict[str, Preset] = {
     "steady": PRESSURES["steady"],
-    "stopped": Preset(lambda phase, seed: np.where(phase <= 0.5, 1.0, 0.0), _even_corners(2)),
-    "rising": _polyline([0.0, 1.0]),
-    "pulses": _polyline([1.0, *[0.0, 1.0] * CYCLES]),
+    "stopped": _lines(1.0, 1.0, 0.0, wave=lambda phase: np.where(phase <= 0.5, 1.0, 0.0)),
+    "rising": _lines(0.0, 1.0),
+    "pulses": _lines(1.0, *[0.0, 1.0] * CYCLES, repeats=0.0),
     "random": PULLS["random"],
 }
 """Presets of a fluid that is let in from the beginning."""
-
-BEGINS = {
-    "triangle": 0.0,
-    "sine": 0.0,
-    "decaying": 0.0,
-    "cycle": 0.2,
-    "delayed": HELD,
-    "cycles": HELD,
-    "pulses": 0.0,
-    "shaken": HELD,
-}
-"""Share of the interval from which on a preset comes back to where it is, and may be repeated."""
-
-
-def knots_of(
-    path: str | Pairs,
-    duration: float,
-    seed: int,
-    presets: Mapping[str, Preset] = PRESETS,
-    cycles: int = 1,
-) -> Array:
-    """Times at which a path turns or bends, as for `load_path`; a table's points."""
-    if not isinstance(path, str):
-        return np.array(path)[:, 0]
-    phases = presets[path].corners(seed)
-    if cycles > 1 and path in BEGINS:
-        begins = BEGINS[path]
-        turn = np.concatenate([[begins], phases[phases > begins]]) - begins
-        later = begins + (np.arange(cycles)[:, None] * (1.0 - begins) + turn) / cycles
-        phases = np.concatenate([phases[phases < begins], later.ravel()])
-    return np.asarray(duration * phases)
-
-
-def load_path(
-    path: str | Pairs,
-    instants: Array,
-    duration: float,
-    peak: float,
-    seed: int,
-    presets: Mapping[str, Preset] = PRESETS,
-    cycles: int = 1,
-) -> Array:
-    """Values of a load path at the instants of a run, shape (n_instants,).
-
-    Parameters
-    ----------
-    path
-        A preset's name, or points (time in s, value), linear in between and held outside.
-    instants
-        Shape (n_instants,), s.
-    duration
-        Length of the interval that a preset fills, s.
-    peak
-        Largest size that a preset reaches, in the path's unit; a table has its own.
-    seed
-        Of the random walk.
-    presets
-        What the names stand for.
-    cycles
-        How often a preset does what it does from where it begins on; the interval stays.
-    """
-    if not isinstance(path, str):
-        return interpolate(path, instants)
-    phase = instants / duration
-    if cycles > 1 and path in BEGINS:
-        phase = _repeated(phase, BEGINS[path], cycles)
-    return peak * presets[path].value(phase, seed)
-
-
-def _repeated(phase: Array, begins: float, cycles: int) -> Array:
-    """Phases that go through what comes after a beginning so often in the same time."""
-    turns = cycles * (phase - begins) / (1.0 - begins)
-    again = begins + (1.0 - begins) * (turns - np.floor(turns))
-    return np.where(phase > begins, again, phase)
 
 
 def instants_of(

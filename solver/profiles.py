@@ -132,9 +132,6 @@ def unseen(name: str, table: Pairs, length: float, elements: int, order: int) ->
 def _off_nodes(table: Pairs, length: float, pieces: int) -> Array:
     """How far points are off the line through evenly spaced nodes, shape (n_points,)."""
     x, values = np.array(table).T
-    place = x * (pieces / length)
-    left = np.floor(place).clip(0, pieces - 1)
-    share = (place - left).clip(0.0, 1.0)
-    before, after = (interpolate(table, node * (length / pieces)) for node in (left, left + 1.0))
-    off = np.abs((1.0 - share) * before + share * after - values)
+    nodes = np.linspace(0.0, length, pieces + 1)
+    off = np.abs(np.interp(x, nodes, interpolate(table, nodes)) - values)
     return np.where((x >= 0.0) & (x <= length), off, 0.0)

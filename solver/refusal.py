@@ -48,12 +48,7 @@ def check_range(part: object, name: str, low: float, high: float, *, above: bool
     """
     value = getattr(part, name)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if (
-        is_number
-        and not math.isnan(value)
-        and low <= value <= high
-        and not (above and value == low)
-    ):
+    if is_number and low <= value <= high and not (above and value == low):
         return
     bounds = f"a number {'above' if above else 'from'} {plain(low)}"
     allowed = bounds + (f" to {plain(high)}" if math.isfinite(high) else "")

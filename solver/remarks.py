@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.definitions import CurveParameter
-from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import is_upright
 from solver.discrete.small_strain import beyond_small_strain
 from solver.discrete.stack import Stack
 from solver.latin import Iterate
-from solver.latin.cost import run_cost
 from solver.laws import OPEN
-from solver.scenes import discretise, left_out, structure_of
-from solver.scenes.method import method_of
+from solver.scenes import left_out, structure_of
 from solver.settings import Settings
 
 MOST_GROWTH = 2
@@ -25,36 +20,6 @@ MOST_GROWTH = 2
 more, those that close together stick without traction beside points that were there before: with
 1, 2 and 4 of them at each end, neighbours differ by 0.1, 0.3 and 0.7 of the largest friction
 (measured on a parabola, 192 elements)."""
-
-
-def warn(*messages: str) -> None:
-    """Print messages to stderr, a line each."""
-    for message in messages:
-        print(f"slipfront: {message}", file=sys.stderr, flush=True)
-
-
-def print_tables(tables: Mapping[str, str]) -> None:
-    """Print to stderr what was understood of tables, by what they were given for."""
-    warn(*(f"{name}: {message}" for name, message in tables.items()))
-
-
-def prepared(settings: Settings, assignments: Sequence[str], tables: Mapping[str, str]) -> Problem:
-    """Problem of a run without a reference; prints what does nothing, and what much will take.
-
-    Parameters
-    ----------
-    settings, assignments
-        Those of the run, and `NAME=VALUE` texts of what was set.
-    tables
-        What was understood of tables, by what they were given for.
-    """
-    problem, most = discretise(settings), settings.max_iterations
-    cost = run_cost(problem, method_of(settings), most, with_reference=False)
-    print_tables(tables)
-    warn(*remarks_before(settings, assignments))
-    if cost.is_large:
-        warn(f"this will take about {cost}")
-    return problem
 
 
 def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
@@ -77,14 +42,7 @@ def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
 def ends_of_tables(settings: Settings) -> dict[str, float]:
     """Last time, s, of every load path that is a table, by the name of its setting."""
     values = settings.values()
-    return {
-        name: values[name][-1][0]
-        for name, definition in settings.definitions().items()
-        if isinstance(definition, CurveParameter)
-        and definition.abscissa == "time"
-        and isinstance(values[name], tuple)
-        and settings.applies(name)
-    }
+    return {name: values[name][-1][0] for name in settings.paths if isinstance(values[name], tuple)}
 
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:

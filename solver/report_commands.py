@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from solver.console import add_command, given, writing
 from solver.definitions import SettingError
-from solver.disk import check_place, why
-from solver.files import scene_settings, settings_from_command
-from solver.remarks import print_tables
+from solver.files import scene_settings
 from solver.study.cases.case import case_from_file
 from solver.study.figures import paper_figures
 from solver.study.figures.figure import FILE, write_figures
@@ -45,65 +44,32 @@ from solver.study.stability.report import (
 )
 from solver.study.stability.stability_case import StabilityCase
 
-REFUSED = 2
-"""Exit code of refused input."""
-
 
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
-    figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
-    figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
-    figures.set_defaults(command=_figures)
-    study = commands.add_parser("study", help="error against run time, all methods side by side")
-    study.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
-    study.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
-    study.add_argument("--out", type=Path, default=Path("study"), metavar="DIR")
+    figures = add_command(commands, "figures", "draw the paper's Figs. 3 to 8 again", _figures)
+    purpose = "error against run time, all methods side by side"
+    study = add_command(commands, "study", purpose, _study, of_scene=True)
     study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
     study.add_argument("--large", action="store_true", help="sizes that take minutes, too")
-    study.set_defaults(command=_study)
-    stable = commands.add_parser(
-        "stability", help="stiff and extreme cases, or random runs, each with a verdict"
-    )
+    purpose = "stiff and extreme cases, or random runs, each with a verdict"
+    stable = add_command(commands, "stability", purpose, _stability)
     stable.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
-    stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
     kinds = stable.add_mutually_exclusive_group()
     kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
     kinds.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
     stable.add_argument("--seed", type=int, default=1, help="of the random runs")
-    stable.set_defaults(command=_stability)
-    proven = commands.add_parser("proof", help="what is known beside what is found, row by row")
-    proven.add_argument(
-        "files",
-        nargs="*",
-        type=Path,
-        metavar="FILE",
-        help="cases of one's own (.toml)",
-    )
-    proven.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
-    proven.set_defaults(command=_proof)
-
-
-@contextlib.contextmanager
-def writing(folder: Path, *files: str) -> Iterator[None]:
-    """Make a folder for files; refuse one that cannot be made or written to, before all work.
-
-    It goes again where nothing was written into it.
-    """
-    is_new = not folder.exists()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in files or ("any",):
-            check_place(folder / file)
-        yield
-    except BrokenPipeError:
-        raise
-    except OSError as problem:
-        allowed_folder = "a folder that can be made and written to"
-        raise SettingError("--out", str(folder), allowed_folder, why(problem)) from None
-    finally:
-        if is_new:
-            with contextlib.suppress(OSError):  # as of one that holds files
-                folder.rmdir()
+    purpose = "what is known beside what is found, row by row"
+    proven = add_command(commands, "proof", purpose, _proof)
+    own = "cases of one's own (.toml)"
+    proven.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
+    for name, parser in (
+        ("figures", figures),
+        ("study", study),
+        ("stability", stable),
+        ("proof", proven),
+    ):
+        parser.add_argument("--out", type=Path, default=Path(name), metavar="DIR")
 
 
 def _figures(chosen: argparse.Namespace) -> int:
@@ -119,10 +85,9 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 
 def _study(chosen: argparse.Namespace) -> int:
-    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     if chosen.repeats < 1:
         raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
-    print_tables(tables)
+    settings, _ = given(chosen)
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
         curves = error_against_time(settings, chosen.repeats)

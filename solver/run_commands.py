@@ -1,27 +1,36 @@
-"""The commands that check runs: `mesh`, `compare`, `lesson`."""
+"""The commands that set runs beside something: `mesh`, `compare`, `fit`, `lesson`."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
-from collections.abc import Callable, Mapping
+import time
 from pathlib import Path
 from typing import Any
 
-from solver.definitions import SettingError
-from solver.disk import read_bytes, why
-from solver.files import settings_from_command
-from solver.latin import Ending, Status, solve
-from solver.latin.cost import run_cost
-from solver.lessons.lesson import check
-from solver.lessons.reading import lesson_from_file
-from solver.remarks import prepared, print_tables, warn
+from solver.console import (
+    add_command,
+    announce,
+    given,
+    print_tables,
+    read_brought,
+    warn,
+    writing,
+)
+from solver.definitions import SettingError, about
+from solver.discrete.problem import Problem
+from solver.latin import Ending, Solution, solve
+from solver.lessons import check, lesson_from_file
 from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.compared_runs import ComparedRun
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
+from solver.study.fit import MOST, fit
+from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
 from solver.study.loop_comparison import ALIKE, LoopComparison, rms
+from solver.study.measured_loop import CAN as LOOP
 from solver.study.measured_loop import axes_of, is_a_loop, read_loop
 from solver.study.mesh import (
     TIME_STEP,
@@ -35,84 +44,82 @@ from solver.study.mesh import (
     which_to_refine,
 )
 from solver.study.quantities import reading
-from solver.study.quantities.quantity import Quantity
+
+OFTEN = 0.3
+"""Seconds between two lines, and files, of how far a fit is."""
 
 
 def add_checks(commands: Any) -> None:
     """Add the commands."""
-    mesh = _of_a_scene(
-        commands, "mesh", "whether elements and instants are enough for a quantity", _mesh
-    )
+    purpose = "whether elements and instants are enough for a quantity"
+    mesh = add_command(commands, "mesh", purpose, _mesh, of_scene=True)
     mesh.add_argument("--of", required=True, metavar="NAME", help="what is asked of a run")
-    compare = _of_a_scene(
-        commands, "compare", "how far a run is from a measured loop, or another program", _compare
-    )
-    compare.add_argument(
-        "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their table"
-    )
+    purpose = "how far a run is from a measured loop, or another program"
+    compare = add_command(commands, "compare", purpose, _compare, of_scene=True)
     compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
-    compare.add_argument("--json", action="store_true", help="print it as JSON")
-    lesson = commands.add_parser("lesson", help="test what lessons claim")
+    purpose = "settings that bring a run nearest to a measured loop"
+    fitting = add_command(commands, "fit", purpose, _fit, of_scene=True)
+    most = f"up to {MOST} settings"
+    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
+    fitting.add_argument("--out", type=Path, default=Path("fit"), metavar="DIR")
+    for parser in (compare, fitting):
+        parser.add_argument(
+            "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their table"
+        )
+        parser.add_argument("--json", action="store_true", help="print what was found as JSON")
+    lesson = add_command(commands, "lesson", "test what lessons claim", _lesson)
     lesson.add_argument("files", nargs="+", type=Path, metavar="FILE", help="lessons (.toml)")
-    lesson.set_defaults(command=_lesson)
-
-
-def _of_a_scene(
-    commands: Any, name: str, purpose: str, command: Callable[[argparse.Namespace], int]
-) -> argparse.ArgumentParser:
-    parser: argparse.ArgumentParser = commands.add_parser(name, help=purpose)
-    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
-    parser.set_defaults(command=command)
-    return parser
 
 
 def _mesh(chosen: argparse.Namespace) -> int:
-    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    settings, _ = given(chosen)
     asked = reading(chosen.of)
     if not decides(settings, asked):
         can = "a quantity of what a run comes to, that this scene has"
         raise SettingError("--of", chosen.of, can, "`python -m solver sweep` lists them")
-    print_tables(tables)
     values: dict[str, float] = {}
     refinements = []
     for runs, own in (meshes_around(settings), instants_around(settings)):
         for run in runs:
-            if size_of(run) not in values:
-                values[size_of(run)] = _value(run, asked)
+            size = size_of(run)
+            if size not in values:
+                announce(run, discretise(run), size)
+                values[size] = value_on(run, asked)
+                print(f"{size:>32}  {values[size]:.6g} {asked.unit}".rstrip(), flush=True)
         coarse, middle, fine = (values[size_of(run)] for run in runs)
         refinements.append(Refinement((coarse, middle, fine), own))
     elements, instants = refinements
-    unit = asked.unit
-    print(f"Elements: {answer(elements, unit)}")
-    print(f"Instants: {answer(instants, unit, TIME_STEP)}")
+    print(f"Elements: {answer(elements, asked.unit)}")
+    print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
     if which := which_to_refine(elements, instants):
         print(which)
     return 0 if which else 1
 
 
-def _value(settings: Settings, asked: Quantity) -> float:
-    """Quantity of a run, printed; before it what that will take, if it is much."""
-    most, size = settings.max_iterations, size_of(settings)
-    cost = run_cost(discretise(settings), method_of(settings), most, with_reference=False)
-    if cost.is_large:
-        print(f"slipfront: {size} will take about {cost}", file=sys.stderr, flush=True)
-    value = value_on(settings, asked)
-    print(f"{size:>32}  {value:.6g} {asked.unit}".rstrip(), flush=True)
-    return value
-
-
 def _compare(chosen: argparse.Namespace) -> int:
-    settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    try:
-        data = read_bytes(chosen.file)
-    except (OSError, ValueError) as trouble:
-        raise SettingError("--with", str(chosen.file), CAN, why(trouble)) from None
-    if is_a_loop(data, chosen.file.name):
-        return _compare_loop(chosen, settings, tables, data)
+    settings, tables = given(chosen)
+    data, problem = read_brought(chosen, CAN), discretise(settings)
+    beside = _beside_loop if is_a_loop(data, chosen.file.name) else _beside_results
+    source, message, figures, solution = beside(chosen, data, settings, problem)
+    status = solution.status
+    if chosen.json:
+        tables = {**tables, source: message}
+        print(json.dumps({**figures, "tables": tables, "status": str(status.ending)}))
+    else:
+        far = f"{figures['quantity']}: {100.0 * figures['distance']:.4g} % from {source}"
+        print(f"{far}, at {figures['rows_compared']} of {figures['rows']} rows")
+    return 0 if status.ending is Ending.CONVERGED else 1
+
+
+Found = tuple[str, str, dict[str, Any], Solution]
+"""Name of a table, what was understood of it, how far a run is from it, and the run."""
+
+
+def _beside_results(
+    chosen: argparse.Namespace, data: bytes, settings: Settings, problem: Problem
+) -> Found:
     results = read_results(data, chosen.file.name, settings)
-    tables = {**tables, results.source: results.message}
-    problem = prepared(settings, chosen.changes, tables)
+    print_tables({results.source: results.message})
     if chosen.interface and chosen.interface not in problem.rubbing:
         known = ", ".join(problem.rubbing)
         raise SettingError("--interface", chosen.interface, known, "choose one of these")
@@ -120,6 +127,7 @@ def _compare(chosen: argparse.Namespace) -> int:
     if comparison.counted < FEWEST:
         can = f"at least {FEWEST} rows that both cover"
         raise SettingError("--with", str(chosen.file), can, "give points along this interface")
+    announce(settings, problem)
     solution = solve(problem, method_of(settings))
     figures = {
         "quantity": results.quantity,
@@ -127,34 +135,22 @@ def _compare(chosen: argparse.Namespace) -> int:
         "distance": comparison.of(solution.iterate),
         "rows": len(results.times),
         "rows_compared": comparison.counted,
-        "tables": tables,
     }
-    return _print_distance(figures, results.source, solution.status, as_json=chosen.json)
+    return results.source, results.message, figures, solution
 
 
-def _print_distance(
-    figures: Mapping[str, Any], source: str, status: Status, *, as_json: bool
-) -> int:
-    """Print how far a run is from what was brought; the command's exit code."""
-    if as_json:
-        print(json.dumps({**figures, "status": str(status.ending)}))
-    else:
-        far = f"{figures['quantity']}: {100.0 * figures['distance']:.4g} % from {source}"
-        print(f"{far}, at {figures['rows_compared']} of {figures['rows']} rows")
-    return 0 if status.ending is Ending.CONVERGED else 1
-
-
-def _compare_loop(
-    chosen: argparse.Namespace, settings: Settings, tables: Mapping[str, str], data: bytes
-) -> int:
-    problem = prepared(settings, chosen.changes, tables)
+def _beside_loop(
+    chosen: argparse.Namespace, data: bytes, settings: Settings, problem: Problem
+) -> Found:
     loop = loop_of(settings, problem)
     measured = read_loop(data, chosen.file.name, axes_of(loop))
     print_tables({measured.source: measured.message})
-    tables = {**tables, measured.source: measured.message}
     beside = LoopComparison(measured, loop, problem)
+    announce(settings, problem)
     solution = solve(problem, method_of(settings))
     differences, drive = beside.differences(*beside.both(solution.iterate))
+    if rms(drive) > ALIKE:
+        warn(beside.drive_message(drive))
     figures = {
         "quantity": beside.quantity,
         "interface": None,
@@ -163,11 +159,45 @@ def _compare_loop(
         "distance_given": rms(drive),
         "rows": len(measured.force),
         "rows_compared": len(differences),
-        "tables": tables,
     }
-    if rms(drive) > ALIKE:
-        warn(beside.drive_message(drive))
-    return _print_distance(figures, measured.source, solution.status, as_json=chosen.json)
+    return measured.source, measured.message, figures, solution
+
+
+def _fit(chosen: argparse.Namespace) -> int:
+    settings, tables = given(chosen)
+    data, problem = read_brought(chosen, LOOP), discretise(settings)
+    announce(settings, problem)
+    measured = read_loop(data, chosen.file.name, axes_of(loop_of(settings, problem)))
+    print_tables({measured.source: measured.message})
+    names = [name.strip() for name in chosen.vary.split(",")]
+    printed = 0.0
+
+    def watch(runs: int, nearest: ComparedRun) -> None:
+        """Print how far it is, and keep the loop of the nearest run so far in the folder."""
+        nonlocal printed
+        if time.monotonic() - printed < OFTEN:
+            return
+        printed = time.monotonic()
+        values = ", ".join(
+            f"{name} {value:.4g} {about(settings.definitions()[name]).unit}".strip()
+            for name, value in zip(names, nearest.values, strict=True)
+        )
+        far = f"{100.0 * nearest.distance:.3g} % away"
+        print(f"{runs} runs: {values}, {far}", file=sys.stderr, flush=True)
+        write_loop(nearest, chosen.out)
+
+    with writing(chosen.out, *FILES):
+        found = fit(settings, measured, names, watch)
+        write_loop(found.nearest, chosen.out)
+        if chosen.json:
+            tables = {**tables, measured.source: measured.message}
+            print(json.dumps({**as_json(found, measured), "tables": tables}), flush=True)
+        else:
+            print("\n".join(lines(found, measured)), flush=True)
+        note = write_fit(found, measured, chosen.out)
+    if not chosen.json:
+        print("\n".join([*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}"]))
+    return 0 if found.nearest.is_certified else 1
 
 
 def _lesson(chosen: argparse.Namespace) -> int:

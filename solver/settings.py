@@ -10,7 +10,7 @@ from typing import ClassVar
 import param
 
 from solver.checked import Checked
-from solver.definitions import choice, count, quantity, switch
+from solver.definitions import CurveParameter, choice, count, quantity, switch
 
 
 def _on_modes(settings: Settings) -> bool:
@@ -197,7 +197,6 @@ class Settings(Checked):
         "is then put beside them. none: only iterate.",
         group="Method",
         title="Finish",
-        aliases={"status": "at-once", "at once": "at-once"},
     )
     accuracy = quantity(
         0.01,
@@ -237,6 +236,17 @@ class Settings(Checked):
         group="Method",
         title="Threads",
     )
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Names of the curves over time that do something."""
+        return tuple(
+            name
+            for name, definition in self.definitions().items()
+            if isinstance(definition, CurveParameter)
+            and definition.abscissa == "time"
+            and self.applies(name)
+        )
 
     @property
     def n_substructures(self) -> int:

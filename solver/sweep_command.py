@@ -10,12 +10,11 @@ from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
+from solver.console import add_command, print_tables, warn, writing
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import settings_from_command
-from solver.remarks import print_tables
-from solver.report_commands import writing
 from solver.study.page import write_page
 from solver.study.sweep import Plan, Row, patience, plan_of, sweep
 from solver.study.sweep.plan import FORM, LOST, STUCK
@@ -33,16 +32,15 @@ from solver.study.sweep.run import field_file
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0
 """Seconds that a run may take, unless somebody says otherwise."""
-OFTEN, SELDOM = 0.2, 10.0
-"""Seconds between two lines of progress, on a terminal and elsewhere."""
+OFTEN = 3.0
+"""Seconds between two lines of progress."""
 
 
 def add_sweep(commands: Any) -> None:
     """Add the command."""
-    parser = commands.add_parser("sweep", help="quantities of a run over up to two settings")
-    parser.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    purpose = "quantities of a run over up to two settings"
+    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True)
     parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
     parser.add_argument("--out", type=Path, default=Path("sweep"), metavar="DIR")
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
@@ -52,7 +50,6 @@ def add_sweep(commands: Any) -> None:
         "--adaptive", type=int, metavar="N", help="no more than N runs, where the answer bends"
     )
     parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
-    parser.set_defaults(command=_sweep)
 
 
 def _sweep(chosen: argparse.Namespace) -> int:
@@ -64,9 +61,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
     print_tables(tables)
-    for name in plan.idle():
-        message = f"slipfront: {name} does nothing with the other settings as they are"
-        print(message, file=sys.stderr)
+    warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
         try:
@@ -119,15 +114,12 @@ def run(plan: Plan, rows: dict[int, Row], size: int, chosen: argparse.Namespace)
 
 def followed(rows: Iterable[Row], size: int, done: int) -> Iterator[Row]:
     """Print on stderr, as rows pass, how many there are and how long the others will take."""
-    on_terminal = sys.stderr.isatty()
-    start, ends = ("\r", "") if on_terminal else ("", "\n")
     began = printed = time.monotonic()
     for number, row in enumerate(rows, start=1):
         yield row
         now = time.monotonic()
-        is_last = done + number == size
-        if now - printed > (OFTEN if on_terminal else SELDOM) or (is_last and on_terminal):
+        if now - printed > OFTEN:
             left = (now - began) / number * (size - done - number)
             line = f"{done + number} of {size} runs, {left:.0f} s left"
-            print(f"{start}{line:<40}", end="\n" if is_last else ends, file=sys.stderr, flush=True)
+            print(line, file=sys.stderr, flush=True)
             printed = now

@@ -32,8 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import Refuse, TableColumn, are_units, column_of, is_spelt_as_unit, size_in
-from solver.disk import LARGEST, TOO_LARGE
+from solver.columns import TableColumn, are_units, column_of, examples_of, is_spelt_as_unit, size_in
+from solver.disk import LARGEST, TOO_LARGE, Refuse
 
 Row = tuple[int, list[str]]
 """Number of a line, and its cells."""
@@ -49,30 +49,6 @@ class Table:
     rows: Sequence[Row]
     separator: str
     refuse: Refuse
-
-    def message(
-        self,
-        columns: Sequence[TableColumn],
-        names: Sequence[str],
-        units: Sequence[str],
-        numbers: Array,
-        each: str = "points",
-    ) -> str:
-        """Describe what was understood of columns, with names and units for those that lack them.
-
-        `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named. `each`
-        is what its lines are called.
-        """
-        parts = [
-            column.message(name, unit)
-            for column, name, unit in zip(columns, names, units, strict=True)
-        ]
-        unit = columns[-1].unit or units[-1]
-        low, high = numbers[-1].min(), numbers[-1].max()
-        ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
-        others = [repr(column.name) for column in self.columns if column not in columns]
-        passed = f"; passed over: {', '.join(others)}" if others else ""
-        return f"{', '.join(parts)}, {numbers.shape[1]} {each}, {ends}{passed}"
 
     def find(
         self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
@@ -101,14 +77,64 @@ class Table:
                 return likely[0]
         return None
 
-    def numbers(self, columns: Sequence[TableColumn]) -> Array:
-        """Numbers of some columns as they are written, shape (n_columns, n_rows).
+    def choose(
+        self,
+        columns: Sequence[TableColumn],
+        kinds: Collection[str],
+        unit: str,
+        key: str = "",
+        remedy: str = "add that column",
+    ) -> TableColumn:
+        """Column of a quantity among some, as described above; refuse a head that names none."""
+        column = self.find(columns, kinds, unit, key)
+        if column is None:
+            wanted = f"{' or '.join(sorted(kinds))} in {examples_of(unit)}"
+            has = ", ".join(repr(column.name) for column in self.columns)
+            raise self.refuse(f"its head names no {wanted} (it has {has}): {remedy}")
+        return column
+
+    def read(
+        self,
+        columns: Sequence[TableColumn],
+        names: Sequence[str],
+        units: Sequence[str],
+        each: str = "points",
+    ) -> tuple[Array, str]:
+        """Read numbers of some columns.
+
+        Parameters
+        ----------
+        columns
+            Which of them.
+        names, units
+            What they are called where they lack a name, and the units that they are read in.
+        each
+            What lines are called.
+
+        Returns
+        -------
+        Numbers in these units, shape (n_columns, n_rows), and what was understood.
 
         Raises
         ------
         SettingError
-            For a cell that is no finite number, named with its line.
+            For a unit of another quantity, and a cell that is no finite number, with its line.
         """
+        sizes = [
+            column.size(unit, self.refuse) for column, unit in zip(columns, units, strict=True)
+        ]
+        numbers = self._numbers(columns)
+        heads = zip(columns, names, units, strict=True)
+        parts = ", ".join(column.message(name, unit) for column, name, unit in heads)
+        unit = columns[-1].unit or units[-1]
+        low, high = numbers[-1].min(), numbers[-1].max()
+        ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
+        others = [repr(column.name) for column in self.columns if column not in columns]
+        passed = f"; passed over: {', '.join(others)}" if others else ""
+        message = f"{parts}, {numbers.shape[1]} {each}, {ends}{passed}"
+        return numbers * np.array(sizes)[:, None], message
+
+    def _numbers(self, columns: Sequence[TableColumn]) -> Array:
         places = [column.place for column in columns]
         cells = [
             [row[place] if place < len(row) else "" for place in places] for _, row in self.rows
@@ -181,22 +207,20 @@ def read_table(data: bytes | str, refuse: Refuse) -> Table:
 
 
 def _text(data: bytes | str, refuse: Refuse) -> str:
-    text = data if isinstance(data, str) else _decoded(data)
+    if isinstance(data, str):
+        text = data
+    elif data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        text = data.decode("utf-16", "replace")
+    elif 0 in data[:2]:
+        text = data.decode("utf-16-le" if data[0] else "utf-16-be", "replace")
+    else:
+        try:
+            text = data.decode("utf-8")
+        except UnicodeDecodeError:
+            text = data.decode("cp1252", "replace")
     if "\0" in text:
         raise refuse("it is no text: save the table as CSV")
     return text.removeprefix("\ufeff")
-
-
-def _decoded(data: bytes) -> str:
-    encoding = "utf-8-sig"
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        encoding = "utf-16"
-    elif data and 0.4 < data.count(0) / len(data) <= 0.5:
-        encoding = "utf-16-be" if data[0] == 0 else "utf-16-le"
-    try:
-        return data.decode(encoding)
-    except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")
 
 
 def _is_number(cell: str) -> bool:
@@ -221,8 +245,6 @@ def _rows(lines: Sequence[str]) -> tuple[str, list[Row]]:
         return sum(2 * numbers - cells for numbers, cells in counts if numbers > 1)
 
     separator = max(SEPARATORS, key=score)
-    if score(separator) <= 0:
-        separator = next((sign for sign in SEPARATORS if any(sign in line for line in last)), ",")
     rows = [(number, _cells(line, separator)) for number, line in enumerate(lines, start=1)]
     return separator, [(number, cells) for number, cells in rows if cells]
 

@@ -26,7 +26,7 @@ from app.lessons.panel import WITHOUT, LessonPanel
 from app.messages import Needs
 from app.state import PageState, Poll, default_settings
 from app.worker.sampling import Sampler
-from solver.lessons.lesson import Lesson
+from solver.lessons import Lesson
 from solver.scenes import discretise
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run

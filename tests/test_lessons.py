@@ -12,8 +12,7 @@ import pytest
 from app.views.catalogue import CARDS
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.lessons.lesson import Lesson, check
-from solver.lessons.reading import lesson_from_file
+from solver.lessons import Lesson, check, lesson_from_file
 from solver.scenes import discretise
 
 FOLDER = Path(__file__).resolve().parents[1] / "app" / "lessons"

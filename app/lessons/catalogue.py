@@ -12,8 +12,7 @@ from app.state import SEARCH
 from app.units import number, percent, unit_for
 from app.views.catalogue import CARDS
 from app.views.view import View
-from solver.lessons.lesson import SUBJECTS, Lesson
-from solver.lessons.reading import lesson_from_file
+from solver.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.settings import Settings
 from solver.study.cases.case import Case, all_cases
 from solver.study.quantities import reading

@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 from app.views.colors import FORCE, LATIN
 from app.views.view import legend
 from solver.definitions import about
-from solver.lessons.lesson import Lesson
+from solver.lessons import Lesson
 
 
 class DrawnCurve:

@@ -29,7 +29,7 @@ from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
 from app.widgets import button, dialog, download
-from solver.lessons.lesson import SUBJECTS, Lesson
+from solver.lessons import SUBJECTS, Lesson
 
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1

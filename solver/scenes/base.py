@@ -15,7 +15,6 @@ from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
 from solver.laws import FrictionLaw, Strength
 from solver.loads import (
-    BEGINS,
     NO_KNOTS,
     PRESETS,
     PRESSURES,
@@ -24,8 +23,6 @@ from solver.loads import (
     apart,
     instants_of,
     interpolate,
-    knots_of,
-    load_path,
     thinned,
     turning_knots,
 )
@@ -281,13 +278,8 @@ class SceneSettings(Settings):
     @property
     def is_repeatable(self) -> bool:
         """Whether any load path is a preset that comes back to where it began."""
-        return any(getattr(self, name) in BEGINS for name in self.paths)
-
-    @property
-    def paths(self) -> tuple[str, ...]:
-        """Names of the settings that are paths over time and do something."""
-        names = (name for name in self.definitions() if f"_{name}".endswith("_load"))
-        return tuple(name for name in names if self.applies(name))
+        shapes = (self._shapes.get(getattr(self, name)) for name in self.paths)
+        return any(shape is not None and shape.repeats is not None for shape in shapes)
 
     def times(self) -> Array:
         """Instants, shape (n_instants,), s: points of all paths, and others spread between them."""
@@ -328,7 +320,10 @@ class SceneSettings(Settings):
         return instants_of(self.duration, self.instants, *joined)
 
     def _knots(self, path: str | Pairs) -> Array:
-        return knots_of(path, self.duration, self.seed, self._shapes, self.cycles)
+        """Times at which a path turns or bends; a table's points."""
+        if not isinstance(path, str):
+            return np.array(path)[:, 0]
+        return self.duration * self._shapes[path].corners(self.seed, self.cycles)
 
     def _turning(self, name: str, knots: Array) -> Array:
         inside = knots[(knots > 0.0) & (knots < self.duration)]
@@ -380,8 +375,10 @@ class SceneSettings(Settings):
 
     def _along(self, name: str, instants: Array) -> Array:
         curve: str | Pairs = getattr(self, name)
-        size = self.size_of(name) if isinstance(curve, str) else 0.0
-        return load_path(curve, instants, self.duration, size, self.seed, self._shapes, self.cycles)
+        if not isinstance(curve, str):
+            return interpolate(curve, instants)
+        values = self._shapes[curve].value(instants / self.duration, self.seed, self.cycles)
+        return self.size_of(name) * values
 
     @property
     def _shapes(self) -> Mapping[str, Preset]:

@@ -12,7 +12,7 @@ import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity, redefined
 from solver.discrete.bricks import Brick, bonded, with_opening
 from solver.discrete.wall import Wall
-from solver.loads import PRESETS, load_path
+from solver.loads import PRESETS
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted
@@ -252,7 +252,7 @@ class WallSettings(PlaneSettings):
         """Make the wall; one metre thick."""
         times, size = self.times(), (self.elements, self.elements_up)
         angle = np.radians(self.path("slope_load"))
-        weight = load_path("hold", times, self.duration, self.unit_weight, 1, PRESETS, 1)
+        weight = self.unit_weight * PRESETS["hold"].value(times / self.duration, 1)
         driven = self.path("top_load")
         return Wall(
             bricks=self._bricks,

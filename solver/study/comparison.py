@@ -18,14 +18,16 @@ share of what a support holds. Where v vanishes everywhere, |w| stands in its pl
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
-from solver.columns import Refuse, TableColumn, size_in
+from solver.columns import TableColumn, size_in
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
+from solver.disk import Refuse
 from solver.reference.distance import Fields, determinate_forces
 from solver.scenes import kind_of
 from solver.settings import Settings
@@ -90,10 +92,7 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
         another unit, points outside of the body, or fewer than `FEWEST` rows during the run; for a
         displacement of other scenes than a single rod.
     """
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError("the results", source, CAN, remedy)
-
+    refuse = partial(SettingError, "the results", source, CAN)
     table = read_table(data, refuse)
     kind = kind_of(settings)
     quantity, columns = _columns(table)
@@ -103,16 +102,10 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
         raise refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
     units = "m", "s", PER[kind] if quantity == FRICTION else "m"
 
-    def refuse_unit(remedy: str) -> SettingError:
-        is_nodal = quantity == FRICTION and size_in(columns[2].unit, "N") is not None
-        return refuse(
-            f"{remedy}; divide nodal forces by what a node stands for" if is_nodal else remedy
-        )
-
-    sizes = [column.size(unit, refuse_unit) for column, unit in zip(columns, units, strict=True)]
-    numbers = table.numbers(columns)
-    message = table.message(columns, ("x", "t", quantity), units, numbers)
-    x, t, values = numbers * np.array(sizes)[:, None]
+    if quantity == FRICTION and size_in(columns[2].unit, "N") is not None:
+        nodal = "divide nodal forces by what a node stands for"
+        columns[2].size(units[2], lambda remedy: refuse(f"{remedy}; {nodal}"))
+    (x, t, values), message = table.read(columns, ("x", "t", quantity), units)
     _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
     x = np.clip(x, 0.0, settings.length)
     return OtherResults(quantity, x, t, values, source, settings.scene, message)

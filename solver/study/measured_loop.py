@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.columns import TableColumn
+from solver.columns import KINDS, TableColumn
 from solver.definitions import SettingError
 from solver.discrete.structure import Loop
 from solver.study.comparison import FEWEST, MOST
 from solver.tables import Table, read_table
 
 CAN = "CSV whose head names displacement and force of every row, and their time if it is known"
-KINDS = {
-    "m": {"displacement"},
-    "N": {"force", "friction force"},
-    "N·m": {"moment"},
-    "1/m": {"curvature"},
-    "rad": {"angle"},
-    "°": {"angle"},
-}
-"""Quantities that a loop has on its axes, by their unit."""
 Axes = tuple[tuple[str, str], tuple[str, str]]
 """Titles and units of a loop's displacement and force."""
 
@@ -76,7 +68,7 @@ def axes_of(loop: Loop) -> Axes:
 
 def is_a_loop(data: bytes | str, source: str) -> bool:
     """Whether a table is a measured loop, and not results over places."""
-    table = read_table(data, lambda remedy: SettingError("--with", source, CAN, remedy))
+    table = read_table(data, partial(SettingError, "--with", source, CAN))
     return not any(column.quantities[0] & {"position"} for column in table.columns)
 
 
@@ -97,11 +89,7 @@ def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
     SettingError
         For a table without these columns, too large or too small, or with what is no finite number.
     """
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError("the measured loop", source, CAN, remedy)
-
-    table = read_table(data, refuse)
+    table = read_table(data, partial(SettingError, "the measured loop", source, CAN))
     return loop_in(table, columns_of(table, axes), source, axes)
 
 
@@ -120,13 +108,9 @@ def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColum
     rest = [column for column in columns if column is not time]
     both = []
     for title, unit in axes:
-        column = table.find(rest, KINDS[unit], unit)
-        if column is None:
-            names = ", ".join(repr(column.name) for column in columns)
-            wanted = min(KINDS[unit], key=len)
-            raise table.refuse(f"its head names no {wanted} for {title}, {unit} (it has {names})")
-        rest.remove(column)
-        both.append(column)
+        remedy = f"name that of {title}, {unit}"
+        both.append(table.choose(rest, KINDS[unit], unit, remedy=remedy))
+        rest.remove(both[-1])
     return time, both[0], both[1]
 
 
@@ -150,11 +134,9 @@ def loop_in(
         raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
     if time is not None:
         used, units = [time, *used], ["s", *units]
-    numbers = table.numbers(used)
-    sizes = [column.size(unit, table.refuse) for column, unit in zip(used, units, strict=True)]
     names = ["time", axes[0][0], axes[1][0]][-len(used) :]
-    message = table.message(used, names, units, numbers)
-    *times, displacement, force = numbers * np.array(sizes)[:, None]
+    numbers, message = table.read(used, names, units)
+    *times, displacement, force = numbers
     if len(force) < FEWEST:
         raise table.refuse(f"it has {len(force)} rows: give at least {FEWEST}")
     for values, (title, _) in zip((displacement, force), axes, strict=True):

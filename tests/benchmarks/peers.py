@@ -15,10 +15,10 @@ from collections.abc import Iterator
 
 from public_solvers import PUBLIC, PeerError, solve_by
 
+from solver.console import print_tables
 from solver.files import settings_from_command
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of, rubs_on_supports
-from solver.remarks import print_tables
 from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.page import aligned

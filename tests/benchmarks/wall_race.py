@@ -31,7 +31,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.quantities.memory import resident, settle
+from solver.study.quantities.finished import settle
+from solver.study.quantities.run_measures import resident
 from solver.study.speed.error_against_time import seconds_of
 
 COURSES = (3, 5, 8, 12, 16, 32)

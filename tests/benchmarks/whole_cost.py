@@ -14,8 +14,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.quantities.finished import finished_run
-from solver.study.quantities.memory import memory_of, settle
+from solver.study.quantities.finished import finished_run, settle
+from solver.study.quantities.run_measures import memory_of
 
 SIZES: tuple[tuple[str, dict[str, Any]], ...] = (
     *((scene, {}) for scene in CATALOGUE),

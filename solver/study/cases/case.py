@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.files import scene_settings
+from solver.files import check_keys, placed, read_toml, require, scene_settings
 from solver.scenes import CATALOGUE
 from solver.scenes.entry import Emblem
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
-from solver.toml_files import check_keys, placed, read_toml
 
 KEYS = {
     "order": int,
@@ -109,14 +108,12 @@ def all_cases() -> list[Case]:
 
 def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
     check_keys(entries, KEYS, optional=OPTIONAL)
-    if not 0.0 < entries["tolerance"] < 1.0:
-        allowed = "a share above 0 and below 1"
-        raise SettingError("tolerance", entries["tolerance"], allowed, "say what the mesh leaves")
+    tolerance, can = entries["tolerance"], "a share above 0 and below 1"
+    require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
     working = [own for own in settings.definitions() if settings.applies(own)]
     for control in entries["controls"]:
-        if control not in working:
-            remedy = "name a setting that does something here"
-            raise SettingError("controls", control, ", ".join(working), remedy)
+        remedy = "name a setting that does something here"
+        require(control in working, "controls", control, ", ".join(working), remedy)
     paths = entries.get("picture", CATALOGUE[settings.scene].emblem._asdict())
     check_keys(paths, dict.fromkeys(Emblem._fields, str))
     read = dict(entries) | {key: tuple(entries.get(key, ())) for key in ("controls", "views")}

@@ -42,13 +42,14 @@ def reading(text: object) -> Quantity:
     if parameter is None or not (at_sign or parameter.needed):
         return quantity
     low, high = parameter.bounds
-    kind = "a whole number" if parameter.whole else "a number"
+    is_counted = isinstance(low, int)
+    kind = "a whole number" if is_counted else "a number"
     allowed = f"{name}@ and {kind} from {low:g} to {high:g}"
     try:
         at = float(number)
     except ValueError:
         raise SettingError("quantity", text, allowed, "write the parameter") from None
-    if not low <= at <= high or (parameter.whole and at != int(at)):
+    if not low <= at <= high or (is_counted and at != int(at)):
         raise SettingError("quantity", text, allowed, "mend the parameter")
     title = quantity.title + parameter.words.format(at)
     return replace(quantity, name=f"{name}@{at!r}", title=title, at=at)

@@ -48,6 +48,12 @@ def _over_a_displacement(settings: Settings) -> bool:
     return features_of(settings).loop_is_over_displacement
 
 
+def largest_load(run: FinishedRun) -> int:
+    """Instant at which the loop's force first is largest."""
+    size = np.abs(run.force)
+    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
+
+
 @quantity("Largest displacement", "m")
 def peak_displacement(run: FinishedRun) -> float:
     """Largest displacement of any node at any instant, m."""
@@ -57,11 +63,13 @@ def peak_displacement(run: FinishedRun) -> float:
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
 
 
-def axial_force_at(run: FinishedRun, instant: int) -> float:
-    """Axial force in the element where it is largest at an instant, pull positive, N."""
-    some = slice(instant, instant + 1)
-    force = AxialForce(run.problem, some)(run.iterate.displacement[:, some])
-    return float(force[np.abs(force).argmax(), 0])
+def _most_axial_force(run: FinishedRun, at: float | None) -> int:
+    """Instant at a share of the interval, or that of the largest axial force."""
+    if at is not None:
+        times = run.problem.instants
+        return int(np.abs(times - at * times[-1]).argmin())
+    force = AxialForce(run.problem)(run.iterate.displacement)
+    return int(np.abs(force).max(axis=0).argmax())
 
 
 @quantity(
@@ -69,15 +77,13 @@ def axial_force_at(run: FinishedRun, instant: int) -> float:
     "N",
     parameter=AT,
     applies=lambda settings: kind_of(settings) in ("rod", "wires"),
-    at_instant=axial_force_at,
+    when=_most_axial_force,
 )
-def axial_force(run: FinishedRun, at: float | None) -> float:
-    """Largest axial force in any element at any instant, or at one, N, pull positive."""
-    if at is not None:
-        times = run.problem.instants
-        return axial_force_at(run, int(np.abs(times - at * times[-1]).argmin()))
-    force = AxialForce(run.problem)(run.iterate.displacement)
-    return float(force.flat[np.abs(force).argmax()])
+def axial_force(run: FinishedRun, instant: int) -> float:
+    """Largest axial force in any element at an instant, N, pull positive."""
+    some = slice(instant, instant + 1)
+    force = AxialForce(run.problem, some)(run.iterate.displacement[:, some])
+    return float(force[np.abs(force).argmax(), 0])
 
 
 def _force_at(side: str) -> Quantity:
@@ -272,27 +278,10 @@ def _carried(run: FinishedRun) -> Iterator[tuple[Array, Array]]:
             yield pressing[pressing > 0.0], held[pressing > 0.0]
 
 
-def largest_load(run: FinishedRun) -> int:
-    """Instant at which the loop's force first is largest."""
-    size = np.abs(run.force)
-    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
-
-
-def displacement_at(run: FinishedRun, instant: int) -> float:
-    """Displacement of the loop at an instant, m; NaN for an angle."""
-    is_length = features_of(run.settings).loop_is_over_displacement
-    return float(run.displacement[instant]) if is_length else math.nan
-
-
-@quantity(
-    "Displacement at the largest load",
-    "m",
-    applies=_over_a_displacement,
-    at_instant=displacement_at,
-)
-def end_displacement(run: FinishedRun) -> float:
+@quantity("Displacement at the largest load", "m", applies=_over_a_displacement, when=largest_load)
+def end_displacement(run: FinishedRun, instant: int) -> float:
     """Displacement of the loop where its force first is largest, m."""
-    return displacement_at(run, largest_load(run))
+    return float(run.displacement[instant])
 
 
 @quantity("Displacement left without load", "m", applies=_over_a_displacement)
@@ -306,7 +295,7 @@ def residual_displacement(run: FinishedRun) -> float:
 def stiffness(run: FinishedRun) -> float:
     """Largest force of the loop over its displacement, N/m."""
     instant = largest_load(run)
-    moved = displacement_at(run, instant)
+    moved = float(run.displacement[instant])
     return float(run.force[instant]) / moved if moved else math.nan
 
 
@@ -323,20 +312,13 @@ def slipped_share(run: FinishedRun) -> float:
     return float(_has_slipped(run)[:, -1].mean())
 
 
-def stuck_share_at(run: FinishedRun, instant: int) -> float:
-    """Share of what touches that sticks at an instant, by length; NaN if nothing does."""
+@quantity("Share of the contact that sticks at the largest load", is_share=True, when=largest_load)
+def stuck_share(run: FinishedRun, instant: int) -> float:
+    """Share of what touches that sticks at the largest load, by length; NaN if nothing does."""
     length, every = _touching(run)
     status = every[:, instant]
     touching = length[status != OPEN].sum()
     return float(length[status == 0].sum() / touching) if touching else math.nan
-
-
-@quantity(
-    "Share of the contact that sticks at the largest load", is_share=True, at_instant=stuck_share_at
-)
-def stuck_share(run: FinishedRun) -> float:
-    """Share of what touches that sticks at the largest load."""
-    return stuck_share_at(run, largest_load(run))
 
 
 def _has_slipped(run: FinishedRun) -> NDArray[np.bool_]:

@@ -142,21 +142,16 @@ def slipping_bending(run: FinishedRun) -> float:
     return _rope(run.settings).section.slipping_bending
 
 
-def bending_stiffness_at(run: FinishedRun, instant: int) -> float:
-    """Moment over the curvature at an instant, N m^2."""
-    curvature = float(run.displacement[instant])
-    return float(run.force[instant]) / curvature if curvature else math.nan
-
-
 @quantity(
     "Moment over the largest curvature",
     "N·m^2",
     applies=is_rope,
-    at_instant=bending_stiffness_at,
+    when=lambda run: int(np.argmax(np.abs(run.displacement))),
 )
-def bending_stiffness(run: FinishedRun) -> float:
+def bending_stiffness(run: FinishedRun, instant: int) -> float:
     """Moment at the largest curvature over that, N m^2."""
-    return bending_stiffness_at(run, int(np.argmax(np.abs(run.displacement))))
+    curvature = float(run.displacement[instant])
+    return float(run.force[instant]) / curvature if curvature else math.nan
 
 
 @quantity("Energy dissipated, a metre of strand", "J/m", parameter=CYCLE, applies=is_bent_alike)
@@ -199,8 +194,14 @@ def wire_work(run: FinishedRun) -> float:
     )
 
 
-def recovery_length_at(run: FinishedRun, instant: int) -> float:
-    """How far from its break a wire carries its tension again at an instant, m.
+@quantity(
+    "Length over which a broken wire regains its force",
+    "m",
+    applies=lambda settings: features_of(settings).has_break,
+    when=lambda run: int(np.argmax(run.force)),
+)
+def recovery_length(run: FinishedRun, instant: int) -> float:
+    """How far from its break a wire carries its tension again, at the largest tension, m.
 
     NaN without a broken wire, or without tension; infinite if it does so on neither side.
     """
@@ -215,17 +216,6 @@ def recovery_length_at(run: FinishedRun, instant: int) -> float:
     node = round(place / size)
     sides = share[node:], share[:node][::-1]
     return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
-
-
-@quantity(
-    "Length over which a broken wire regains its force",
-    "m",
-    applies=lambda settings: features_of(settings).has_break,
-    at_instant=recovery_length_at,
-)
-def recovery_length(run: FinishedRun) -> float:
-    """How far from its break a wire carries its tension again, at the largest tension, m."""
-    return recovery_length_at(run, int(np.argmax(run.force)))
 
 
 def _reached(share: Array, level: float) -> float:

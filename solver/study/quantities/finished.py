@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -22,13 +22,18 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.rules import States
-from solver.scenes import discretise, loop_of
+from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import slips_of
 
 REFUSED, BROKEN = "refused", "broken"
 """How a run ends that never was one: by refused settings, by a fault of the engine."""
+TINY: dict[str, dict[str, object]] = {
+    "bar": {"elements": 4, "substructures": 2, "instants": 3},
+    "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
+}
+"""Runs that go before others: to bring in code is no part of a run's memory, nor of its time."""
 ALONE = 60
 """Iterations that take as long as a run of its own, with all beside them. A status step from a
 neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
@@ -92,6 +97,13 @@ class FinishedRun:
         """Energy that friction takes between each instant and the one before, (n_instants,), J."""
         works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
         return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
+
+
+@cache
+def settle() -> None:
+    """Make tiny runs, once in a process, after which a run brings in no code any more."""
+    for scene, tiny in TINY.items():
+        finished_run(CATALOGUE[scene].settings.checked(tiny))
 
 
 def finished_run(

@@ -20,20 +20,17 @@ class Parameter:
     words
         What it adds to the title, with a place for the number.
     bounds
-        Smallest and largest.
-    whole
-        Whether only whole numbers have a meaning.
+        Smallest and largest, integers where only whole numbers have a meaning.
     needed
         Whether the quantity has no meaning without it.
     """
 
     words: str
     bounds: tuple[float, float]
-    whole: bool = False
     needed: bool = False
 
 
-CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
+CYCLE = Parameter(" in cycle {:g}", (1, 10_000))
 WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 """An error that is to be reached."""
 
@@ -51,8 +48,10 @@ class Quantity:
     unit
         SI unit, empty for a pure number.
     of
-        Takes it of a run, and of the parameter or None if there is one: NaN where the run has none,
-        infinity where what is waited for never comes.
+        Takes it of a run, and of the instant if there is a `when`, or else of the parameter or None
+        if there is one: NaN where the run has none, infinity where what is waited for never comes.
+    when
+        Instant at which it is taken of a run, and of the parameter or None if there is one.
     parameter, at
         What it may be asked with, and what it is asked with.
     reads
@@ -65,26 +64,27 @@ class Quantity:
         starts elsewhere has another.
     applies
         Whether runs of these settings may have it; others have NaN.
-    at_instant
-        Takes what it would be at an instant, for one that is taken at the largest load.
     """
 
     name: str
     title: str
     unit: str
     of: Callable[..., float]
+    when: Callable[..., int] | None = None
     parameter: Parameter | None = None
     reads: Literal["errors", "indicators"] | None = None
     is_share: bool = False
     is_of_course: bool = False
     applies: Callable[[Settings], bool] = lambda settings: True
-    at_instant: Callable[[FinishedRun, int], float] | None = None
     at: float | None = None
 
     def __call__(self, run: FinishedRun) -> float:
         """Value of a run."""
         if not self.applies(run.settings):
             return math.nan
+        if self.when is not None:
+            instant = self.when(run) if self.parameter is None else self.when(run, self.at)
+            return float(self.of(run, instant))
         return float(self.of(run) if self.parameter is None else self.of(run, self.at))
 
 

@@ -3,33 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.memory import memory_of
+from solver.checked import dump
+from solver.executors import ONE_THREAD
+from solver.files import settings_from_toml
+from solver.settings import Settings
+from solver.study.quantities.finished import FinishedRun, finished_run, settle
 from solver.study.quantities.quantity import WITHIN, Parameter, Quantity, quantity
 
-ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
+ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000))
+STATUS = Path("/proc/self/status")
+PROGRAM = f"import sys\nfrom {__name__} import growth\nprint(growth(sys.stdin.read()))"
+ROOT = Path(__file__).resolve().parents[3]
 
 
-def _recorded(column: str) -> Callable[[FinishedRun, float | None], float]:
+def _record(
+    column: str, title: str, reads: Literal["errors", "indicators"], *, is_share: bool = False
+) -> Quantity:
+    """Scalar of the records, at an iteration or at the end."""
+
     def of(run: FinishedRun, at: float | None) -> float:
         records = run.solution.records
         if at is not None:
             records = [entry for entry in records if entry.iteration == at]
         return float(getattr(records[-1], column)) if records else math.nan
 
-    return of
-
-
-def _record(
-    column: str, title: str, reads: Literal["errors", "indicators"], *, is_share: bool = True
-) -> Quantity:
-    """Scalar of the records, at an iteration or at the end."""
-    return Quantity(column, title, "", _recorded(column), ITERATION, reads, is_share, True)
+    return Quantity(
+        column, title, "", of, None, ITERATION, reads=reads, is_share=is_share, is_of_course=True
+    )
 
 
 def _until(column: str, title: str, unit: str, field: str, words: str) -> Quantity:
@@ -46,7 +55,7 @@ def _until(column: str, title: str, unit: str, field: str, words: str) -> Quanti
 
     name = f"{'iterations' if column == 'iteration' else column}_to_{field}"
     full = f"{title} to an error of the {words} of"
-    return Quantity(name, full, unit, of, WITHIN, "errors", is_of_course=True)
+    return Quantity(name, full, unit, of, None, WITHIN, reads="errors", is_of_course=True)
 
 
 @quantity("Iterations", is_of_course=True)
@@ -58,7 +67,8 @@ def iterations(run: FinishedRun) -> float:
 @quantity("Run time", "s", is_of_course=True)
 def seconds(run: FinishedRun) -> float:
     """Time of the whole run, s."""
-    return _recorded("seconds")(run, None)
+    records = run.solution.records
+    return records[-1].seconds if records else math.nan
 
 
 @quantity("Run time of an iteration", "s", is_of_course=True)
@@ -70,15 +80,55 @@ def seconds_per_iteration(run: FinishedRun) -> float:
 
 @quantity("Memory at its peak", "B", is_of_course=True)
 def memory(run: FinishedRun) -> float:
-    """Memory that the run takes, B, which takes another run; NaN where none is told."""
+    """Memory that the run takes, B; NaN where the operating system tells none (not Linux).
+
+    That is by how much the resident memory of a process of its own grows at most in one run more:
+    what Python counts would leave out what sparse factorisations take.
+    """
     return memory_of(run.settings)
 
 
-indicator = _record("indicator", "LATIN indicator", "indicators", is_share=False)
-behaviour = _record("behaviour", "k-free indicator", "indicators", is_share=False)
-estimated_error = _record("estimated_error", "Estimated error of the contact force", "indicators")
-error_displacement = _record("error_displacement", "Error of the displacement", "errors")
-error_force = _record("error_force", "Error of the contact force", "errors")
+def memory_of(settings: Settings) -> float:
+    """Memory that a run takes, B, as above."""
+    if not STATUS.exists():
+        return math.nan
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        input=dump(settings),
+        env=os.environ | ONE_THREAD | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return float(done.stdout)
+
+
+def growth(text: str) -> int:
+    """Memory that a run of settings, in TOML, takes in this process, B."""
+    settings = settings_from_toml(text)
+    settle()
+    before = resident("VmRSS")
+    finished_run(settings, errors=False, indicators=False)
+    return resident("VmHWM") - before
+
+
+def resident(name: str) -> int:
+    """A line of what the operating system says of this process, B."""
+    line = re.search(rf"^{name}:\s+(\d+) kB$", STATUS.read_text(encoding="ascii"), re.MULTILINE)
+    if line is None:
+        raise LookupError(name)
+    return 1024 * int(line[1])
+
+
+indicator = _record("indicator", "LATIN indicator", "indicators")
+behaviour = _record("behaviour", "k-free indicator", "indicators")
+estimated_error = _record(
+    "estimated_error", "Estimated error of the contact force", "indicators", is_share=True
+)
+error_displacement = _record(
+    "error_displacement", "Error of the displacement", "errors", is_share=True
+)
+error_force = _record("error_force", "Error of the contact force", "errors", is_share=True)
 _FIELDS = ("displacement", "displacement"), ("force", "contact force")
 iterations_to_displacement, iterations_to_force = (
     _until("iteration", "Iterations", "", *field) for field in _FIELDS

@@ -29,8 +29,7 @@ from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
-from solver.study.quantities.memory import settle
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run, settle
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"

@@ -1,0 +1,320 @@
+"""Lessons: files that are read, checked against the engine, and shown by the page.
+
+A lesson is a question, a prediction, a run with one or two controls, and claims that runs test.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from solver.checked import dump
+from solver.definitions import SettingError, is_number
+from solver.files import check_keys, placed, read_toml, require, scene_settings
+from solver.settings import Settings
+from solver.study.quantities import reading
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantity import Quantity
+
+SUBJECTS = "mechanics", "method"
+KEYS = {
+    "title": str,
+    "order": int,
+    "subject": str,
+    "question": str,
+    "choices": list,
+    "right": int,
+    "why": str,
+    "scene": str,
+    "settings": dict,
+    "controls": list,
+    "views": list,
+    "text": str,
+    "explanation": str,
+    "instant": (int, float),
+    "interface": str,
+    "draw": str,
+    "beside": list,
+    "until": (int, float),
+    "checkpoints": list,
+}
+"""Keys of a lesson, and the type of each; `OPTIONAL` may be left out."""
+OPTIONAL = "interface", "draw", "beside", "until"
+OF_CHECKPOINT = {
+    "claim": str,
+    "settings": dict,
+    "quantity": str,
+    "expected": (int, float, list, str),
+    "tolerance": (int, float),
+}
+"""Keys of a checkpoint; `settings` and `tolerance` may be left out."""
+OF_ENDING = {"claim": str, "settings": dict, "says": str}
+"""Keys of one that tells with which words a run ends; `settings` may be left out."""
+MOST_CONTROLS = 2
+FEWEST_POINTS = 3
+"""Of a curve that one may draw."""
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """A claim of a lesson, and how it is tested.
+
+    Attributes
+    ----------
+    claim
+        One sentence.
+    settings
+        Of the run that it is about.
+    quantity
+        Of that run.
+    low, high
+        Both ends of what it may be; both infinite for what never comes.
+    expected
+        The same in words.
+    """
+
+    claim: str
+    settings: Settings
+    quantity: Quantity
+    low: float
+    high: float
+    expected: str
+
+    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
+        """Whether it holds in a run, and what was measured there, in words.
+
+        A quantity of one instant has to be as expected where the plots stand, too: at a share of
+        the interval.
+        """
+        quantity, value = self.quantity, self.quantity(run)
+        holds, words = self.low <= value <= self.high, _written(value, quantity.unit)
+        if quantity.when is not None:
+            seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
+            if not self.low <= seen <= self.high:
+                holds = False
+                words += f", but {_written(seen, quantity.unit)} at the instant of the plots"
+        return holds, f"{quantity.title}: {words}; expected {self.expected}"
+
+
+def _written(value: float, unit: str) -> str:
+    return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()
+
+
+@dataclass(frozen=True, eq=False)
+class EndingClaim:
+    """A claim of a lesson about how a run ends: words that its status has to say."""
+
+    claim: str
+    settings: Settings
+    says: str
+
+    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
+        """Whether it holds in a run, and what that says, whatever share the plots stand at."""
+        message = run.solution.status.advice
+        return self.says in message, f"The run says: {message}; expected {self.says}"
+
+
+@dataclass(frozen=True, eq=False)
+class Lesson:
+    """A lesson as its file says.
+
+    Attributes
+    ----------
+    name
+        That of its file, without the ending.
+    order, subject
+        Its place among the lessons, and what it is about: one of `SUBJECTS`.
+    choices, right, why
+        Answers to predict from, the index of the right one, and why it is right.
+    settings
+        Of the run that it starts with.
+    controls, views
+        Names of the settings that can still be moved, one or two, and of the plots that stay.
+    text, explanation
+        Paragraphs to read before the choice, and that follow it.
+    instant
+        At which its plots stand, as a share of the interval.
+    interface
+        Name of that which its plots are of; empty is the first one.
+    draw
+        Name of the setting over which one may draw the answer as a curve; empty for none.
+    beside
+        Names of the plots that stand beside the question already; the others would answer it.
+    until
+        Where its picture, which moves, begins anew before the choice, as a share of the interval.
+    """
+
+    name: str
+    order: int
+    subject: str
+    title: str
+    question: str
+    choices: tuple[str, ...]
+    right: int
+    why: str
+    settings: Settings
+    controls: tuple[str, ...]
+    views: tuple[str, ...]
+    text: tuple[str, ...]
+    explanation: tuple[str, ...]
+    checkpoints: tuple[Claim | EndingClaim, ...]
+    instant: float
+    interface: str = ""
+    draw: str = ""
+    beside: tuple[str, ...] = ()
+    until: float = 1.0
+
+    @property
+    def curve(self) -> list[tuple[float, float]]:
+        """What is measured over the setting that one draws over, in its order.
+
+        Of the checkpoints that change nothing else and ask for the quantity of the first of them:
+        the middle of what is expected, infinite for never.
+        """
+        curve: dict[float, float] = {}
+        own, asked = self.settings.values(), ""
+        for claim in self.checkpoints:
+            if not isinstance(claim, Claim):
+                continue
+            values = claim.settings.values()
+            same = all(values[name] == own[name] for name in own if name != self.draw)
+            if self.draw in values and same and asked in ("", claim.quantity.name):
+                asked = claim.quantity.name
+                curve[values[self.draw]] = 0.5 * (claim.low + claim.high)
+        return sorted(curve.items())
+
+    @property
+    def drawn_quantity(self) -> str:
+        """What that curve shows, in words."""
+        claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
+        return next((claim.quantity.title for claim in claims), "")
+
+
+def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
+    """Whether what a lesson claims holds, each with a line; equal settings share a run."""
+    wanted: defaultdict[str, set[str | None]] = defaultdict(set)
+    for claim in lesson.checkpoints:
+        reads = claim.quantity.reads if isinstance(claim, Claim) else None
+        wanted[dump(claim.settings)].add(reads)
+    runs: dict[str, FinishedRun] = {}
+    for claim in lesson.checkpoints:
+        key = dump(claim.settings)
+        if key not in runs:
+            kinds = wanted[key]
+            runs[key] = finished_run(
+                claim.settings, errors="errors" in kinds, indicators="indicators" in kinds
+            )
+        holds, words = claim.tested(runs[key], lesson.instant)
+        yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"
+
+
+def lesson_from_file(path: Path) -> Lesson:
+    """Read a lesson.
+
+    Raises
+    ------
+    SettingError
+        For a file that cannot be read, or that is refused; the message begins with its name.
+    """
+    with placed(path.name):
+        return _lesson(path.stem, read_toml(path, "lesson"))
+
+
+def _lesson(name: str, values: dict[str, Any]) -> Lesson:
+    check_keys(values, KEYS, optional=OPTIONAL)
+    kind = scene_settings(values.pop("scene"))
+    with placed("settings"):
+        settings = kind.checked(values["settings"])
+    for key in ("choices", "controls", "views", "beside"):
+        names = values.get(key)
+        if names is None:
+            continue
+        are_names = bool(names) and all(isinstance(text, str) and text for text in names)
+        require(are_names, key, names, "a list of texts, at least one", "write them in quotes")
+        values[key] = tuple(names)
+    _check(values, settings)
+    for key in ("text", "explanation"):
+        with placed(key):
+            values[key] = _paragraphs(values[key], values["controls"])
+    checkpoints = tuple(_checkpoints(values["checkpoints"], settings))
+    changed = {"settings": settings, "right": values["right"] - 1, "checkpoints": checkpoints}
+    lesson = Lesson(name=name, **(values | changed))
+    points = [place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)]
+    is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
+    can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
+    require(is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out")
+    return lesson
+
+
+def _check(values: Mapping[str, Any], settings: Settings) -> None:
+    """Refuse numbers out of range, and names of what there is not."""
+    right, count, controls = values["right"], len(values["choices"]), values["controls"]
+    can = f"the number of one of at least two choices, of which there are {count}"
+    require(1 <= right <= count >= 2, "right", right, can, "count from 1")
+    subject, instant, until = values["subject"], values["instant"], values.get("until", 1.0)
+    known = ", ".join(SUBJECTS)
+    require(subject in SUBJECTS, "subject", subject, known, "say what it is about")
+    can = "a share of the interval, from 0 to 1"
+    require(0.0 <= instant <= 1.0, "instant", instant, can, "say where its plots stand")
+    can += " and above 0"
+    require(0.0 < until <= 1.0, "until", until, can, "say how far its picture moves")
+    beside, views = values.get("beside", ()), values["views"]
+    require({*beside} <= {*views}, "beside", beside, ", ".join(views), "choose some of its views")
+    can = f"at most {MOST_CONTROLS} settings"
+    is_few = len(controls) <= MOST_CONTROLS
+    require(is_few, "controls", controls, can, "a lesson is about one thing")
+    working = [own for own in settings.definitions() if settings.applies(own)]
+    for control in controls:
+        remedy = "name a setting that does something with the lesson's settings"
+        require(control in working, "controls", control, ", ".join(working), remedy)
+
+
+def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
+    """Paragraphs between empty lines; placeholders that stand for nothing are refused."""
+    for place in re.findall(r"\{(.*?)\}", text):
+        kind, _, name = place.partition(":")
+        if kind == "value":
+            reading(name)
+        elif kind != "control" or name not in controls:
+            known = ", ".join(f"{{control:{control}}}" for control in controls)
+            remedy = "correct what stands in braces"
+            raise SettingError("placeholder", place, f"{known}, {{value:QUANTITY}}", remedy)
+    return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
+
+
+def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | EndingClaim]:
+    require(bool(values), "checkpoints", values, "at least one", "say what the lesson claims")
+    for number, entry in enumerate(values, start=1):
+        with placed(f"checkpoint {number}"):
+            is_table = isinstance(entry, dict)
+            require(is_table, "checkpoints", entry, "a table", "write [[checkpoints]]")
+            keys = OF_ENDING if "says" in entry else OF_CHECKPOINT
+            check_keys(entry, keys, optional=("settings", "tolerance"))
+            claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
+            if "says" in entry:
+                yield EndingClaim(claim, own, entry["says"])
+            else:
+                yield Claim(claim, own, reading(entry["quantity"]), *_expected(entry))
+
+
+def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
+    """Both ends of what is expected, and words: a number and its tolerance, a range, or "never"."""
+    value, tolerance = entry["expected"], entry.get("tolerance")
+    if value == "never" and tolerance is None:
+        return math.inf, math.inf, "never"
+    if isinstance(value, list) and tolerance is None and len(value) == 2:
+        if all(map(is_number, value)) and value[0] <= value[1]:
+            return value[0], value[1], f"{value[0]:g} to {value[1]:g}"
+    elif is_number(value) and tolerance is not None:
+        if not 0.0 <= tolerance < 1.0:
+            raise SettingError("tolerance", tolerance, "a share from 0 to below 1", "mend it")
+        off = abs(value) * tolerance
+        return value - off, value + off, f"{value:g} within {100 * tolerance:g} %"
+    allowed = 'a number with a tolerance, a range [low, high], or "never"'
+    remedy = "write a tolerance beside a number, and only there"
+    raise SettingError("expected", value, allowed, remedy)

@@ -1,1 +1,0 @@
-"""Lessons: data files that are read, checked against the engine, and shown by the page."""
