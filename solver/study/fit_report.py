@@ -23,7 +23,7 @@ from solver.study.page import (
     Section,
     aligned,
     bullets,
-    plain_table,
+    html_table,
     write_csv,
     write_page,
 )
@@ -147,7 +147,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
     ]
     sections: list[Section] = [
         bullets(sentences),
-        plain_table(_rows(fit)),
+        html_table(_rows(fit)),
         PlotSection("Loop and differences", _panels(fit, measured)),
         f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
     ]

@@ -29,16 +29,12 @@ PAPAILIOU = (
 )
 PEAK = 910.0
 """N; fronts then stop within elements, not at nodes, where they are exact."""
-CYCLE = {
-    "load": [[0.0, 0.0], [0.2, PEAK], [0.6, -PEAK], [1.0, PEAK]],
-    "elements": 200,
-    "instants": 101,
-}
+MESH = {"elements": 200, "instants": 41}
+CYCLE = {**MESH, "load": [[0.0, 0.0], [0.2, PEAK], [0.6, -PEAK], [1.0, PEAK]], "instants": 101}
 LOOSENED = {
+    **MESH,
     "load": [[0.0, 0.0], [0.5, 610.0], [1.0, 610.0]],
     "pressure_load": [[0.0, 5000.0], [0.5, 5000.0], [1.0, 2500.0]],
-    "elements": 200,
-    "instants": 41,
 }
 SOFT = {"friction_law": "compliant", "contact_stiffness": 100.0}
 CHANGED = {"friction_law": "slip-dependent", "slip_length": 1e-3}
@@ -50,28 +46,46 @@ STEPS = 60
 
 def rod_cases() -> list[KnownCase]:
     """Cases, none of them solved yet."""
-    springs, broken = {**_pull(1200.0), **SOFT}, {**_pull(610.0), "instants": 21}
-    loosened, soft = "bar whose pressure halves while the load stands", "bar on contact that gives"
-    hardens, softens = ({**_pull(PEAK), **CHANGED, "friction_ratio": ratio} for ratio in (1.5, 0.5))
-    changing = "bar on friction that {} with slip"
     return [
         KnownCase("bar pulled", PLAY, 1e-4, "bar", _pull(PEAK), _pulled),
         KnownCase("bar pulled until all slides", PLAY, 1e-9, "bar", _pull(1800.0), _slid),
         KnownCase("bar pulled to and fro", PLAY, 2e-3, "bar", CYCLE, _cycled),
-        KnownCase(loosened, PLAY, 1e-4, "bar", LOOSENED, _pulled),
-        KnownCase(f"{soft} way before it slips", JENKINS, 1e-4, "bar", springs, _gave_way),
         KnownCase(
-            f"{soft} way, pulled to and fro", MASING, 2e-3, "bar", {**CYCLE, **SOFT}, _sprung_cycle
+            "bar whose pressure halves while the load stands", PLAY, 1e-4, "bar", LOOSENED, _pulled
         ),
-        KnownCase(changing.format("hardens"), CHANGING, 1e-4, "bar", hardens, _changed),
-        KnownCase(changing.format("softens"), CHANGING, 1e-4, "bar", softens, _changed),
-        KnownCase("broken wire between two others", OWN, 2e-3, "strand", broken, _broke),
-        *map(_bent, (1.2, 1.5, 6.0)),
+        KnownCase(
+            "bar on contact that gives way before it slips",
+            *(JENKINS, 1e-4, "bar", {**_pull(1200.0), **SOFT}, _gave_way),
+        ),
+        KnownCase(
+            "bar on contact that gives way, pulled to and fro",
+            *(MASING, 2e-3, "bar", {**CYCLE, **SOFT}, _cycled),
+        ),
+        *(
+            KnownCase(
+                f"bar on friction that {changes} with slip",
+                *(CHANGING, 1e-4, "bar"),
+                {**_pull(PEAK), **CHANGED, "friction_ratio": ratio},
+                _changed,
+            )
+            for changes, ratio in {"hardens": 1.5, "softens": 0.5}.items()
+        ),
+        KnownCase(
+            "broken wire between two others",
+            *(OWN, 2e-3, "strand", {**_pull(610.0), "instants": 21}, _broke),
+        ),
+        *(
+            KnownCase(
+                f"strand of helical wires bent to {share:g} kappa_0",
+                *(PAPAILIOU, 0.01, "rope", _bend(share), _bent),
+            )
+            for share in (1.2, 1.5, 6.0)
+        ),
     ]
 
 
 def _pull(peak: float) -> dict[str, Any]:
-    return {"load": [[0.0, 0.0], [1.0, peak]], "elements": 200, "instants": 41}
+    return {"load": [[0.0, 0.0], [1.0, peak]], **MESH}
 
 
 def _end(exact: float, answer: Answer) -> Number:
@@ -91,18 +105,12 @@ def _slid(answer: Answer) -> Iterator[Number]:
 
 
 def _cycled(answer: Answer) -> Iterator[Number]:
-    stiffness, bound = answer.bar
-    most = PEAK**2 / (2.0 * stiffness * bound)
-    back = most - PEAK**2 / (4.0 * stiffness * bound)
-    return _loop(answer, back, 2.0 * PEAK**3 / (3.0 * stiffness * bound))
-
-
-def _sprung_cycle(answer: Answer) -> Iterator[Number]:
-    return _loop(answer, *cycled_compliant_bar(PEAK, *_sprung(answer)))
-
-
-def _loop(answer: Answer, back: float, energy: float) -> Iterator[Number]:
     """Where the end is when first unloaded, and what a cycle takes from the peak on."""
+    stiffness, bound = answer.bar
+    back = PEAK**2 / (4.0 * stiffness * bound)
+    energy = 2.0 * PEAK**3 / (3.0 * stiffness * bound)
+    if answer.settings.friction_law == "compliant":
+        back, energy = cycled_compliant_bar(PEAK, *_sprung(answer))
     load, end = answer.settings.path("load"), answer.fields.displacement[-1]
     loaded = int(np.argmax(load))
     unloaded = loaded + int(np.argmin(np.abs(load[loaded : loaded + len(load) // 2])))
@@ -123,9 +131,8 @@ def _gave_way(answer: Answer) -> Iterator[Number]:
 
 
 def _changed(answer: Answer) -> Iterator[Number]:
-    settings = answer.settings
-    law = settings.friction_ratio, settings.slip_length
-    yield _end(pulled_changing_bar(float(settings.path("load")[-1]), *answer.bar, *law), answer)
+    law = answer.settings.friction_ratio, answer.settings.slip_length
+    yield _end(pulled_changing_bar(PEAK, *answer.bar, *law), answer)
 
 
 def _broke(answer: Answer) -> Iterator[Number]:
@@ -144,22 +151,18 @@ def _broke(answer: Answer) -> Iterator[Number]:
     yield "force of the broken wire", "N", exact, stiffness * strain
 
 
-def _bent(share: float) -> KnownCase:
+def _bend(share: float) -> dict[str, Any]:
     """A strand bent to and fro, so many times as far as where its outer layer slips first."""
-    strand = BentStrand(mooring(LAYERS), 0.3, TENSION)
-    peak = share * strand.layers[-1].first_slip
-    changes = {
-        **{"bending": "uniform", "layers": LAYERS, "tension": TENSION, "curvature": peak},
-        **{"elements": 40, "instants": 5 * STEPS + 1},
-    }
+    first = BentStrand(mooring(LAYERS), 0.3, TENSION).layers[-1].first_slip
+    strand = {"layers": LAYERS, "tension": TENSION, "bending": "uniform"}
+    return {**strand, "curvature": share * first, "elements": 40, "instants": 5 * STEPS + 1}
 
-    def numbers(answer: Answer) -> Iterator[Number]:
-        rope = structure_of(answer.settings)
-        assert isinstance(rope, Rope)
-        moment = rope.moment()(answer.fields.displacement)
-        yield "moment", "N m", float(strand.moment(np.array(peak))), moment[STEPS]
-        taken = float(np.trapezoid(moment[STEPS:], rope.curvature[STEPS:]))
-        yield "energy of a cycle, a metre", "J/m", strand.energy(peak), taken
 
-    title = f"strand of helical wires bent to {share:g} kappa_0"
-    return KnownCase(title, PAPAILIOU, 0.01, "rope", changes, numbers)
+def _bent(answer: Answer) -> Iterator[Number]:
+    strand, peak = BentStrand(mooring(LAYERS), 0.3, TENSION), answer.settings.curvature
+    rope = structure_of(answer.settings)
+    assert isinstance(rope, Rope)
+    moment = rope.moment()(answer.fields.displacement)
+    yield "moment", "N m", float(strand.moment(np.array(peak))), moment[STEPS]
+    taken = float(np.trapezoid(moment[STEPS:], rope.curvature[STEPS:]))
+    yield "energy of a cycle, a metre", "J/m", strand.energy(peak), taken

@@ -15,7 +15,7 @@ from solver.definitions import about
 from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
+from solver.study.page import PlotSection, Section, bullets, html_table, write_csv, write_page
 from solver.study.speed.error_against_time import (
     GOAL,
     LEVELS,
@@ -214,12 +214,12 @@ def write_study(
     """
     settings = study.settings
     sections: list[Section] = [
-        f"<h2>Time to an error of the friction force</h2>\n{plain_table(table(study))}\n"
+        f"<h2>Time to an error of the friction force</h2>\n{html_table(table(study))}\n"
         f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(study)),
         f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
         PlotSection(SIZES, [ratio_panel(settings, measured)]),
-        f"{plain_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
+        f"{html_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
     ]
     page = folder / "study.html"

@@ -79,10 +79,10 @@ def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
     method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
     return StabilityCase(
         f"row {row} of seed {seed}",
+        settings.scene,
         settings.changed(),
         NOT_WRONG,
-        scene=settings.scene,
-        method="pgd" if settings.linear_stage == "pgd" else method,
+        "pgd" if settings.linear_stage == "pgd" else method,
         error_force=settings.accuracy,
         error_displacement=math.inf,
     )

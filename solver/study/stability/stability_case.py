@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+import tomllib
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 
-from solver.definitions import Pairs
+from solver.scenes import CATALOGUE
+
+CASES = Path(__file__).with_name("cases.toml")
 
 
 class Verdict(StrEnum):
@@ -21,16 +25,12 @@ class Verdict(StrEnum):
     WRONG = "wrong"
 
 
-RIGHT = "right answer"
-UNSOLVED = "right answer, or said not to be"
-MUST_REFUSE = "refused in words"
-UNCLEAR = "right answer, or one that cannot be judged"
-NOT_WRONG = "anything but a wrong answer"
+NOT_WRONG = "not wrong"
 PASSING = {
-    RIGHT: {Verdict.RIGHT},
-    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
-    MUST_REFUSE: {Verdict.REFUSED},
-    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    "right": {Verdict.RIGHT},
+    "unsolved": {Verdict.RIGHT, Verdict.UNSOLVED},
+    "unclear": {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    "refused": {Verdict.REFUSED},
     NOT_WRONG: set(Verdict) - {Verdict.WRONG},
 }
 """Verdicts with which a run passes, by what is expected of it."""
@@ -38,7 +38,6 @@ PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 RIGHT_UP_TO = 1e-6
 """Error of displacement and contact force up to which an answer is right."""
-GENERAL = {"friction_law": "general"}
 METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
 
 
@@ -50,32 +49,23 @@ class StabilityCase:
     ----------
     title
         What is extreme about it; or which one it is of random ones.
-    values
+    scene, values
         Settings that differ from the scene's own.
     expected
-        A key of `PASSING`: `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its
-        digits; `MUST_REFUSE` where there is no solution; `UNCLEAR` where friction is so large that
-        there may be several.
-    quick
-        Whether it is one of the few for a short check.
-    scene, method
-        As tables name them.
+        A key of `PASSING`.
+    method
+        As tables name it.
     error_force, error_displacement
         Errors up to which the answer is right.
     """
 
     title: str
-    values: Mapping[str, object] = field(default_factory=dict)
-    expected: str = RIGHT
-    quick: bool = False
-    scene: str = "bar"
+    scene: str
+    values: Mapping[str, object]
+    expected: str = "right"
     method: str = "fast"
     error_force: float = RIGHT_UP_TO
     error_displacement: float = RIGHT_UP_TO
-
-    def by(self, method: str) -> StabilityCase:
-        """The same by one of `METHODS`, precisely."""
-        return replace(self, method=method, values={**PRECISE, **METHODS[method], **self.values})
 
     @property
     def command(self) -> str:
@@ -88,25 +78,15 @@ class StabilityCase:
         return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
-def cases_with(
-    scene: str, common: Mapping[str, object], usually: str = RIGHT
-) -> Callable[..., StabilityCase]:
-    """A function that makes cases of a scene, which have some settings in common.
-
-    It takes what a case is called, what is expected of it, whether it is quick, and the settings
-    that make it one: these are its title where it has no other.
-    """
-
-    def case(
-        title: str = "", expected: str = usually, *, quick: bool = False, **values: object
-    ) -> StabilityCase:
-        title = title or ", ".join(f"{name}={value}" for name, value in values.items())
-        return StabilityCase(title, {**common, **values}, expected, quick, scene)
-
-    return case
-
-
-def reversals(instants: int, peak: float) -> Pairs:
-    """A load of full size that turns at every instant of a second, (s, N)."""
-    step = 1.0 / (instants - 1)
-    return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
+def extreme_cases(scenes: Collection[str] = (), *, quick: bool = False) -> Iterator[StabilityCase]:
+    """Cases of some scenes, or of all, by each method; with `quick` only the few for a check."""
+    for scene, groups in tomllib.loads(CASES.read_text(encoding="utf-8")).items():
+        if scene not in (scenes or CATALOGUE):
+            continue
+        common = groups.pop("common", {})
+        for expected, cases in groups.items():
+            for title, values in cases.items():
+                if values.pop("quick", False) or not quick:
+                    for method, own in METHODS.items():
+                        all_values = {**PRECISE, **own, **common, **values}
+                        yield StabilityCase(title, scene, all_values, expected, method)

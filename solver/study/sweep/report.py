@@ -16,7 +16,7 @@ from scipy.special import stdtrit
 from solver.arrays import Array
 from solver.checked import dump
 from solver.definitions import SettingError
-from solver.study.page import PlotSection, Section, bullets, plain_table
+from solver.study.page import PlotSection, Section, bullets, html_table
 from solver.study.sweep.chart import charts, grid
 from solver.study.sweep.plan import Plan, Row
 
@@ -96,7 +96,7 @@ def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
         PlotSection(f"Charts of {len(rows)} runs", drawn),
         *([] if all(row.holds for row in rows) else [f'<p class="caption">{CAPTION}</p>']),
         *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
-        f"<h2>Every run</h2>\n{plain_table(table)}",
+        f"<h2>Every run</h2>\n{html_table(table)}",
         f"<h2>Settings</h2>\n{bullets(head(plan))}",
     ]
 
