@@ -22,6 +22,9 @@ from solver.study.proof.known_case import known_case, rows_of
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.sizes import times_at_sizes
 from solver.study.speed.study_report import (
+    FILES as STUDY_FILES,
+)
+from solver.study.speed.study_report import (
     conditions,
     notes,
     ratio_table,
@@ -125,15 +128,15 @@ def _study(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
         curves = error_against_time(settings, chosen.repeats)
-        files = write_curves(curves, chosen.out)
+        write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        more, note = write_study(curves, sizes, chosen.out)
+        note = write_study(curves, sizes, chosen.out)
     print("\n".join(conditions(curves)), end="\n\n")
     print(aligned(table(curves)))
     print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
         print(note)
-    print(f"{len(files + more)} files in {chosen.out}")
+    print(f"{len(STUDY_FILES)} files in {chosen.out}")
     return 0
 
 

@@ -76,7 +76,7 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)
-    cells = {f"<td>{cell}</td>" for row in table(study)[1:] for cell in row}
+    cells = {f">{cell}</td>" for row in table(study)[1:] for cell in row}
     for words in (*forms_of(study.settings), INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
 

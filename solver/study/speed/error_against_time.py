@@ -4,21 +4,20 @@ Each method pays for what it needs: discretisation, factorisation, the coarser m
 pass without the clock finds the errors, and warms up; then timed passes run every method once, in
 turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
 
-Nothing is kept of what was solved before, and no garbage is collected meanwhile, as with `timeit`:
-to collect it bills all that the process holds. On a machine that others use too, seconds of the
+Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile: to collect it
+bills all that the process holds. On a machine that others use too, seconds of the
 processor say what seconds of the clock do not; what is set side by side is of one clock.
 """
 
 from __future__ import annotations
 
-import gc
 import math
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
+from timeit import timeit
 from typing import Any
 
 import numpy as np
@@ -75,14 +74,14 @@ class ErrorCurve:
     error_force: Array
 
     @property
-    def kind(self) -> str:
-        """Whose it is: "latin" or "incremental"."""
-        return "incremental" if self.method == INCREMENTAL else "latin"
+    def is_latin(self) -> bool:
+        """Whether it is a form of LATIN."""
+        return self.method != INCREMENTAL
 
     @property
     def seconds_per_iteration(self) -> float | None:
         """Median time between two iterations; None for a method that has none."""
-        if self.kind != "latin" or len(self.seconds) < 2:
+        if not self.is_latin or len(self.seconds) < 2:
             return None
         return float(np.median(np.diff(self.seconds)))
 
@@ -125,17 +124,17 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
     forms = forms_of(settings)
     errors = {method: _errors(form, distance) for method, form in forms.items()}
     steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
-    timed: dict[str, Callable[[], list[float]]] = {
-        method: partial(_by_iterations, form, len(errors[method])) for method, form in forms.items()
-    }
-    errors[INCREMENTAL] = np.zeros((1, 2))
-    steps[INCREMENTAL] = np.array([float(reference.steps)])
-    timed[INCREMENTAL] = lambda: [seconds_of(lambda: incremental(settings), time.perf_counter)]
-    samples: dict[str, list[list[float]]] = {method: [] for method in timed}
+    errors[INCREMENTAL], steps[INCREMENTAL] = np.zeros((1, 2)), np.array([float(reference.steps)])
+    samples: dict[str, list[list[float]]] = {method: [] for method in errors}
+
+    def iterate(method: str) -> None:
+        samples[method].append(_by_iterations(forms[method], len(errors[method])))
+
     for _ in range(repeats):
-        for method, times in samples.items():
-            with nothing_collected():
-                times.append(timed[method]())
+        for method in forms:
+            seconds_of(partial(iterate, method))
+        seconds = seconds_of(partial(incremental, settings), time.perf_counter)
+        samples[INCREMENTAL].append([seconds])
     curves = (
         ErrorCurve(method, steps[method], np.median(times, axis=0), *errors[method].T)
         for method, times in samples.items()
@@ -181,24 +180,9 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
     return [decision.seconds for _, decision in decisions]
 
 
-@contextmanager
-def nothing_collected() -> Iterator[None]:
-    """Collect no garbage meanwhile."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
-
-
 def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
     """Time of some work, s; of the processor unless another clock is given."""
-    with nothing_collected():
-        start = clock()
-        work()
-        return clock() - start
+    return timeit(work, timer=clock, number=1)
 
 
 def latin(settings: Settings) -> Solution:
