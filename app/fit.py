@@ -28,9 +28,9 @@ from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP, PAGE
-from solver.study.fittable import fittable
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.page import html_table
 

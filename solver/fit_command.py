@@ -57,7 +57,7 @@ def _fit(chosen: argparse.Namespace) -> int:
     names = [name.strip() for name in chosen.vary.split(",")]
     with writing(chosen.out, *FILES):
         found = fit(settings, measured, names, _Progress(settings, names, chosen.out))
-        write_loop(found.nearest, chosen.out)
+        write_loop(found.nearest.run, chosen.out)
         if chosen.json:
             print(json.dumps({**as_json(found, measured), "tables": tables}), flush=True)
         else:
@@ -65,7 +65,7 @@ def _fit(chosen: argparse.Namespace) -> int:
         note = write_fit(found, measured, chosen.out)
     if not chosen.json:
         print("\n".join([*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}"]))
-    return 0 if found.nearest.is_certified else 1
+    return 0 if found.nearest.run.solution.is_certified else 1
 
 
 class _Progress:
@@ -86,4 +86,4 @@ class _Progress:
         )
         far = f"{100.0 * nearest.distance:.3g} % away"
         print(f"{runs} runs: {values}, {far}", file=sys.stderr, flush=True)
-        write_loop(nearest, self._folder)
+        write_loop(nearest.run, self._folder)

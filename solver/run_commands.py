@@ -21,8 +21,14 @@ from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
-from solver.study.loop_comparison import ALIKE, LoopComparison, rms
-from solver.study.measured_loop import axes_of, is_a_loop, read_loop
+from solver.study.measured_loop import (
+    ALIKE,
+    LoopComparison,
+    axes_of,
+    is_a_loop,
+    read_loop,
+    rms,
+)
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,

@@ -17,13 +17,14 @@ share of what a support holds. Where v vanishes everywhere, |w| stands in its pl
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
-from solver.columns import Refuse, TableColumn, size_in
+from solver.columns import Refuse, TableColumn, examples_of, size_in
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.reference.distance import Fields, determinate_forces
@@ -99,23 +100,33 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
         raise refuse("displacements are compared along a single rod: give the friction force here")
-    if len(table.rows) > MOST:
-        raise refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
     units = "m", "s", PER[kind] if quantity == FRICTION else "m"
-
-    def refuse_unit(remedy: str) -> SettingError:
-        is_nodal = quantity == FRICTION and size_in(columns[2].unit, "N") is not None
-        return refuse(
-            f"{remedy}; divide nodal forces by what a node stands for" if is_nodal else remedy
-        )
-
-    sizes = [column.size(unit, refuse_unit) for column, unit in zip(columns, units, strict=True)]
-    numbers = table.numbers(columns)
-    message = table.message(columns, ("x", "t", quantity), units, numbers)
-    x, t, values = numbers * np.array(sizes)[:, None]
+    last = columns[2]
+    if quantity == FRICTION and size_in(last.unit, "N") is not None:
+        given = f"line {last.line} says {last.unit}: give it in {examples_of(units[2])}"
+        raise refuse(f"{given}; divide nodal forces by what a node stands for")
+    pairs = zip(columns, units, strict=True)
+    (x, t, values), message = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
     _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
     x = np.clip(x, 0.0, settings.length)
     return OtherResults(quantity, x, t, values, source, settings.scene, message)
+
+
+def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
+    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood.
+
+    Raises
+    ------
+    SettingError
+        For too many rows, another unit, and what is no finite number.
+    """
+    if len(table.rows) > MOST:
+        raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
+    columns, units = zip(*used.values(), strict=True)
+    sizes = [column.size(unit, table.refuse) for column, unit in used.values()]
+    numbers = table.numbers(columns)
+    message = table.message(columns, list(used), units, numbers)
+    return numbers * np.array(sizes)[:, None], message
 
 
 def _columns(table: Table) -> tuple[str, list[TableColumn]]:

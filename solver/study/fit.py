@@ -2,7 +2,7 @@
 
     fitted = fit(settings, measured, ["friction", "contact_stiffness"])
 
-The differences of `solver.study.loop_comparison` are minimised in the sum of their squares, over z:
+The differences of `solver.study.measured_loop` are minimised in the sum of their squares, over z:
 the logarithm of a setting over its start, where it is positive and spans decades, else its change
 over its size. From the best of some values of each setting alone a trust-region method (SciPy's
 `least_squares`) goes on within their bounds; every run starts from what stuck and slipped in the
@@ -26,8 +26,7 @@ from scipy.linalg import null_space
 from solver.arrays import Array, Flags
 from solver.definitions import SettingError
 from solver.settings import Settings
-from solver.study.compared_runs import ComparedRun, ComparedRuns
-from solver.study.fittable import fittable
+from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
 from solver.study.measured_loop import MeasuredLoop
 
 MOST = 4

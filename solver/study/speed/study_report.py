@@ -148,10 +148,10 @@ def error_panels(study: Study) -> list[Panel]:
 
 def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
     """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
-    curves = [
-        PanelCurve(f"{instants} instants", *np.array([*ratios.items()]).T, hue, "points")
-        for hue, (instants, ratios) in enumerate(_ratios(measured).items(), start=1)
-    ]
+    curves = []
+    for hue, (instants, ratios) in enumerate(_ratios(measured).items(), start=1):
+        sizes, values = np.array([*ratios.items()]).T
+        curves.append(PanelCurve(f"{instants} instants", sizes, values, hue, "points"))
     ends = np.array([curves[0].x[0], curves[0].x[-1]])
     return Panel(
         f"Time of {TIMES}",
