@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
 from html import escape
 from itertools import groupby
@@ -9,9 +10,8 @@ from pathlib import Path
 
 from solver.study.cases.case import all_cases
 from solver.study.page import html_table, text_of, write_csv, write_page
-from solver.study.proof.bodies import body_cases
-from solver.study.proof.known_case import PARTS, KnownCase, ProofRow, known_case
-from solver.study.proof.rods import rod_cases
+from solver.study.proof import bodies, rods
+from solver.study.proof.known_case import CLOSED_FORMS, PARTS, KnownCase, ProofRow, known_case
 
 SHOWN = {
     **{"holds": ("", 5), "case": ("case", 56), "solver": ("solver", 12)},
@@ -20,6 +20,7 @@ SHOWN = {
 """Columns of a console."""
 NUMBERS = "holds", "quantity", "unit", "known", "solver", "ours", "deviation", "allowed"
 """Columns of the page."""
+CASES = Path(__file__).with_name("cases.toml")
 FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
 """Where the page is served by default; links of the report open runs there."""
@@ -35,7 +36,17 @@ WORDS = (
 
 def cases() -> list[KnownCase]:
     """All cases, none of them solved yet."""
-    return [*rod_cases(), *body_cases(), *map(known_case, all_cases())]
+    numbers, known = {**vars(rods), **vars(bodies)}, []
+    for group in tomllib.loads(CASES.read_text(encoding="utf-8"))["known"]:
+        for title, settings in group["cases"].items():
+            case = KnownCase(
+                *(title, group["source"], group["allowed"], group["scene"]),
+                {**group.get("common", {}), **settings},
+                numbers[group["numbers"]],
+                group.get("part", CLOSED_FORMS),
+            )
+            known.append(case)
+    return [*known, *map(known_case, all_cases())]
 
 
 def entries(row: ProofRow) -> dict[str, object]:
