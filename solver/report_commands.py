@@ -33,7 +33,6 @@ from solver.study.speed.study_report import (
     write_study,
 )
 from solver.study.stability.draws import random_cases
-from solver.study.stability.outcome import JudgedRun, judged_runs
 from solver.study.stability.report import (
     FILES,
     NOTES,
@@ -45,7 +44,7 @@ from solver.study.stability.report import (
     last_lines,
     write_stability,
 )
-from solver.study.stability.stability_case import extreme_cases
+from solver.study.stability.stability_case import JudgedRun, extreme_cases, judged_runs
 
 REFUSED = 2
 """Exit code of refused input."""

@@ -20,21 +20,19 @@ from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
 from solver.study.stability.draws import draw, random_case
-from solver.study.stability.outcome import (
-    AT_ROUNDING,
-    JudgedRun,
-    Outcome,
-    judge,
-    judged_runs,
-)
 from solver.study.stability.report import COLUMNS, counts, last_lines
 from solver.study.stability.stability_case import (
+    AT_ROUNDING,
     METHODS,
     NOT_WRONG,
     PASSING,
+    JudgedRun,
+    Outcome,
     StabilityCase,
     Verdict,
     extreme_cases,
+    judge,
+    judged_runs,
 )
 
 GOOD = Outcome(
@@ -98,7 +96,7 @@ def test_a_warning_breaks_a_run(monkeypatch):
     def warns(problem):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
+    monkeypatch.setattr("solver.study.stability.stability_case.reference_of", warns)
     (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
