@@ -19,8 +19,7 @@ from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned, head_of, line_of
 from solver.study.proof import report as proof
 from solver.study.proof.known_case import known_case, rows_of
-from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.sizes import times_at_sizes
+from solver.study.speed.measured_times import error_against_time, times_at_sizes
 from solver.study.speed.study_report import (
     FILES as STUDY_FILES,
 )

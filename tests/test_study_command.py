@@ -18,15 +18,16 @@ from solver.executors import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
-from solver.study.speed import sizes as measuring
-from solver.study.speed.error_against_time import (
+from solver.study.speed import measured_times as measuring
+from solver.study.speed.measured_times import (
+    FACTORS,
     INCREMENTAL,
     LEVELS,
     ErrorCurve,
     Study,
     forms_of,
+    times_at_sizes,
 )
-from solver.study.speed.sizes import FACTORS, times_at_sizes
 from solver.study.speed.study_report import notes, ratio_table, table
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]

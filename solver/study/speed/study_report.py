@@ -14,13 +14,13 @@ from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, Section, bullets, html_table, write_csv, write_page
-from solver.study.speed.error_against_time import (
+from solver.study.speed.measured_times import (
     GOAL,
     LEVELS,
     MOST_ITERATIONS,
     Study,
+    TimesAtSize,
 )
-from solver.study.speed.sizes import TimesAtSize
 
 FILES = "curves.csv", "levels.csv", "map.csv", "study.html"
 Row = list[str]
