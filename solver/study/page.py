@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from html import escape
 from importlib.metadata import entry_points
 from pathlib import Path
+from string import Template
 
 from solver.disk import whole_file, write
 from solver.study.chart import Chart
@@ -39,33 +40,7 @@ Shown = Mapping[str, tuple[str, int]]
 """Columns of a console: head and characters by name."""
 NUMBER = re.compile(r"-|-?\d[\d.e+-]*")
 VERDICTS = "right", "holds", "unsolved", "refused", "unclear", "wrong", "FAILS"
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: {title}</title>
-<style>
-body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 90rem; margin: 2rem auto; padding: 0 1rem;
-  color: #222; background: #fff; }}
-p, ul {{ max-width: 62rem; }}
-h2 {{ margin-top: 3rem; }}
-.caption {{ opacity: 0.75; font-size: 0.9rem; }}
-table {{ display: block; overflow-x: auto; border-collapse: collapse; font-size: 0.85rem; }}
-th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: left;
-  vertical-align: top; }}
-td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
-td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
-td.right, td.holds {{ border-left-color: #0072B2; }} td.unsolved {{ border-left-color: #E69F00; }}
-td.refused {{ border-left-color: #56B4E9; }} td.unclear {{ border-left-color: #999999; }}
-td.wrong, td.FAILS {{ border-left-color: #D55E00; }}
-td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
-</style>
-{head}
-<h1>{title}</h1>
-{body}
-</html>
-"""
-"""Colours of verdicts are of Okabe and Ito's palette, told apart by the colour-blind."""
+PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
 def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
@@ -87,7 +62,7 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
     places = iter(drawn)
     parts = [part if isinstance(part, str) else next(places) for part in report]
     body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
-    write(file, PAGE.format(title=escape(title), head=head, body=body))
+    write(file, PAGE.substitute(title=escape(title), head=head, body=body))
     return note
 
 
