@@ -181,5 +181,5 @@ def _known_together(
 def _echelon(rows: Array) -> Array:
     """The same space by rows of which each has 1 where no other has anything; to a digit."""
     pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
-    rows = np.linalg.solve(rows[:, pivots], rows)
-    return np.where(np.abs(rows) < SHARE, 0.0, np.round(rows, 1))
+    reduced = np.linalg.solve(rows[:, pivots], rows)
+    return np.where(np.abs(reduced) < SHARE, 0.0, np.round(reduced, 1))
