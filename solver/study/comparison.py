@@ -225,10 +225,7 @@ class Comparison:
         return np.asarray((self._shares * field.ravel()[self._corners]).sum(axis=(0, 1)))
 
     def _norm(self, values: Array) -> float:
-        largest = float(np.abs(values).max(initial=0.0))
-        if largest == 0.0:
-            return 0.0
-        return largest * float(np.sqrt(self._weights @ (values / largest) ** 2))
+        return float(np.sqrt(self._weights @ values**2))
 
 
 def weights_of(positions: Array, times: Array) -> Array:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from solver.discrete import Problem
-from solver.latin import Ending, Solution, solve
+from solver.latin import Ending, Solution
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
@@ -23,9 +23,8 @@ from solver.reference.incremental import reference_of
 from solver.reference.residual import kkt_residual
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, discretise
-from solver.scenes.method import method_of
-from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.scenes import CATALOGUE
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 
 CASES = Path(__file__).with_name("cases.toml")
 
@@ -169,17 +168,16 @@ def run(scene: str, values: Mapping[str, object]) -> Outcome:
         warnings.simplefilter("error")
         try:
             settings = CATALOGUE[scene].settings.checked(values)
-            problem = discretise(settings)
-            return _measured(problem, solve(problem, method_of(settings), watch=False))
+            return _measured(finished_run(settings, errors=False, indicators=False).solution)
         except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")
 
 
-def _measured(problem: Problem, solution: Solution) -> Outcome:
+def _measured(solution: Solution) -> Outcome:
     """Compare a solution with the reference, and with the equations if it is certified."""
-    iterate, status = solution.iterate, solution.status
+    iterate, status, problem = solution.iterate, solution.status, solution.iterate.problem
     if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
         return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
     reference, doubt = _reference(problem)
