@@ -28,11 +28,11 @@ from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP, PAGE
-from solver.study.fittable import fittable
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.page import plain_table
+from solver.study.page import html_table
 
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
 MEASURED = "measured.csv"
@@ -186,7 +186,7 @@ class FitTab:
         self.start_button.disabled = measured is None or self.job is not None
         self._cancel.visible, self.use_button.visible = self.job is not None, bool(self.found)
         self._take_away.visible = bool(self._page)
-        self.table.object = plain_table(self._rows()) if self.found else ""
+        self.table.object = html_table(self._rows()) if self.found else ""
         chart = self._panel(measured)
         self._keys.object = keys([chart]) if chart is not None else ""
         self._chart.visible = chart is not None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +14,13 @@ from solver.study.cases.case import case_from_file
 from solver.study.figures import paper_figures
 from solver.study.figures.figure import FILE, write_figures
 from solver.study.figures.paper_runs import paper_runs
-from solver.study.page import aligned
+from solver.study.page import aligned, head_of, line_of
 from solver.study.proof import report as proof
 from solver.study.proof.known_case import known_case, rows_of
-from solver.study.speed.error_against_time import error_against_time
-from solver.study.speed.sizes import times_at_sizes
+from solver.study.speed.measured_times import error_against_time, times_at_sizes
+from solver.study.speed.study_report import (
+    FILES as STUDY_FILES,
+)
 from solver.study.speed.study_report import (
     conditions,
     notes,
@@ -29,20 +30,18 @@ from solver.study.speed.study_report import (
     write_study,
 )
 from solver.study.stability.draws import random_cases
-from solver.study.stability.outcome import JudgedRun, judged_runs
 from solver.study.stability.report import (
     FILES,
-    HEAD,
     NOTES,
     RANDOM_NOTES,
     RANDOM_TITLE,
+    SHOWN,
     TITLE,
-    cases_of,
+    entries,
     last_lines,
-    line,
     write_stability,
 )
-from solver.study.stability.stability_case import StabilityCase
+from solver.study.stability.stability_case import JudgedRun, extreme_cases, judged_runs
 
 
 def add_reports(commands: Any) -> None:
@@ -91,15 +90,15 @@ def _study(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
         curves = error_against_time(settings, chosen.repeats)
-        files = write_curves(curves, chosen.out)
+        write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        more, note = write_study(curves, sizes, chosen.out)
+        note = write_study(curves, sizes, chosen.out)
     print("\n".join(conditions(curves)), end="\n\n")
     print(aligned(table(curves)))
     print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
         print(note)
-    print(f"{len(files + more)} files in {chosen.out}")
+    print(f"{len(STUDY_FILES)} files in {chosen.out}")
     return 0
 
 
@@ -109,18 +108,18 @@ def _stability(chosen: argparse.Namespace) -> int:
         value = getattr(chosen, name)
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
-    cases: Iterable[StabilityCase] = cases_of(scenes, quick=chosen.quick)
+    cases = extreme_cases(scenes, quick=chosen.quick)
     title, notes = TITLE, NOTES
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
         title, notes = RANDOM_TITLE, RANDOM_NOTES
     runs: list[JudgedRun] = []
     with writing(chosen.out, *FILES):
-        print(HEAD)
+        print(head_of(SHOWN))
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
             for run in judged_runs(cases):
-                print(line(run), flush=True)
+                print(line_of(entries(run), SHOWN), flush=True)
                 runs.append(run)
             is_whole = True
         write_stability(runs, title, notes, chosen.out)
@@ -134,11 +133,11 @@ def _proof(chosen: argparse.Namespace) -> int:
     own = [known_case(case_from_file(path)) for path in chosen.files]
     rows = []
     with writing(chosen.out, *proof.FILES):
-        print(proof.HEAD)
+        print(head_of(proof.SHOWN))
         for case in own or proof.cases():
             for row in rows_of(case):
-                print(proof.line(row), flush=True)
+                print(line_of(proof.entries(row), proof.SHOWN), flush=True)
                 rows.append(row)
-        files = proof.write_proof(rows, chosen.out)
-    print(f"{proof.summary(rows)}\n{len(files)} files in {chosen.out}")
+        proof.write_proof(rows, chosen.out)
+    print(f"{proof.summary(rows)}\n{len(proof.FILES)} files in {chosen.out}")
     return 0 if all(row.holds for row in rows) else 1

@@ -29,9 +29,8 @@ from solver.study.compared_runs import ComparedRun
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
 from solver.study.fit import MOST, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
-from solver.study.loop_comparison import ALIKE, LoopComparison, rms
+from solver.study.measured_loop import ALIKE, LoopComparison, axes_of, is_a_loop, read_loop, rms
 from solver.study.measured_loop import CAN as LOOP
-from solver.study.measured_loop import axes_of, is_a_loop, read_loop
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,
@@ -184,11 +183,11 @@ def _fit(chosen: argparse.Namespace) -> int:
         )
         far = f"{100.0 * nearest.distance:.3g} % away"
         print(f"{runs} runs: {values}, {far}", file=sys.stderr, flush=True)
-        write_loop(nearest, chosen.out)
+        write_loop(nearest.run, chosen.out)
 
     with writing(chosen.out, *FILES):
         found = fit(settings, measured, names, watch)
-        write_loop(found.nearest, chosen.out)
+        write_loop(found.nearest.run, chosen.out)
         if chosen.json:
             tables = {**tables, measured.source: measured.message}
             print(json.dumps({**as_json(found, measured), "tables": tables}), flush=True)
@@ -197,7 +196,7 @@ def _fit(chosen: argparse.Namespace) -> int:
         note = write_fit(found, measured, chosen.out)
     if not chosen.json:
         print("\n".join([*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}"]))
-    return 0 if found.nearest.is_certified else 1
+    return 0 if found.nearest.run.solution.is_certified else 1
 
 
 def _lesson(chosen: argparse.Namespace) -> int:

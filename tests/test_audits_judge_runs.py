@@ -20,24 +20,19 @@ from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
 from solver.study.stability.draws import draw, random_case
-from solver.study.stability.outcome import (
-    AT_ROUNDING,
-    JudgedRun,
-    Outcome,
-    judge,
-    judged_runs,
-)
-from solver.study.stability.report import COLUMNS, cases_of, counts, last_lines
+from solver.study.stability.report import COLUMNS, counts, last_lines
 from solver.study.stability.stability_case import (
+    AT_ROUNDING,
     METHODS,
-    MUST_REFUSE,
     NOT_WRONG,
     PASSING,
-    RIGHT,
-    UNCLEAR,
-    UNSOLVED,
+    JudgedRun,
+    Outcome,
     StabilityCase,
     Verdict,
+    extreme_cases,
+    judge,
+    judged_runs,
 )
 
 GOOD = Outcome(
@@ -87,13 +82,13 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
     unclear = changed(doubt="the reference finds no solution", error_force=math.nan)
     refused = Outcome(REFUSED, "load = 1 is refused")
     for found, passing in (
-        (wrong, {UNSOLVED, UNCLEAR, NOT_WRONG}),
-        (unclear, {UNCLEAR, NOT_WRONG}),
-        (refused, {MUST_REFUSE, NOT_WRONG}),
-        (GOOD, {RIGHT, UNSOLVED, UNCLEAR, NOT_WRONG}),
+        (wrong, {"unsolved", "unclear", NOT_WRONG}),
+        (unclear, {"unclear", NOT_WRONG}),
+        (refused, {"refused", NOT_WRONG}),
+        (GOOD, {"right", "unsolved", "unclear", NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = JudgedRun(StabilityCase("a", {}, expected).by("fast"), found)
+            row = JudgedRun(StabilityCase("a", "bar", {}, expected), found)
             assert row.passed is (expected in passing)
 
 
@@ -101,8 +96,8 @@ def test_a_warning_breaks_a_run(monkeypatch):
     def warns(problem):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.stability.outcome.reference_of", warns)
-    (row,) = judged_runs([StabilityCase("zero", {"peak": 0.0}).by("fast")])
+    monkeypatch.setattr("solver.study.stability.stability_case.reference_of", warns)
+    (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
     assert row.outcome.ending == BROKEN
     assert "overflow" in row.outcome.advice
     assert row.verdict is Verdict.WRONG
@@ -110,9 +105,11 @@ def test_a_warning_breaks_a_run(monkeypatch):
 
 @pytest.fixture
 def written(tmp_path, monkeypatch, capsys):
-    case = StabilityCase("zero <N>", {"peak": 0.0}, quick=True)
-    given = [case.by(method) for method in METHODS]
-    monkeypatch.setattr(report_commands, "cases_of", lambda scene, quick: given)
+    given = [
+        StabilityCase("zero <N>", "bar", {"peak": 0.0, **own}, method=method)
+        for method, own in METHODS.items()
+    ]
+    monkeypatch.setattr(report_commands, "extreme_cases", lambda scene, quick: given)
     folder = tmp_path / "made by" / "the command"
     code = main(["stability", "--quick", "--out", str(folder)])
     return folder, code, capsys.readouterr()
@@ -135,7 +132,7 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
 
 
 def test_one_scene_alone_can_be_asked(tmp_path, capsys):
-    assert {case.scene for case in cases_of(["strand"])} == {"strand"}
+    assert {case.scene for case in extreme_cases(["strand"])} == {"strand"}
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
     assert main(["stability", "cable", "--out", str(tmp_path)]) == 2
     assert ", ".join(CATALOGUE) in capsys.readouterr().err

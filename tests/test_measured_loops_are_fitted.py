@@ -16,8 +16,7 @@ from solver.scenes import discretise, loop_of
 from solver.settings import Settings
 from solver.study.fit import fit
 from solver.study.fit_report import messages
-from solver.study.loop_comparison import LoopComparison, branches
-from solver.study.measured_loop import MeasuredLoop, axes_of, read_loop
+from solver.study.measured_loop import LoopComparison, MeasuredLoop, axes_of, branches, read_loop
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}

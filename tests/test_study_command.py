@@ -18,15 +18,16 @@ from solver.executors import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.page import NO_CHARTS
-from solver.study.speed import sizes as measuring
-from solver.study.speed.error_against_time import (
+from solver.study.speed import measured_times as measuring
+from solver.study.speed.measured_times import (
+    FACTORS,
     INCREMENTAL,
     LEVELS,
     ErrorCurve,
     Study,
     forms_of,
+    times_at_sizes,
 )
-from solver.study.speed.sizes import FACTORS, times_at_sizes
 from solver.study.speed.study_report import notes, ratio_table, table
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
@@ -76,7 +77,7 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)
-    cells = {f"<td>{cell}</td>" for row in table(study)[1:] for cell in row}
+    cells = {f">{cell}</td>" for row in table(study)[1:] for cell in row}
     for words in (*forms_of(study.settings), INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
 

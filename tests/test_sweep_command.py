@@ -300,7 +300,7 @@ class Known(Executor):
         self._values = values
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        _, number = args
+        (number,) = args
         future: Future[Any] = Future()
         future.set_result(Row(number, "converged", "", (float(self._values[number]),)))
         return future

@@ -124,7 +124,7 @@ class Ending(Here):
         self.point, self.trouble = point, trouble
 
     def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
-        if args[1] == self.point:
+        if args[0] == self.point:
             fn, args = _raise, (self.trouble,)
         return super().submit(fn, *args, **kwargs)
 

@@ -24,8 +24,7 @@ from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.study.comparison import Comparison, OtherResults
-from solver.study.loop_comparison import LoopComparison
-from solver.study.measured_loop import MeasuredLoop
+from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of
 from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 

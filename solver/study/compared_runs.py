@@ -5,22 +5,28 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import param
 from scipy.optimize import least_squares
 
 from solver.arrays import Array
+from solver.definitions import SettingError, about
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.scenes import loop_of
 from solver.settings import Settings
-from solver.study.fittable import scale_of
-from solver.study.loop_comparison import LoopComparison, rms
-from solver.study.measured_loop import MeasuredLoop
-from solver.study.quantities.finished import finished_run
+from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
+from solver.study.quantities.finished import FinishedRun, finished_run
 
+NOT_FITTED = "Method", "Stop", "Decomposition"
+"""Groups of settings that do not change the answer."""
+SPANS = 100.0
+"""Largest over smallest value from which on a setting is varied in decades."""
+FARTHEST = math.log(1e6)
+"""How far from its start, in z, a setting may go."""
 COARSE, FAR = math.log(3.0), math.log(1e3)
 """Steps from the start by which each setting is tried alone, and how far they go."""
 SAME = 1e-6
@@ -33,6 +39,77 @@ STEP = 1e-4
 """Of differences, in z, of the method."""
 
 
+def fittable(settings: Settings) -> list[str]:
+    """Settings that a loop may be asked for: numbers that change the answer."""
+    return [name for name in settings.definitions() if not _why_not(settings, name)]
+
+
+def _why_not(settings: Settings, name: str) -> str:
+    """Why a setting cannot be fitted; empty where it can."""
+    definition = settings.definitions()[name]
+    if not isinstance(definition, param.Number):
+        return "it is no number"
+    if isinstance(definition, param.Integer):
+        return "it counts, and has no values in between"
+    if not settings.applies(name):
+        return "it does nothing with the other settings as they are"
+    is_answered = about(definition).group in NOT_FITTED or name == "duration"
+    return "it does not change what a run finds" if is_answered else ""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """From z to the values of a setting, and back; its size is None for a logarithm."""
+
+    start: float
+    size: float | None
+    low: float
+    high: float
+
+    def value(self, z: float) -> float:
+        """Value in SI, with as many digits as anybody writes."""
+        value = self.start * math.exp(z) if self.size is None else self.start + self.size * z
+        return float(f"{min(max(value, self.low), self.high):.12g}")
+
+    def bounds(self) -> tuple[float, float]:
+        """Of z."""
+        if self.size is None:
+            ends = [math.log(v / self.start) if v else -FARTHEST for v in (self.low, self.high)]
+        else:
+            ends = [(value - self.start) / self.size for value in (self.low, self.high)]
+        return max(ends[0], -FARTHEST), min(ends[1], FARTHEST)
+
+    def slope(self, value: float) -> float:
+        """Change of the value with z."""
+        return value if self.size is None else self.size
+
+
+def scale_of(settings: Settings, name: str) -> Scale:
+    """Scale on which a setting is fitted.
+
+    Raises
+    ------
+    SettingError
+        For a setting that there is not, or is no number, or does nothing to the answer.
+    """
+    can = ", ".join(fittable(settings))
+    if name not in settings.definitions():
+        remedy = "there is no such setting: choose one of these"
+        raise SettingError("fitted setting", name, can, remedy)
+    if reason := _why_not(settings, name):
+        raise SettingError("fitted setting", name, can, f"choose another: {reason}")
+    definition, value = settings.definitions()[name], getattr(settings, name)
+    low, high = definition.bounds
+    is_logarithmic = about(definition).logarithmic
+    if low >= 0.0 and (is_logarithmic or high >= SPANS * low):
+        if value > 0.0:
+            return Scale(value, None, low, high)
+        if is_logarithmic:
+            can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
+            raise SettingError(name, value, can, "set it")
+    return Scale(value, abs(value) or float(np.ptp(definition.softbounds)), low, high)
+
+
 @dataclass(frozen=True, eq=False)
 class ComparedRun:
     """A run beside a measured loop.
@@ -41,24 +118,19 @@ class ComparedRun:
     ----------
     values
         Of the settings that are fitted, shape (p,), in SI.
-    instants, displacement, force
-        Its loop, shape (n_instants,), in SI.
-    differences, drive
-        Of what it finds, and of what is given, to every row; shares of the measured range.
+    run
+        What it came to.
     beside
         The loop as it is laid beside the problem.
-    is_certified
-        Whether it is a solution up to rounding.
+    differences, drive
+        Of what it finds, and of what is given, to every row; shares of the measured range.
     """
 
     values: Array
-    instants: Array
-    displacement: Array
-    force: Array
+    run: FinishedRun
+    beside: LoopComparison
     differences: Array
     drive: Array
-    beside: LoopComparison
-    is_certified: bool
 
     @property
     def distance(self) -> float:
@@ -106,21 +178,18 @@ class ComparedRuns:
         settings = self._settings.replace(**changes)
         finished = finished_run(settings, errors=False, indicators=False, before=self._before)
         self.count += 1
-        status, problem, iterate = finished.solution.status, finished.problem, finished.iterate
+        status = finished.solution.status
         if status.ending is not Ending.CONVERGED:
             values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", values, "one that converges", status.advice)
         self._before = finished.states
-        beside = LoopComparison(self._measured, loop_of(settings, problem), problem)
-        loop = beside.both(iterate)
-        return ComparedRun(
-            np.array(list(changes.values())),
-            problem.instants,
-            *loop,
-            *beside.differences(*loop),
-            beside,
-            finished.solution.is_certified,
+        loop = loop_of(settings, finished.problem)
+        finished, beside = (
+            replace(finished, loop=loop),
+            LoopComparison(self._measured, loop, finished.problem),
         )
+        both = beside.differences(finished.displacement, finished.force)
+        return ComparedRun(np.array(list(changes.values())), finished, beside, *both)
 
     def differences(self, z: Array) -> Array:
         """Of a run, shape (n_rows,); NaN where there is none, so that no step goes there."""
@@ -166,15 +235,12 @@ class ComparedRuns:
                     if abs(at) > FAR or not low <= at <= high:
                         break
                     moved = np.where(np.arange(len(best)) == place, at, moved)
-                    misfit, least = self._misfit(moved), self._misfit(best)
+                    misfit, least = (np.sum(self.differences(z) ** 2) for z in (moved, best))
                     if misfit < (1.0 - SAME) * least:
                         best = moved
                     elif not misfit <= (1.0 + SAME) * least:
                         break
         return best
-
-    def _misfit(self, z: Array) -> float:
-        return float(np.sum(self.differences(z) ** 2))
 
     def solve(self, z: Array, pull: Array) -> Array:
         """Place of the least squares from a place on, with so much pull (n, p) to the start."""

@@ -17,6 +17,7 @@ share of what a support holds. Where v vanishes everywhere, |w| stands in its pl
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -98,17 +99,29 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
         raise refuse("displacements are compared along a single rod: give the friction force here")
-    if len(table.rows) > MOST:
-        raise refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
     units = "m", "s", PER[kind] if quantity == FRICTION else "m"
-
     if quantity == FRICTION and size_in(columns[2].unit, "N") is not None:
         nodal = "divide nodal forces by what a node stands for"
         columns[2].size(units[2], lambda remedy: refuse(f"{remedy}; {nodal}"))
-    (x, t, values), message = table.read(columns, ("x", "t", quantity), units)
+    pairs = zip(columns, units, strict=True)
+    (x, t, values), message = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
     _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
     x = np.clip(x, 0.0, settings.length)
     return OtherResults(quantity, x, t, values, source, settings.scene, message)
+
+
+def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
+    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood.
+
+    Raises
+    ------
+    SettingError
+        For too many rows, another unit, and what is no finite number.
+    """
+    if len(table.rows) > MOST:
+        raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
+    columns, units = zip(*used.values(), strict=True)
+    return table.read(columns, list(used), units)
 
 
 def _columns(table: Table) -> tuple[str, list[TableColumn]]:
@@ -207,10 +220,7 @@ class Comparison:
         return np.asarray((self._shares * field.ravel()[self._corners]).sum(axis=(0, 1)))
 
     def _norm(self, values: Array) -> float:
-        largest = float(np.abs(values).max(initial=0.0))
-        if largest == 0.0:
-            return 0.0
-        return largest * float(np.sqrt(self._weights @ (values / largest) ** 2))
+        return float(np.sqrt(self._weights @ values**2))
 
 
 def weights_of(positions: Array, times: Array) -> Array:

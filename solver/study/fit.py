@@ -2,7 +2,7 @@
 
     fitted = fit(settings, measured, ["friction", "contact_stiffness"])
 
-The differences of `solver.study.loop_comparison` are minimised in the sum of their squares, over z:
+The differences of `solver.study.measured_loop` are minimised in the sum of their squares, over z:
 the logarithm of a setting over its start, where it is positive and spans decades, else its change
 over its size. From the best of some values of each setting alone a trust-region method (SciPy's
 `least_squares`) goes on within their bounds; every run starts from what stuck and slipped in the
@@ -21,13 +21,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import null_space
+from scipy.linalg import null_space, qr
 
 from solver.arrays import Array, Flags
 from solver.definitions import SettingError
 from solver.settings import Settings
-from solver.study.compared_runs import ComparedRun, ComparedRuns
-from solver.study.fittable import fittable
+from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
 from solver.study.measured_loop import MeasuredLoop
 
 MOST = 4
@@ -172,21 +171,15 @@ def _known_together(
     covariance = covariance[np.ix_(~is_alone, ~is_alone)]
     is_product = all(scale.size is None for scale in np.array(runs.scales)[~is_alone])
     together = []
-    for powers in echelon(null_space(blind).T if len(blind) else np.zeros((0, 0))):
+    known = null_space(blind).T if len(blind) else blind
+    for powers in _echelon(known) if known.size else ():
         margin = math.sqrt(powers @ covariance @ powers) if is_product else math.nan
         together.append(({n: float(p) for n, p in zip(names, powers, strict=True) if p}, margin))
     return together
 
 
-def echelon(rows: Array) -> Array:
-    """The same space by rows that begin with 1, where no other has anything; to a digit."""
-    rows, done = rows.copy(), 0
-    for column in range(rows.shape[1]):
-        pivot = done + int(np.abs(rows[done:, column]).argmax()) if done < len(rows) else 0
-        if done < len(rows) and abs(rows[pivot, column]) > SHARE:
-            rows[[done, pivot]] = rows[[pivot, done]]
-            rows[done] /= rows[done, column]
-            others = np.arange(len(rows)) != done
-            rows[others] -= np.outer(rows[others, column], rows[done])
-            done += 1
-    return np.where(np.abs(rows) < SHARE, 0.0, np.round(rows, 1))
+def _echelon(rows: Array) -> Array:
+    """The same space by rows of which each has 1 where no other has anything; to a digit."""
+    pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
+    reduced = np.linalg.solve(rows[:, pivots], rows)
+    return np.where(np.abs(reduced) < SHARE, 0.0, np.round(reduced, 1))

@@ -14,19 +14,18 @@ from solver.definitions import about
 from solver.disk import write
 from solver.scenes.words import listed
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.compared_runs import ComparedRun
 from solver.study.fit import Fit
-from solver.study.loop_comparison import ALIKE, rms
-from solver.study.measured_loop import MeasuredLoop, table_of
+from solver.study.measured_loop import ALIKE, MeasuredLoop, csv_of, rms
 from solver.study.page import (
     PlotSection,
     Section,
     aligned,
     bullets,
-    plain_table,
+    html_table,
     write_csv,
     write_page,
 )
+from solver.study.quantities.finished import FinishedRun
 
 PARAMETERS, LOOP, SETTINGS, PAGE = "parameters.csv", "loop.csv", "settings.toml", "fit.html"
 FILES = PARAMETERS, LOOP, SETTINGS, PAGE
@@ -64,7 +63,7 @@ def messages(fit: Fit) -> list[str]:
     nearest = fit.nearest
     if rms(nearest.drive) > ALIKE:
         sentences.append(f"{nearest.beside.drive_message(nearest.drive)}.")
-    if not nearest.is_certified:
+    if not nearest.run.solution.is_certified:
         sentences.append("The nearest run is not certified, so that values may be less exact.")
     return sentences
 
@@ -78,24 +77,26 @@ def _distances(fit: Fit, measured: MeasuredLoop) -> str:
 
 def _rows(fit: Fit) -> list[list[str]]:
     """Table of the settings: value, standard error and correlations."""
-    table = [["setting", "value", "standard error", "start", *_correlated(fit)]]
-    entries = zip(fit.names, fit.values, fit.errors, fit.start, fit.correlation, strict=True)
-    for name, value, error, start, correlation in entries:
-        unit = about(fit.settings.definitions()[name]).unit
+    others = fit.names if len(fit.names) > 1 else ()
+    table = [["setting", "value", "standard error", "start", *(f"with {name}" for name in others)]]
+    for name, unit, start, value, error, *correlation in _entries(fit):
         shown = f"{error:.2g}" if math.isfinite(error) else "not known alone"
         with_others = ["-" if math.isnan(c) else f"{c + 0.0:.2f}" for c in correlation]
-        cells = [f"{value:.6g} {unit}".strip(), shown, f"{start:.6g}"]
-        table.append([name, *cells, *(with_others if len(fit.names) > 1 else [])])
+        cells = [name, f"{value:.6g} {unit}".strip(), shown, f"{start:.6g}"]
+        table.append([*cells, *with_others[: len(others)]])
     return table
 
 
-def _correlated(fit: Fit) -> list[str]:
-    return [f"with {name}" for name in fit.names] if len(fit.names) > 1 else []
+def _entries(fit: Fit) -> list[list[Any]]:
+    """Setting, unit, start, value, standard error and correlations, a row for each."""
+    units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
+    columns = fit.names, units, fit.start, fit.values, fit.errors
+    rows = zip(*columns, strict=True)
+    return [[*row, *more] for row, more in zip(rows, fit.correlation, strict=True)]
 
 
 def as_json(fit: Fit, measured: MeasuredLoop) -> dict[str, Any]:
     """The same for scripts; None where there is no number."""
-    entries = zip(fit.names, fit.start, fit.values, fit.errors, strict=True)
     return {
         "quantity": fit.nearest.beside.quantity,
         "distance": fit.nearest.distance,
@@ -105,7 +106,7 @@ def as_json(fit: Fit, measured: MeasuredLoop) -> dict[str, Any]:
         "rows_compared": len(fit.nearest.differences),
         "parameters": {
             name: {"start": float(start), "value": float(value), "standard_error": _finite(error)}
-            for name, start, value, error in entries
+            for name, _, start, value, error, *_ in _entries(fit)
         },
         "correlation": [[_finite(value) for value in row] for row in fit.correlation],
         "messages": messages(fit),
@@ -117,11 +118,11 @@ def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def write_loop(run: ComparedRun, folder: Path) -> None:
+def write_loop(run: FinishedRun, folder: Path) -> None:
     """Write the loop of a run as CSV, with time, in SI."""
-    across, up = (f"{name} [{unit}]" for name, unit in run.beside.axes)
-    columns = {"time [s]": run.instants, across: run.displacement, up: run.force}
-    write(folder / LOOP, table_of(columns))
+    across, up = (f"{name} [{unit}]" for name, unit in run.axes)
+    columns = {"time [s]": run.problem.instants, across: run.displacement, up: run.force}
+    write(folder / LOOP, csv_of(columns))
 
 
 def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
@@ -133,12 +134,8 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
         When one cannot be written.
     """
     head = ["setting", "unit", "start", "value", "standard_error"]
-    units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
-    head += [f"correlation_{name}" for name in fit.names]
-    entries = zip(fit.names, units, fit.start, fit.values, fit.errors, fit.correlation, strict=True)
-    rows = [[*entry[:5], *entry[5]] for entry in entries]
-    write_csv(folder / PARAMETERS, head, rows)
-    write_loop(fit.nearest, folder)
+    write_csv(folder / PARAMETERS, [*head, *(f"correlation_{n}" for n in fit.names)], _entries(fit))
+    write_loop(fit.nearest.run, folder)
     write(folder / SETTINGS, dump(fit.settings))
     sentences = [
         *messages(fit),
@@ -147,7 +144,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
     ]
     sections: list[Section] = [
         bullets(sentences),
-        plain_table(_rows(fit)),
+        html_table(_rows(fit)),
         PlotSection("Loop and differences", _panels(fit, measured)),
         f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
     ]
@@ -157,15 +154,15 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
 
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
-    run, beside = fit.nearest, fit.nearest.beside
-    x, y = (PanelAxis(title, unit) for title, unit in beside.axes)
+    nearest, beside, first = fit.nearest, fit.nearest.beside, fit.first.run
+    x, y = (PanelAxis(title, unit) for title, unit in nearest.run.axes)
     curves = (
         PanelCurve("measured", measured.displacement, measured.force, 5, "points"),
-        PanelCurve("before", fit.first.displacement, fit.first.force, 0, "dotted"),
-        PanelCurve("fitted", run.displacement, run.force, 1),
+        PanelCurve("before", first.displacement, first.force, 0, "dotted"),
+        PanelCurve("fitted", nearest.run.displacement, nearest.run.force, 1),
     )
     numbers = np.arange(1.0, len(beside.counted) + 1.0)[beside.counted]
-    left = PanelCurve("difference", numbers, 100.0 * run.differences, 1, "points")
+    left = PanelCurve("difference", numbers, 100.0 * nearest.differences, 1, "points")
     share = PanelAxis(f"{beside.quantity}: fitted less measured", "% of its range")
     return [
         Panel("Force over displacement", x, y, curves),

@@ -1,22 +1,45 @@
-"""A measured loop, force over displacement, as tables have it, with or without times."""
+"""A measured loop, force over displacement, as tables have it, beside a run, and their distance.
+
+A run has one of both given and finds the other: the force is compared where the displacement is
+given, and else the displacement. With the difference d_j to row j of the table,
+
+    distance = sqrt(mean of d_j^2) / (largest - smallest measured value),
+
+where each row counts alike. Rows that have a time are compared at that time, if it is in the run,
+whose loop is linear between its instants.
+
+Rows without times are matched along the path. What is given, in the table and in the run, is cut
+into branches at its reversals (swings of less than 5 % of the range are none). The branches of the
+table are laid on as many branches of the run that go the same ways, so that their ends fit best; of
+equals on the last, which are those of a steady loop. In a branch rows are matched by the value of
+what is given; beyond its ends they are compared with these.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.columns import KINDS, TableColumn
 from solver.definitions import SettingError
-from solver.discrete.structure import Loop
-from solver.study.comparison import FEWEST, MOST
+from solver.discrete.problem import Problem
+from solver.discrete.structure import Loop, LoopFields
+from solver.study.comparison import FEWEST, in_si
+from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
 from solver.tables import Table, read_table
 
 CAN = "CSV whose head names displacement and force of every row, and their time if it is known"
+ALIKE = 0.02
+"""Share of the range by which the ends of branches may differ, each, that fit equally well."""
 Axes = tuple[tuple[str, str], tuple[str, str]]
 """Titles and units of a loop's displacement and force."""
+LoopColumns = tuple[TableColumn | None, TableColumn, TableColumn]
+"""Columns of time, where there is one, displacement and force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +69,12 @@ class MeasuredLoop:
 
     def csv(self) -> str:
         """Table of it, as `read_loop` takes it."""
-        columns = {f"displacement [{self.units[0]}]": self.displacement}
-        columns[f"force [{self.units[1]}]"] = self.force
-        if self.times is not None:
-            columns = {"time [s]": self.times, **columns}
-        return table_of(columns)
+        times = {} if self.times is None else {"time [s]": self.times}
+        heads = [f"displacement [{self.units[0]}]", f"force [{self.units[1]}]"]
+        return csv_of({**times, heads[0]: self.displacement, heads[1]: self.force})
 
 
-def table_of(columns: dict[str, Array]) -> str:
+def csv_of(columns: Mapping[str, Array]) -> str:
     """Columns of numbers by their heads as CSV."""
     rows = (
         ",".join(f"{value:.10g}" for value in row) for row in zip(*columns.values(), strict=True)
@@ -93,7 +114,7 @@ def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
     return loop_in(table, columns_of(table, axes), source, axes)
 
 
-def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColumn, TableColumn]:
+def columns_of(table: Table, axes: Axes) -> LoopColumns:
     """Columns of time, where there is one, displacement and force that the head names.
 
     Raises
@@ -114,12 +135,7 @@ def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColum
     return time, both[0], both[1]
 
 
-def loop_in(
-    table: Table,
-    columns: tuple[TableColumn | None, TableColumn, TableColumn],
-    source: str,
-    axes: Axes,
-) -> MeasuredLoop:
+def loop_in(table: Table, columns: LoopColumns, source: str, axes: Axes) -> MeasuredLoop:
     """The loop in the columns of time, displacement and force of a table.
 
     Raises
@@ -128,21 +144,140 @@ def loop_in(
         For another unit, what is no finite number, too many or too few rows, or values that are
         all the same.
     """
-    time, across, up = columns
-    used, units = [across, up], [axes[0][1], axes[1][1]]
-    if len(table.rows) > MOST:
-        raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
-    if time is not None:
-        used, units = [time, *used], ["s", *units]
-    names = ["time", axes[0][0], axes[1][0]][-len(used) :]
-    numbers, message = table.read(used, names, units)
-    *times, displacement, force = numbers
+    roles = zip(columns, (("time", "s"), *axes), strict=True)
+    used = {name: (column, unit) for column, (name, unit) in roles if column is not None}
+    (*times, displacement, force), message = in_si(table, used)
     if len(force) < FEWEST:
         raise table.refuse(f"it has {len(force)} rows: give at least {FEWEST}")
     for values, (title, _) in zip((displacement, force), axes, strict=True):
         if np.ptp(values) == 0.0:
             raise table.refuse(f"{title} has the same value in all rows")
-    if time is None:
+    if not times:
         message += "; matched along the path, as no time is given"
-    both = axes[0][1], axes[1][1]
-    return MeasuredLoop(displacement, force, times[0] if times else None, both, source, message)
+    units = axes[0][1], axes[1][1]
+    return MeasuredLoop(displacement, force, times[0] if times else None, units, source, message)
+
+
+class LoopComparison:
+    """A measured loop beside the runs of one problem.
+
+    Parameters
+    ----------
+    measured, loop, problem
+        The table, and the loop of the problem.
+
+    Attributes
+    ----------
+    finds_force
+        Whether displacement is given and force is compared, or the other way round.
+    quantity, given
+        Titles of what is compared, and of what is given.
+    counted
+        Which rows are compared, shape (n_rows,).
+
+    Raises
+    ------
+    SettingError
+        For a loop of other quantities, or times of which too few are in the run.
+    """
+
+    def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:
+        self.measured, self.loop, self._instants = measured, loop, problem.instants
+        (across, x), (up, y) = axes_of(loop)
+        if measured.units != (x, y):
+            can = f"a loop of {across} ({x}) and {up} ({y})"
+            raise self._refusal(can, "load one of this scene")
+        self.finds_force = bool(np.isin(loop.displacement.dofs, problem.prescribed[0]).all())
+        self.given, self.quantity = (across, up) if self.finds_force else (up, across)
+        self.counted = np.ones(len(measured.force), dtype=bool)
+        if measured.times is not None:
+            first, last = self._instants[[0, -1]]
+            self.counted = (measured.times >= min(first, 0.0)) & (measured.times <= last)
+            if self.counted.sum() < FEWEST:
+                ends = f"{measured.times.min():g} s to {measured.times.max():g} s"
+                remedy = "shift or scale its times, set duration, or leave the column of time out"
+                can = f"at least {FEWEST} rows in the run, which lasts {last:g} s"
+                raise self._refusal(can, f"it goes from {ends}: {remedy}")
+        pair = measured.displacement[self.counted], measured.force[self.counted]
+        self._given, self._found = pair if self.finds_force else pair[::-1]
+        self._sizes = [float(np.ptp(values)) or 1.0 for values in (self._given, self._found)]
+
+    def _refusal(self, can: str, remedy: str) -> SettingError:
+        return SettingError("the measured loop", self.measured.source, can, remedy)
+
+    def drive_message(self, drive: Array) -> str:
+        """Sentence for differences of what is given."""
+        far = f"{100.0 * rms(drive):.2g} % of its range from the measured"
+        return f"{self.given} of the run is {far}: give the run the measured path"
+
+    def both(self, fields: LoopFields) -> tuple[Array, Array]:
+        """Displacement and force of an iterate, or of a reference, shape (n_instants,)."""
+        force = self.loop.force
+        force = force if isinstance(force, np.ndarray) else force(fields)
+        return self.loop.displacement(fields.displacement), force
+
+    def of(self, fields: LoopFields) -> float:
+        """Distance to an iterate, or to a reference."""
+        return rms(self.differences(*self.both(fields))[0])
+
+    def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
+        """What is found, and what is given, of a run less the rows that are compared.
+
+        Both as shares of the measured range, shape (n_counted,).
+
+        Raises
+        ------
+        SettingError
+            If there are no branches of the run on which those of the table could lie.
+        """
+        given, found = (displacement, force) if self.finds_force else (force, displacement)
+        if self.measured.times is not None:
+            instants = np.arange(len(self._instants))
+            places = np.interp(self.measured.times[self.counted], self._instants, instants)
+        else:
+            places = self._along_path(given)
+        values = (np.interp(places, np.arange(len(line)), line) for line in (found, given))
+        pairs = zip(values, (self._found, self._given), self._sizes[::-1], strict=True)
+        own, drive = ((value - measured) / size for value, measured, size in pairs)
+        return own, drive
+
+    def _along_path(self, given: Array) -> Array:
+        """Places of the rows among the instants of a run, (n_counted,), fractions between them."""
+        rows, instants = branches(self._given), branches(given)
+        ways, own = np.sign(np.diff(self._given[rows])), np.sign(np.diff(given[instants]))
+        misfits = {
+            first: float(
+                np.abs(given[instants[first : first + len(rows)]] - self._given[rows]).sum()
+            )
+            for first in range(len(own) - len(ways) + 1)
+            if np.array_equal(own[first : first + len(ways)], ways)
+        }
+        if not misfits:
+            counts = f"{len(own)} times, and the measured loop {len(ways)} times"
+            remedy = "give the run such a load path, or every row its time"
+            can = "rows along a path that the run goes, too"
+            raise self._refusal(can, f"{self.given} of the run goes one way {counts}: {remedy}")
+        enough = min(misfits.values()) + ALIKE * self._sizes[0] * len(rows)
+        first = max(place for place, misfit in misfits.items() if misfit <= enough)
+        places = np.empty(len(self._given))
+        parts = pairwise(instants[first : first + len(rows)])
+        for (begin, end), (start, stop), way in zip(pairwise(rows), parts, ways, strict=True):
+            line = np.maximum.accumulate(way * given[start : stop + 1])
+            inside = slice(begin + (begin > 0), end + 1)
+            at = np.arange(start, stop + 1)
+            places[inside] = np.interp(way * self._given[inside], line, at)
+        return places
+
+
+def branches(path: Array) -> Indices:
+    """Where a path begins, turns back, and ends."""
+    last = len(path) - 1
+    ends = [0, *(place for place in turning_points(path) if 0 < place < last), last]
+    if len(ends) > 2 and abs(path[ends[-2]] - path[last]) <= SMALLEST_SWING * np.ptp(path):
+        ends.pop(-2)
+    return np.array(ends)
+
+
+def rms(values: Sequence[float] | Array) -> float:
+    """Root of the mean of squares."""
+    return float(np.sqrt(np.mean(np.square(values))))

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import contextlib
 import csv
-from collections.abc import Callable, Iterable, Sequence
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.metadata import entry_points
 from pathlib import Path
+from string import Template
 
 from solver.disk import whole_file, write
 from solver.study.chart import Chart
@@ -33,33 +36,11 @@ Section = str | PlotSection
 """Words and tables are HTML."""
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
 """From sections, what all charts of a page need, once, and each of them as HTML of its own."""
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: {title}</title>
-<style>
-body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 90rem; margin: 2rem auto; padding: 0 1rem;
-  color: #222; background: #fff; }}
-p, ul {{ max-width: 62rem; }}
-h2 {{ margin-top: 3rem; }}
-.caption {{ opacity: 0.75; font-size: 0.9rem; }}
-table {{ display: block; overflow-x: auto; border-collapse: collapse; font-size: 0.85rem; }}
-th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: left;
-  vertical-align: top; }}
-td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
-td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
-td.right {{ border-left-color: #0072B2; }} td.unsolved {{ border-left-color: #E69F00; }}
-td.refused {{ border-left-color: #56B4E9; }} td.unclear {{ border-left-color: #999999; }}
-td.wrong {{ border-left-color: #D55E00; }}
-td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
-</style>
-{head}
-<h1>{title}</h1>
-{body}
-</html>
-"""
-"""Colours of verdicts are of Okabe and Ito's palette, told apart by the colour-blind."""
+Shown = Mapping[str, tuple[str, int]]
+"""Columns of a console: head and characters by name."""
+NUMBER = re.compile(r"-|-?\d[\d.e+-]*")
+VERDICTS = "right", "holds", "unsolved", "refused", "unclear", "wrong", "FAILS"
+PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
 def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
@@ -81,7 +62,7 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
     places = iter(drawn)
     parts = [part if isinstance(part, str) else next(places) for part in report]
     body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
-    write(file, PAGE.format(title=escape(title), head=head, body=body))
+    write(file, PAGE.substitute(title=escape(title), head=head, body=body))
     return note
 
 
@@ -99,22 +80,39 @@ def bullets(lines: Sequence[str]) -> str:
     return "<ul>\n" + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
 
 
-def cell(text: str, kind: str = "") -> str:
-    """A cell of a table; kinds are "number", "verdict right" and others of the style sheet."""
+def html_table(rows: Iterable[Sequence[str]]) -> str:
+    """A table of texts, whose first row is its head; a row of one entry is HTML, as wide as all."""
+    head, *rest = rows
+    lines = ["".join(f"<th>{escape(text)}</th>" for text in head)]
+    for row in rest:
+        wide = f'<td class="more" colspan="{len(head)}">{row[0]}</td>'
+        lines.append(wide if len(row) == 1 < len(head) else "".join(map(_cell, row)))
+    return "<table>\n{}\n</table>".format("\n".join(f"<tr>{line}</tr>" for line in lines))
+
+
+def _cell(text: str) -> str:
+    kind = "number" if NUMBER.fullmatch(text) else f"verdict {text}" if text in VERDICTS else ""
     return f'<td class="{kind}">{escape(text)}</td>' if kind else f"<td>{escape(text)}</td>"
 
 
-def table(heads: Sequence[str], rows: Sequence[str]) -> str:
-    """A table of rows that are cells already."""
-    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
-    body = "\n".join(f"<tr>{row}</tr>" for row in rows)
-    return f"<table>\n<tr>{head}</tr>\n{body}\n</table>"
+def text_of(value: object, digits: int = 2) -> str:
+    """A value as tables show it."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, float):
+        return str(value)
+    return "-" if math.isnan(value) else "never" if math.isinf(value) else f"{value:.{digits}g}"
 
 
-def plain_table(rows: Sequence[Sequence[str]]) -> str:
-    """A table of texts, whose first row is its head."""
-    head, *rest = rows
-    return table(head, ["".join(map(cell, row)) for row in rest])
+def line_of(entries: Mapping[str, object], shown: Shown) -> str:
+    """Entries of a row as a line of a console."""
+    texts = (f"{text_of(entries[name]):<{width}}" for name, (_, width) in shown.items())
+    return " ".join(texts).rstrip()
+
+
+def head_of(shown: Shown) -> str:
+    """Heads of these columns."""
+    return line_of({name: head for name, (head, _) in shown.items()}, shown)
 
 
 def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:

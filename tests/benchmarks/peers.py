@@ -22,7 +22,7 @@ from solver.reference.incremental import reference_of, rubs_on_supports
 from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.page import aligned
-from solver.study.speed.error_against_time import error_against_time, seconds_of
+from solver.study.speed.measured_times import error_against_time, seconds_of
 from solver.study.speed.study_report import conditions, table
 
 

@@ -33,7 +33,7 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.quantities.finished import settle
 from solver.study.quantities.run_measures import resident
-from solver.study.speed.error_against_time import seconds_of
+from solver.study.speed.measured_times import seconds_of
 
 COURSES = (3, 5, 8, 12, 16, 32)
 """10, 27, 68, 150, 264, 1040 bricks."""

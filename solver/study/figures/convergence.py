@@ -10,7 +10,7 @@ from solver.arrays import Array
 from solver.latin import Record
 from solver.reference.distance import Fields
 from solver.study.chart import Line, Panel, PanelAxis, PanelCurve
-from solver.study.figures.figure import LOAD, Finding, PaperFigure
+from solver.study.figures.figure import Finding, PaperFigure, paper_figure
 from solver.study.figures.paper_runs import EARLY, LONG, PaperRuns
 
 SHOWN = 300
@@ -26,64 +26,51 @@ QUANTITIES = {
     "error_displacement": "the error of the displacement",
     "error_force": "the error of the friction force",
 }
-Records = Sequence[Record]
+Histories = Mapping[str, Sequence[Record]]
 
 
 def figure_3(runs: PaperRuns) -> PaperFigure:
     """The LATIN indicator, mono- and multiscale, with the true errors beside it."""
-    multi, mono = runs.multiscale.records, runs.monoscale.records
-    iterations = PanelAxis("Iteration")
+    both = {"multiscale": runs.multiscale.records, "monoscale": runs.monoscale.records}
 
     def curves(name: str, word: str, line: Line) -> list[PanelCurve]:
         numbers = np.arange(1.0, SHOWN + 1.0)
         return [
-            PanelCurve(f"{word}, {version}", numbers, _column(records, name)[:SHOWN], hue, line)
-            for hue, (version, records) in enumerate(
-                {"multiscale": multi, "monoscale": mono}.items(), start=1
-            )
+            PanelCurve(f"{word}, {version}", numbers, values[:SHOWN], hue, line)
+            for hue, (version, values) in enumerate(_columns(both, name).items(), start=1)
         ]
 
-    indicator = Panel(
-        "What the method computes",
-        iterations,
-        PanelAxis("LATIN indicator η", logarithmic=True),
-        tuple(curves("indicator", "η", "dashed")),
-    )
-    errors = Panel(
-        "What is true",
-        iterations,
-        PanelAxis("Relative error", logarithmic=True),
-        (
-            *curves("error_force", "friction force", "solid"),
-            *curves("error_displacement", "displacement", "dotted"),
+    axes = [PanelAxis(name, logarithmic=True) for name in ("LATIN indicator η", "Relative error")]
+    errors = [
+        *curves("error_force", "friction force", "solid"),
+        *curves("error_displacement", "displacement", "dotted"),
+    ]
+    panels = (
+        Panel(
+            "What the method computes",
+            *(PanelAxis("Iteration"), axes[0], tuple(curves("indicator", "η", "dashed"))),
         ),
+        Panel("What is true", PanelAxis("Iteration"), axes[1], tuple(errors)),
     )
-    return PaperFigure(
-        3,
-        "LATIN indicator, monoscale and multiscale",
-        (indicator, errors),
-        "The multiscale version gains hugely in the first iterations; after that both converge at "
-        "the same rate.",
-        (
-            _gain(multi, mono, "indicator", 1e-4),
-            _gain(multi, mono, "error_displacement", 1e-2),
-            _rates(multi, mono, (30, 200)),
-            _rates(multi, mono, (LONG // 2, LONG)),
-        ),
-        f"10 substructures, the indicator of eq. 2 (squared norms) and, as it is no error, the "
-        f"distance to the incremental solution in L2 over space and time. {LOAD}",
+    return paper_figure(
+        *(3, panels),
+        *(_gain(both, "indicator", 1e-4), _gain(both, "error_displacement", 1e-2)),
+        *(_rates(both, (30, 200)), _rates(both, (LONG // 2, LONG))),
     )
 
 
-def _column(records: Records, name: str) -> Array:
-    """One scalar of all records, shape (n_iterations,)."""
-    return np.array([getattr(entry, name) for entry in records])
+def _columns(both: Histories, name: str) -> dict[str, Array]:
+    """One scalar of all records by version, each of shape (n_iterations,)."""
+    return {
+        version: np.array([getattr(entry, name) for entry in records])
+        for version, records in both.items()
+    }
 
 
-def _gain(multi: Records, mono: Records, name: str, level: float) -> Finding:
+def _gain(both: Histories, name: str, level: float) -> Finding:
     """Iterations until a quantity passes a level."""
     first, second = (
-        int(np.argmax(_column(records, name) <= level)) + 1 for records in (multi, mono)
+        int(np.argmax(values <= level)) + 1 for values in _columns(both, name).values()
     )
     return Finding(
         f"It takes {first} iterations multiscale, {second} monoscale to bring {QUANTITIES[name]} "
@@ -92,15 +79,14 @@ def _gain(multi: Records, mono: Records, name: str, level: float) -> Finding:
     )
 
 
-def _rates(multi: Records, mono: Records, window: tuple[int, int]) -> Finding:
+def _rates(both: Histories, window: tuple[int, int]) -> Finding:
     """Rates of convergence, fitted to logarithms over a window of iterations."""
     start, end = window
-
-    def slope(records: Records, name: str) -> float:
-        values = np.log(_column(records, name)[start - 1 : end])
-        return float(np.polyfit(np.arange(len(values)), values, 1)[0])
-
-    ratios = {name: slope(multi, name) / slope(mono, name) for name in QUANTITIES}
+    ratios = {}
+    for name in QUANTITIES:
+        tails = [np.log(values[start - 1 : end]) for values in _columns(both, name).values()]
+        multi, mono = np.polyfit(np.arange(end - start + 1), np.transpose(tails), 1)[0]
+        ratios[name] = float(multi / mono)
     words = ", ".join(f"{ratio:.2f} for {QUANTITIES[name]}" for name, ratio in ratios.items())
     return Finding(
         f"From iteration {start} to {end}, the rate of convergence multiscale over that monoscale "
@@ -119,42 +105,27 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
     }
     law = problem.friction
     lengths = law.by_point(law.weights)[1:]
-    root = np.sqrt(lengths)
-    moments = {time: int(np.argmin(np.abs(problem.instants - time))) for time in INSTANTS}
     forces = {label: fields.contact_force[1:] for label, fields in solutions.items()}
-    panels = tuple(
-        Panel(
-            f"t = {instant:g} s",
-            PanelAxis("Position x", "m"),
-            PanelAxis("Friction force per length", "N/m"),
-            tuple(
-                PanelCurve(label, law.positions[1:], force[:, moment] / lengths, hue)
-                for hue, (label, force) in enumerate(forces.items())
-            ),
+    panels = []
+    for instant in INSTANTS:
+        moment = int(np.argmin(np.abs(problem.instants - instant)))
+        curves = tuple(
+            PanelCurve(label, law.positions[1:], force[:, moment] / lengths, hue)
+            for hue, (label, force) in enumerate(forces.items())
         )
-        for instant, moment in moments.items()
-    )
-    early = moments[INSTANTS[0]]
+        axes = PanelAxis("Position x", "m"), PanelAxis("Friction force per length", "N/m")
+        panels.append(Panel(f"t = {instant:g} s", *axes, curves))
+    early = int(np.argmin(np.abs(problem.instants - INSTANTS[0])))
+    root = np.sqrt(lengths)
     displacements = {
         label: fields.displacement[1:, early] * root for label, fields in solutions.items()
     }
-    forces_then = {label: force[:, early] for label, force in forces.items()}
-    return PaperFigure(
-        4,
-        f"Friction force after {EARLY} iterations",
-        panels,
-        "After a few iterations the multiscale version captures the global behaviour very well, "
-        "while the monoscale one is far from the reference, the load not fully propagated.",
-        (
-            _balance(forces_then),
-            _distance("the displacement", displacements),
-            _distance(
-                "the friction force", {label: force / root for label, force in forces_then.items()}
-            ),
-        ),
-        "10 substructures. The clamped node is left out: its friction force is part of the "
-        "reaction. Here the load is zero at both instants, so that t = 1 s is t = 0.5 s with "
-        f"the sign changed. {LOAD}",
+    then = {label: force[:, early] for label, force in forces.items()}
+    weighted = {label: force / root for label, force in then.items()}
+    return paper_figure(
+        *(4, panels, _balance(then), _distance("the displacement", displacements)),
+        _distance("the friction force", weighted),
+        early=EARLY,
     )
 
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
-from itertools import chain
 from pathlib import Path
 
 from solver.study.chart import Panel
 from solver.study.page import PlotSection, Section, bullets, write_page
 
+WORDS = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
 LOAD = (
     "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of 900 N, "
     "relaxation 0.8, all else as in Table 1."
@@ -23,15 +24,7 @@ FILE = "figures.html"
 
 @dataclass(frozen=True)
 class Finding:
-    """A measured answer to a claim, or to a part of it.
-
-    Attributes
-    ----------
-    text
-        One sentence with the numbers in it.
-    holds
-        Whether they bear out the claim.
-    """
+    """A measured answer to a claim: a sentence with its numbers, and whether they bear it out."""
 
     text: str
     holds: bool
@@ -39,23 +32,13 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class PaperFigure:
-    """A figure of the paper, drawn again.
-
-    Attributes
-    ----------
-    number
-        Its number in the paper.
-    claim
-        What the paper says that it shows, in one sentence.
-    caption
-        What is drawn, and the choices that the paper leaves.
-    """
+    """A figure of the paper, by its number there, drawn again, with what the paper says of it."""
 
     number: int
     title: str
-    panels: tuple[Panel, ...]
+    panels: Sequence[Panel]
     claim: str
-    findings: tuple[Finding, ...]
+    findings: Sequence[Finding]
     caption: str
 
     @property
@@ -70,6 +53,15 @@ class PaperFigure:
         return "holds" if all(held) else "holds in part" if any(held) else "does not hold"
 
 
+def paper_figure(
+    number: int, panels: Sequence[Panel], *findings: Finding, **numbers: float
+) -> PaperFigure:
+    """A figure with its words, in which numbers are named."""
+    texts = {name: text.format(**numbers) for name, text in WORDS[str(number)].items()}
+    caption = f"{texts.pop('caption')} {LOAD}"
+    return PaperFigure(number, panels=panels, findings=findings, caption=caption, **texts)
+
+
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> str:
     """Write `FILE` into a folder.
 
@@ -82,16 +74,13 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> str:
     OSError
         When it cannot be written.
     """
-    report = [INTRODUCTION, *chain.from_iterable(map(_sections, figures))]
+    report: list[Section] = [INTRODUCTION]
+    for figure in figures:
+        findings = bullets([f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings])
+        claim = f"<b>The paper's claim:</b> {escape(figure.claim)} <b>Here it {figure.verdict}.</b>"
+        report += [
+            f"<h2>{escape(figure.heading)}</h2>",
+            PlotSection(figure.heading, figure.panels),
+            f'<p>{claim}</p>\n{findings}\n<p class="caption">{escape(figure.caption)}</p>',
+        ]
     return write_page(folder / FILE, "The paper's figures, drawn again", report)
-
-
-def _sections(figure: PaperFigure) -> list[Section]:
-    """A figure on the page."""
-    findings = bullets([f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings])
-    return [
-        f"<h2>{escape(figure.heading)}</h2>",
-        PlotSection(figure.heading, figure.panels),
-        f"<p><b>The paper's claim:</b> {escape(figure.claim)} <b>Here it {figure.verdict}.</b></p>"
-        f'\n{findings}\n<p class="caption">{escape(figure.caption)}</p>',
-    ]

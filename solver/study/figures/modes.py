@@ -10,7 +10,7 @@ from solver.arrays import Array
 from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, against_front, front_decay
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.figures.figure import LOAD, Finding, PaperFigure
+from solver.study.figures.figure import Finding, PaperFigure, paper_figure
 from solver.study.figures.paper_runs import PaperRuns
 
 ALIKE = 0.9
@@ -45,19 +45,8 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
             ("Those that the front sweeps", (1e-2, 1.5), curves[2:], []),
         )
     )
-    return PaperFigure(
-        5,
-        "Singular values of the friction force, 5 substructures",
-        panels,
-        "In substructures 1 and 2, which mostly stick, the singular values fall very rapidly; in 3 "
-        "to 5, which a large sliding front sweeps, very slowly.",
-        (_mode_counts(parts, noise * largest), _as_a_front(parts[2:])),
-        "SVD of the converged friction force per length, weighted in space and time, relative to "
-        "the largest value of all substructures; dotted: a front of constant speed. Values below "
-        f"{noise:.0e} of the largest are below the solution's own error: at 900 N nothing slides "
-        "in substructure 1, and of substructure 2 only the end, so their fast decay is the load's "
-        f"doing. {LOAD}",
-    )
+    counts, decay = _mode_counts(parts, noise * largest), _as_a_front(parts[2:])
+    return paper_figure(5, panels, counts, decay, noise=noise)
 
 
 def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
@@ -114,16 +103,7 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
         f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}.",
         min(values) >= ALIKE,
     )
-    return PaperFigure(
-        6,
-        "SVD modes of the friction force in substructures 4 and 5",
-        panels,
-        "Substructures 4 and 5 stick and slide alike, so their modes have similar shapes, global "
-        "in the first modes and local in the later ones.",
-        (likeness, _sign_changes(fourth, fifth)),
-        "5 substructures, converged; modes orthonormal in L2 over the substructure, the sign of "
-        f"those of 5 chosen to fit those of 4. {LOAD}",
-    )
+    return paper_figure(6, panels, likeness, _sign_changes(fourth, fifth))
 
 
 def _sign_changes(*parts: Decomposition) -> Finding:
@@ -157,15 +137,8 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
         f"its {len(force.values)}.",
         left[3] <= 0.01,
     )
-    return PaperFigure(
-        7,
-        "SVD modes of the displacement of substructure 5",
-        (Panel("SVD of the converged displacement", PLACE, MODE, curves),),
-        "The first three SVD modes of the displacement of substructure 5 are what those of the PGD "
-        "(Fig. 8) are to be compared with.",
-        (reducible,),
-        f"5 substructures, converged; modes orthonormal in L2 over the substructure. {LOAD}",
-    )
+    panel = Panel("SVD of the converged displacement", PLACE, MODE, curves)
+    return paper_figure(7, [panel], reducible)
 
 
 def figure_8(runs: PaperRuns) -> PaperFigure:
@@ -181,23 +154,11 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
             ("PGD modes as the iteration keeps them", kept),
         )
     )
-    return PaperFigure(
-        8,
-        "PGD modes of the displacement of substructure 5",
-        panels,
-        "With sorting and downsizing, the first three PGD modes of the displacement correlate well "
-        "with the first three SVD modes.",
-        (
-            _correlation(exact, sorted_, "orthonormalised in order"),
-            _correlation(exact, kept, "as the iteration keeps them"),
-            _reduced_errors(runs),
-        ),
-        f"5 substructures, PGD at its default settings, iterate {last.number}; dotted: the SVD "
-        "modes of Fig. 7. The PGD keeps displacement and force in one basis, orthonormal and "
-        "sorted in the norm of the search direction, so the displacement parts of its modes "
-        "overlap. Left, they are made orthonormal in L2 one after the other, which leaves their "
-        f"span as it is. {LOAD}",
+    likeness = (
+        _correlation(exact, sorted_, "orthonormalised in order"),
+        _correlation(exact, kept, "as the iteration keeps them"),
     )
+    return paper_figure(8, panels, *likeness, _reduced_errors(runs), last=last.number)
 
 
 def _displacement_modes(iterate: Iterate) -> Array:

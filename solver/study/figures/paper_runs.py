@@ -25,15 +25,7 @@ REDUCED = 100
 
 @dataclass(frozen=True, eq=False)
 class PaperRun:
-    """A run by its records and two of its iterates.
-
-    Attributes
-    ----------
-    records
-        One per iteration.
-    early, last
-        The iterate number `EARLY`, and the one at the end.
-    """
+    """Records of a run, one per iteration, its iterate number `EARLY`, and the last one."""
 
     records: list[Record]
     early: Iterate

@@ -1,4 +1,4 @@
-"""Cases of bodies in the plane: contacts, a slope, a leaf spring, faults."""
+"""Numbers that are known of bodies in the plane, beside those of an answer, for `cases.toml`."""
 
 from __future__ import annotations
 
@@ -18,88 +18,7 @@ from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     slip_under_growing_strength,
 )
-from solver.scenes import loop_of
-from solver.study.proof.known_case import PUBLISHED, Answer, KnownCase, Number
-
-JOHNSON = "K. L. Johnson, Contact Mechanics, Cambridge 1985, section"
-HERTZ = f"{JOHNSON} 4.2 (Hertz)"
-MINDLIN = f"{JOHNSON} 7.2 and 7.4 (Cattaneo, Mindlin)"
-SLOPE = "Equilibrium of a rigid block: its weight along the slope, less or more its friction"
-PILE = (
-    "R. K. Livesley, Limit analysis of structures formed from rigid blocks, Int. J. Numer. Meth. "
-    "Eng. 12, 1978: a pile slides where friction ends, and tips about its toe"
-)
-BEAM = "J. M. Gere, S. P. Timoshenko, Mechanics of Materials, 1997, section 12: Timoshenko's beam"
-GOODMAN = (
-    "L. E. Goodman, J. H. Klumpp, Analysis of slip damping with reference to turbine-blade "
-    "vibration, J. Appl. Mech. 23, 421-429, 1956"
-)
-LEAVES = "From first principles: beams whose deflections agree where the shorter ones end"
-DEFLECTION = 1e-4
-STEPS = 6
-"""Instants of a quarter of a cycle of shear."""
-SHOE = (
-    "code_aster, V6.04.503: SSNV503, Patin glissant sur un plan rigide, section 2 (reference "
-    "solution, analytical; the shoe's own deformation neglected); E and nu of its input file"
-)
-VIESCA = (
-    "R. C. Viesca, Self-similar fault slip in response to fluid injection, J. Fluid Mech. 928, "
-    "A29, 2021 (arXiv:2102.03123)"
-)
-BUERGMANN = (
-    "R. Buergmann, D. D. Pollard, S. J. Martel, Slip distributions on faults: effects of stress "
-    "gradients, inelastic deformation, heterogeneous host-rock stiffness, and fault interaction, "
-    "J. Struct. Geol. 16, 1675-1690, 1994"
-)
-FRICTION, PRESSED, FLUID, SPREADS = 0.6, 1e7, 8e6, 0.1
-"""Coefficient, Pa, Pa and m^2/s."""
-LENGTH, REACHED = 600.0, 0.25
-"""m: of the body; and the share of it that the front reaches."""
-FAULT = {
-    **{"friction": FRICTION, "normal_stress": PRESSED, "diffusivity": SPREADS},
-    **{"length": LENGTH, "height": LENGTH, "elements": 96, "elements_up": 48},
-    **{"substructures": 8, "substructures_up": 4},
-    "accuracy": 1e-3,
-}
-ZONE, STRENGTH, DROP = 10, FRICTION * PRESSED, 6e5
-"""Elements that slip under a strength that grows; that in the middle, and what it grows by, Pa."""
-STUCK = 2.0
-"""Strength of what must not slip, over that of what may."""
-
-
-def body_cases() -> list[KnownCase]:
-    """Cases, none of them solved yet."""
-    total = np.pi * 210e9 / (1.0 - 0.3**2) * 0.1**2 / (4.0 * 10.0)
-    pressed = {
-        **{"gap": "parabola", "radius": 10.0, "length": 1.0, "height": 1.0},
-        **{"elements": 80, "elements_up": 80, "friction": 0.0, "instants": 1},
-        **{"top": "traction", "top_normal_traction": -float(f"{total:.6g}")},
-    }
-    half_width, radius, friction, length = 0.01, 5.0, 0.3, 0.1
-    modulus = 210e9 / (1.0 - 0.4999**2)
-    shear = float(f"{0.125 * friction * np.pi * modulus * half_width**2 / radius / length:.6g}")
-    sheared = {
-        **{"gap": "parabola", "radius": radius, "length": length, "height": length},
-        **{"poisson": 0.4999, "friction": friction, "elements": 120, "elements_up": 60},
-        **{"duration": 6.0, "instants": 6 * STEPS + 1, "top": "pushed"},
-        "top_normal_load": [[0.0, 0.0], [1.0, -3.31e-5]],
-        "top_tangential_load": [[1.0, 0.0], [2.0, shear], [4.0, -shear], [6.0, shear]],
-    }
-    slope = {"elements": 12, "elements_up": 6, "instants": 41}
-    caught = "block on a slope, caught by a spring"
-    return [
-        KnownCase("parabola pressed on a plane", HERTZ, 2e-2, "block", pressed, _pressed),
-        KnownCase("parabola sheared to and fro", MINDLIN, 7e-2, "block", sheared, _sheared),
-        KnownCase(caught, SLOPE, 1e-7, "incline", slope, _tilted),
-        _leaves(are_glued=False),
-        _leaves(are_glued=True),
-        _two_leaves(),
-        _graduated(),
-        _shoe(),
-        *map(_driven_by_fluid, (0.1, 0.3, 0.5, 0.7, 0.9)),
-        _growing_strength(),
-        *_walls(),
-    ]
+from solver.study.proof.known_case import Answer, Number
 
 
 def _half_plane(answer: Answer, total: float) -> HalfPlane:
@@ -114,7 +33,8 @@ def _places(answer: Answer, force: Array) -> tuple[Array, Array]:
     return law.by_point(law.weights[:, None])[:, 0], law.positions - middle
 
 
-def _pressed(answer: Answer) -> Iterator[Number]:
+def pressed_parabola(answer: Answer) -> Iterator[Number]:
+    """Largest pressure, and half-width by the second moment of the pressure."""
     force = answer.support[0][:, -1]
     lengths, places = _places(answer, force)
     exact = _half_plane(answer, float(force.sum()))
@@ -123,39 +43,35 @@ def _pressed(answer: Answer) -> Iterator[Number]:
     yield "half-width of contact", "m", exact.half_width, 2.0 * np.sqrt(second)
 
 
-def _sheared(answer: Answer) -> Iterator[Number]:
-    yield from _partly_slipped(answer)
+def sheared_parabola(answer: Answer) -> Iterator[Number]:
+    """What sticks as the shear has its first peak, and what a cycle takes.
+
+    The half-width is from the second moments of pressure and friction, as of two square roots: a
+    count of nodes would be coarse.
+    """
     (pressing, shear), friction = answer.support, answer.settings.friction
-    slip = np.diff(answer.fields.contact("support").slip, axis=1)[:, 2 * STEPS :]
-    taken = -np.sum(shear[:, 2 * STEPS + 1 :] * slip)
+    first = (answer.settings.instants - 1) // 3
+    pressed, held = (np.abs(force[:, first]) for force in (pressing, shear))
+    lengths, places = _places(answer, pressed)
+    total, carried = float(pressed.sum()), friction * float(pressed.sum())
+    exact, share = _half_plane(answer, total), float(held.sum()) / carried
+    moments = friction * float(places**2 @ pressed) - float(places**2 @ held)
+    stuck = 2.0 * np.sqrt(moments / (carried - held.sum()))
+    yield "half-width of stick", "m", exact.stuck(share), stuck
+    middle = int(np.argmax(pressed))
+    known = float(exact.traction(places[middle : middle + 1], friction, share)[0])
+    yield "shear traction in the middle", "Pa", known, held[middle] / lengths[middle]
+    slip = np.diff(answer.slip, axis=1)[:, first:]
     total = float(pressing[:, -1].sum())
     share = abs(float(shear[:, -1].sum())) / (friction * total)
-    yield "energy of a cycle", "J/m", _half_plane(answer, total).energy(friction, share), taken
+    energy = _half_plane(answer, total).energy(friction, share)
+    yield "energy of a cycle", "J/m", energy, -np.sum(shear[:, first + 1 :] * slip)
 
 
-def _partly_slipped(answer: Answer) -> Iterator[Number]:
-    """What sticks as the shear has its first peak.
-
-    Its half-width from the second moments of pressure and friction, as of two square roots: a count
-    of nodes would be coarse.
-    """
-    pressing, shear = (np.abs(force[:, 2 * STEPS]) for force in answer.support)
-    friction = answer.settings.friction
-    lengths, places = _places(answer, pressing)
-    total, carried = float(pressing.sum()), friction * float(pressing.sum())
-    exact = _half_plane(answer, total)
-    share = float(shear.sum()) / carried
-    moments = friction * float(places**2 @ pressing) - float(places**2 @ shear)
-    found = 2.0 * np.sqrt(moments / (carried - shear.sum()))
-    yield "half-width of stick", "m", exact.stuck(share), found
-    middle = int(np.argmax(pressing))
-    known = float(exact.traction(places[middle : middle + 1], friction, share)[0])
-    yield "shear traction in the middle", "Pa", known, shear[middle] / lengths[middle]
-
-
-def _tilted(answer: Answer) -> Iterator[Number]:
+def caught_block(answer: Answer) -> Iterator[Number]:
+    """Force of the spring at the top of the slope, and where the block slides back."""
     settings, force = answer.settings, answer.loop_force
-    angle = np.radians(loop_of(settings, answer.problem).displacement(answer.fields.displacement))
+    angle = np.radians(answer.loop_displacement)
     down, across = settings.weight * np.sin(angle), settings.weight * np.cos(angle)
     top = int(np.argmax(angle))
     carried = down[top] - settings.friction * across[top]
@@ -165,111 +81,51 @@ def _tilted(answer: Answer) -> Iterator[Number]:
     yield "force of the spring, back", "N", returning[back], force[back]
 
 
-def _leaves(*, are_glued: bool) -> KnownCase:
-    pressure = 1e6 if are_glued else 1e5
-    values = {
-        **{"layers": 3, "friction": 10.0 if are_glued else 0.0, "length": 0.5, "thickness": 0.01},
-        **{"elements": 48, "elements_up": 2, "plane": "stress", "instants": 3},
-        **{"pressure": pressure, "pressure_load": [[0.0, pressure], [1.0, pressure]]},
-        **{"deflection": DEFLECTION, "bend_load": [[0.0, 0.0], [0.5, 0.0], [1.0, DEFLECTION]]},
-    }
-
-    def numbers(answer: Answer) -> Iterator[Number]:
-        before, bent = answer.loop_force[-2:]
-        beams, height = (1, 3 * 0.01) if are_glued else (3, 0.01)
-        exact = beams * cantilever(0.5, height, answer.settings.young, answer.settings.poisson)
-        yield "bending stiffness", "N/m", exact, abs(bent - before) / DEFLECTION
-
-    title = "three layers that friction glues" if are_glued else "three layers without friction"
-    return KnownCase(title, BEAM, 5e-3, "layers", values, numbers)
+def bent_layers(answer: Answer) -> Iterator[Number]:
+    """Layers that friction glues are one beam."""
+    settings, (before, bent) = answer.settings, answer.loop_force[-2:]
+    beams, height = (1, 3 * settings.thickness) if settings.friction else (3, settings.thickness)
+    exact = beams * cantilever(settings.length, height, settings.young, settings.poisson)
+    yield "bending stiffness", "N/m", exact, abs(bent - before) / settings.deflection
 
 
-def _two_leaves() -> KnownCase:
-    """Two leaves under a force that goes to twice that of first slip, back and forth."""
-    leaves = TwoLeaves(0.5, 0.01, 210e9, 0.0, 0.3 * 2e6)
-    peak = 2.0 * leaves.first_slip
-    values = {
-        **{"layers": 2, "length": 0.5, "thickness": 0.01, "plane": "stress", "poisson": 0.0},
-        **{"elements": 32, "instants": 41, "pressure_load": [[0.0, 2e6]], "bending": "force"},
-        "bend_load": [[0.0, 0.0], [0.2, peak], [0.6, -peak], [1.0, peak]],
-    }
-
-    def numbers(answer: Answer) -> Iterator[Number]:
-        loop = loop_of(answer.settings, answer.problem)
-        bent, cycle = loop.displacement(answer.fields.displacement), answer.settings.times() >= 0.2
-        force = answer.settings.path("bend_load")
-        energy = abs(float(np.trapezoid(force[cycle], bent[cycle])))
-        yield "energy of a cycle", "J/m", leaves.energy(peak), energy
-        yield "largest deflection", "m", leaves.deflection(peak), float(bent.max())
-
-    return KnownCase("spring of two leaves", GOODMAN, 1e-2, "layers", values, numbers)
+def two_leaves(answer: Answer) -> Iterator[Number]:
+    """What a cycle of two leaves takes, and how far they are bent."""
+    own, bent, force = answer.settings, answer.loop_displacement, answer.settings.path("bend_load")
+    pressed = float(own.friction * own.path("pressure_load")[0])
+    leaves = TwoLeaves(own.length, own.thickness, own.young, own.poisson, pressed)
+    peak, start = float(force.max()), int(np.argmax(force))
+    energy = abs(float(np.trapezoid(force[start:], bent[start:])))
+    yield "energy of a cycle", "J/m", leaves.energy(peak), energy
+    yield "largest deflection", "m", leaves.deflection(peak), float(bent.max())
 
 
-def _graduated() -> KnownCase:
-    """Three leaves of which each is shorter, on each other without friction or pressure."""
-    values = {
-        **{"layers": 3, "length": 0.5, "thickness": 0.005, "plane": "stress", "friction": 0.0},
-        **{"layer_lengths": "graduated", "pressure": 0.0, "elements": 48, "instants": 3},
-        **{"bending": "force", "force": 100.0, "bend_load": "ramp"},
-    }
-
-    def numbers(answer: Answer) -> Iterator[Number]:
-        factor = leaf_spring(np.array([3.0, 2.0, 1.0]))
-        assert factor is not None
-        exact = factor * cantilever(0.5, 0.005, answer.settings.young, answer.settings.poisson)
-        loop = loop_of(answer.settings, answer.problem)
-        bent = float(loop.displacement(answer.fields.displacement)[-1])
-        yield "stiffness", "N/m", exact, 100.0 / bent
-
-    title = "leaf spring whose leaves touch at their ends"
-    return KnownCase(title, LEAVES, 5e-3, "layers", values, numbers)
+def leaf_spring_stiffness(answer: Answer) -> Iterator[Number]:
+    """Stiffness of three leaves of which each is shorter, without friction."""
+    settings, factor = answer.settings, leaf_spring(np.array([3.0, 2.0, 1.0]))
+    assert factor is not None
+    leaf = cantilever(settings.length, settings.thickness, settings.young, settings.poisson)
+    yield "stiffness", "N/m", factor * leaf, settings.force / float(answer.loop_displacement[-1])
 
 
-def _shoe() -> KnownCase:
-    """A shoe pressed over its gap, then pushed to 0.99 and 1.01 of what friction holds."""
-    length, gap = 0.04, 2e-3
-    values = {
-        **{"friction": 0.3, "gap": [[0.0, gap], [length, gap]], "spring": 4e6},
-        **{"top": "traction", "top_normal_traction": -300e6, "top_normal_load": [[0.0, -300e6]]},
-        "right": "traction",
-        "right_normal_load": [[1.0, 0.0], [2.0, -178.2e6], [3.0, -181.8e6]],
-        **{"duration": 3.0, "instants": 4, "length": length, "height": 0.02, "poisson": 0.0},
-        **{"elements": 8, "elements_up": 4, "substructures": 1, "substructures_up": 1},
-        "accuracy": 1e-3,
-    }
-
-    def numbers(answer: Answer) -> Iterator[Number]:
-        pressed, held = (force.sum(axis=0) for force in answer.support)
-        yield "normal reaction", "N/m", 12e6, pressed[1]
-        yield "friction at 0.99", "N/m", 3.564e6, held[2]
-        slip = answer.fields.contact("support").slip[:, 3]
-        yield "displacement at 1.01", "m", 9e-3, -slip.mean()
-
-    title = "shoe on a rigid plane (SSNV503)"
-    return KnownCase(title, SHOE, 1e-2, "block", values, numbers, PUBLISHED)
+def shoe(answer: Answer) -> Iterator[Number]:
+    """Shoe that is pressed over its gap, then pushed to 0.99 and 1.01 of what friction holds."""
+    pressed, held = (force.sum(axis=0) for force in answer.support)
+    yield "normal reaction", "N/m", 12e6, pressed[1]
+    yield "friction at 0.99", "N/m", 3.564e6, held[2]
+    yield "displacement at 1.01", "m", 9e-3, -answer.slip[:, 3].mean()
 
 
-def _driven_by_fluid(stress: float) -> KnownCase:
-    """A fluid let in until the front has reached its share of the body."""
-    exact = front_over_diffusion(stress)
-    values = {
-        **FAULT,
-        "overpressure": FLUID,
-        "shear_stress": FRICTION * (PRESSED - stress * FLUID),
-        "duration": float(f"{(REACHED * LENGTH / exact) ** 2 / (4.0 * SPREADS):.6g}"),
-        "instants": 41,
-    }
-
-    def numbers(answer: Answer) -> Iterator[Number]:
-        late = slice(answer.settings.instants // 2, None)
-        diffused = np.sqrt(4.0 * SPREADS * answer.settings.times()[late])
-        place = answer.problem.rubbing["support"].positions
-        slip = np.abs(answer.fields.contact("support").slip[:, late])
-        reached = np.array([_front(place, own) for own in slip.T])
-        yield "front over sqrt(4 alpha t)", "-", exact, reached @ diffused / (diffused @ diffused)
-
-    title = f"slip front driven by a fluid, T = {stress:g}"
-    return KnownCase(title, VIESCA, 1.2e-2, "fault", values, numbers, PUBLISHED)
+def driven_by_fluid(answer: Answer) -> Iterator[Number]:
+    """Front of slip that a fluid drives, over how far this has diffused."""
+    own = answer.settings
+    lack = own.normal_stress - own.shear_stress / own.friction
+    late = slice(own.instants // 2, None)
+    diffused = np.sqrt(4.0 * own.diffusivity * own.times()[late])
+    place, slip = answer.problem.rubbing["support"].positions, np.abs(answer.slip[:, late])
+    reached = np.array([_front(place, at_instant) for at_instant in slip.T])
+    exact = front_over_diffusion(lack / own.overpressure)
+    yield "front over sqrt(4 alpha t)", "-", exact, reached @ diffused / (diffused @ diffused)
 
 
 def _front(place: Array, slip: Array) -> float:
@@ -280,70 +136,44 @@ def _front(place: Array, slip: Array) -> float:
     return float(-level / slope)
 
 
-def _growing_strength() -> KnownCase:
-    half_length = ZONE * LENGTH / int(FAULT["elements"])
-    values = {
-        **FAULT,
-        "overpressure": 0.0,
-        "shear_stress": STRENGTH + DROP,
-        "normal_profile": [
-            [0.0, 1.0],
-            [half_length, 1.0 + DROP / STRENGTH],
-            # The last node that slips has no part of its share, half an element, that sticks.
-            [half_length * (1.0 + 0.5 / ZONE), 1.0 + DROP / STRENGTH],
-            [half_length * (1.0 + 0.501 / ZONE), STUCK],
-        ],
-        "instants": 1,
-    }
+def growing_strength(answer: Answer) -> Iterator[Number]:
+    """Slip under a strength that grows from the middle, where it is exceeded by all that it grows.
 
-    def numbers(answer: Answer) -> Iterator[Number]:
-        settings = answer.settings
-        stiffness = 0.5 * settings.young / (1.0 - settings.poisson**2)
-        place = answer.problem.rubbing["support"].positions
-        exact = slip_under_growing_strength(place, half_length, DROP, stiffness)
-        slip = 2.0 * np.abs(answer.fields.contact("support").slip[:, -1])
-        yield "slip in the middle", "m", exact[0], slip[0]
-        yield "slip half-way to the end", "m", exact[ZONE // 2], slip[ZONE // 2]
-
-    title = "slip under a strength that grows from the middle"
-    return KnownCase(title, BUERGMANN, 4e-2, "fault", values, numbers, PUBLISHED)
+    The last node that slips has no part of its share, half an element, that sticks.
+    """
+    own, place = answer.settings, answer.problem.rubbing["support"].positions
+    half_length, strength = own.normal_profile[1][0], own.friction * own.normal_stress
+    stiffness = 0.5 * own.young / (1.0 - own.poisson**2)
+    exact = slip_under_growing_strength(place, half_length, own.shear_stress - strength, stiffness)
+    slip, middle = 2.0 * np.abs(answer.slip[:, -1]), int(np.argmin(np.abs(place - half_length / 2)))
+    yield "slip in the middle", "m", exact[0], slip[0]
+    yield "slip half-way to the end", "m", exact[middle], slip[middle]
 
 
-def _walls() -> Iterator[KnownCase]:
-    """Piles of single bricks whose top is moved until they slide or tip, and a wall's weight."""
-    pressure, unit_weight, length, height, friction = 1e6, 2e4, 0.25, 0.12, 0.3
-    pressed, brick = pressure * length, unit_weight * length * height
-    common = {
-        **{"bond": "stack", "length": length, "height": height, "unit_weight": unit_weight},
-        **{"pressure": pressure, "friction": friction, "elements": 8, "elements_up": 4},
-        **{"instants": 21, "accuracy": 1e-3},
-    }
+def _forces(answer: Answer) -> tuple[float, float]:
+    """What presses on a brick, and its weight, N/m."""
+    settings = answer.settings
+    weight = settings.unit_weight * settings.length * settings.height
+    return settings.pressure * settings.length, weight
 
-    def pile(title: str, courses: int, mu: float, way: float, known: Number) -> KnownCase:
-        moved = [[0.0, 0.0], [0.25, 0.0], [1.0, way]]
-        size = {"bricks": 1, "courses": courses, "friction": mu, "top_load": moved}
 
-        def numbers(answer: Answer) -> Iterator[Number]:
-            yield *known[:3], answer.loop_force[-1]
+def sliding_pile(answer: Answer) -> Iterator[Number]:
+    """Shear force of a pile of bricks that slides."""
+    held = answer.settings.friction * sum(_forces(answer))
+    yield "shear force", "N/m", held, answer.loop_force[-1]
 
-        return KnownCase(title, PILE, 1e-8, "wall", {**common, **size}, numbers)
 
-    slides = friction * (pressed + brick)
-    known = "shear force", "N/m", slides, 0.0
-    yield pile("pile of two bricks that slides", 2, friction, 3e-4, known)
-    # Moments about the toe: what presses, and the weight, have half a length. It ends on one node.
-    tips = 0.5 * length * (pressed + 3.0 * brick) / (3.0 * height)
-    yield pile("pile of three bricks that tips", 3, 0.9, 3e-3, ("shear force", "N/m", tips, 0.0))
+def tipping_pile(answer: Answer) -> Iterator[Number]:
+    """Moments about the toe: what presses, and the weight, have half a length."""
+    settings, (pressed, brick) = answer.settings, _forces(answer)
+    held = 0.5 * settings.length * (pressed + 3.0 * brick) / (3.0 * settings.height)
+    yield "shear force", "N/m", held, answer.loop_force[-1]
 
-    def carried(answer: Answer) -> Iterator[Number]:
-        grounds = [name for name in answer.problem.rubbing if name.startswith("support")]
-        force = 0.0
-        for name in grounds:
-            across = answer.fields.contact(name).normal_force
-            assert across is not None
-            force += float(across[:, -1].sum())
-        yield "force on the ground", "N/m", 4.0 * (pressed + 4.0 * brick), force
 
-    values = {**common, "bond": "running", "bricks": 4, "courses": 4, "displacement": 5e-5}
-    title, source = "wall in running bond", "Balance: the ground carries what weighs and presses"
-    yield KnownCase(title, source, 1e-8, "wall", values, carried)
+def weighed_wall(answer: Answer) -> Iterator[Number]:
+    """What the ground carries of a wall."""
+    pressed, brick = _forces(answer)
+    grounds = [name for name in answer.problem.rubbing if name.startswith("support")]
+    across = [answer.fields.contact(name).normal_force for name in grounds]
+    force = sum(float(own[:, -1].sum()) for own in across if own is not None)
+    yield "force on the ground", "N/m", 4.0 * (pressed + 4.0 * brick), force

@@ -16,11 +16,10 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.study.cases.case import Case
+from solver.study.mesh import size_of
 from solver.study.quantities.finished import FinishedRun
 
-LATIN, INCREMENTAL = "LATIN", "incremental"
-CLOSED_FORMS, PUBLISHED = "Closed forms", "Published numbers"
-TRADE = "Cases of the trade"
+PARTS = CLOSED_FORMS, PUBLISHED, TRADE = "Closed forms", "Published numbers", "Cases of the trade"
 """Parts of the report, by where what is known is from; cases of the trade are solved by LATIN."""
 
 
@@ -47,11 +46,20 @@ class Answer:
         return contact.normal_force, contact.tangential_force
 
     @property
+    def slip(self) -> Array:
+        """Slip on a support, m, same shape."""
+        return self.fields.contact("support").slip
+
+    @property
+    def loop_displacement(self) -> Array:
+        """Displacement of the scene's loop, shape (n_instants,)."""
+        return loop_of(self.settings, self.problem).displacement(self.fields.displacement)
+
+    @property
     def loop_force(self) -> Array:
-        """Force of the scene's loop, shape (n_instants,)."""
+        """Force of that loop, shape (n_instants,)."""
         force = loop_of(self.settings, self.problem).force
-        assert callable(force)
-        return force(self.fields)
+        return force(self.fields) if callable(force) else force
 
 
 Number = tuple[str, str, float, float]
@@ -94,10 +102,7 @@ class KnownCase:
     @property
     def mesh(self) -> str:
         """What it is solved on, and over how many instants."""
-        settings = self.settings
-        names = [name for name in ("elements", "elements_up") if name in settings.definitions()]
-        elements = " x ".join(str(getattr(settings, name)) for name in names)
-        return f"{elements} elements, {len(settings.times())} instants"
+        return size_of(self.settings)
 
     @property
     def address(self) -> str:
@@ -116,11 +121,11 @@ class ProofRow:
     Attributes
     ----------
     solver
-        `LATIN` or `INCREMENTAL`.
-    exact, found
-        What is known, and what the solver has, in the same unit.
+        LATIN, or the incremental one.
     ended
         Whether the run came to its end; a number of one that did not proves nothing.
+    exact, found
+        What is known, and what the solver has, in the same unit.
     """
 
     case: KnownCase
@@ -149,12 +154,11 @@ def rows_of(case: KnownCase) -> Iterator[ProofRow]:
     solution = solve(problem, method_of(settings))
     ended = solution.status.ending is Ending.CONVERGED
     for number in case.numbers(Answer(settings, problem, solution.iterate, solution)):
-        yield ProofRow(case, LATIN, ended, *number)
-    if case.part == TRADE:
-        return
-    reference = reference_of(problem)
-    for number in case.numbers(Answer(settings, problem, reference)):
-        yield ProofRow(case, INCREMENTAL, bool(reference.converged.all()), *number)
+        yield ProofRow(case, "LATIN", ended, *number)
+    if case.part != TRADE:
+        reference = reference_of(problem)
+        for number in case.numbers(Answer(settings, problem, reference)):
+            yield ProofRow(case, "incremental", bool(reference.converged.all()), *number)
 
 
 def known_case(case: Case) -> KnownCase:
@@ -168,6 +172,4 @@ def known_case(case: Case) -> KnownCase:
 
     settings, source = case.settings, f"{case.formula}. {case.how} {case.source}"
     changes = settings.changed()
-    return KnownCase(
-        case.title, source, case.tolerance, settings.scene, changes, numbers, part=TRADE
-    )
+    return KnownCase(case.title, source, case.tolerance, settings.scene, changes, numbers, TRADE)

@@ -5,26 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import astuple
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
-from solver.arrays import Array
 from solver.definitions import about
 from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.page import PlotSection, Section, bullets, plain_table, write_csv, write_page
-from solver.study.speed.error_against_time import (
+from solver.study.page import PlotSection, Section, bullets, html_table, write_csv, write_page
+from solver.study.speed.measured_times import (
     GOAL,
     LEVELS,
     MOST_ITERATIONS,
-    ErrorCurve,
     Study,
+    TimesAtSize,
 )
-from solver.study.speed.sizes import TimesAtSize
 
+FILES = "curves.csv", "levels.csv", "map.csv", "study.html"
 Row = list[str]
 TABLE_NOTE = (
     "In brackets: iterations of LATIN; a star: the first. The last row is the time of LATIN's best "
@@ -76,13 +74,13 @@ def table(study: Study) -> list[Row]:
     for curve, is_first in zip(study.curves, times == times.min(axis=0), strict=True):
         cells = []
         for (seconds, step), star in zip(reached[curve.method], is_first, strict=True):
-            number = f" ({step:.0f})" if curve.kind == "latin" else ""
+            number = f" ({step:.0f})" if curve.is_latin else ""
             text = f"{1e3 * seconds:.3g} ms{number}{' *' * bool(star)}"
             cells.append(text if math.isfinite(seconds) else "not reached")
         each = curve.seconds_per_iteration
         cost = f"{1e3 * each:.3f}" if each is not None else "-"
         rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
-    is_latin = np.array([curve.kind == "latin" for curve in study.curves])
+    is_latin = np.array([curve.is_latin for curve in study.curves])
     ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
     texts = (f"{ratio:.2g}" if math.isfinite(ratio) else "-" for ratio in ratios)
     return [*rows, [f"best {TIMES}", *texts, "-", "-"]]
@@ -92,10 +90,18 @@ def ratio_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row
     """Time of LATIN over that of the other, a row for each number of instants."""
     sizes = sorted({times.size for times in measured})
     rows = [[TIMES, *(f"{entry_of(settings).grows[0]} {size}" for size in sizes)]]
-    for instants, group in _by_instants(measured):
-        ratios = {times.size: f"{times.ratio:.2g}" for times in group if not times.message}
-        rows.append([f"{instants} instants", *(ratios.get(size, "-") for size in sizes)])
+    for instants, ratios in _ratios(measured).items():
+        texts = (f"{ratios.get(size, math.nan):.2g}".replace("nan", "-") for size in sizes)
+        rows.append([f"{instants} instants", *texts])
     return rows
+
+
+def _ratios(measured: Sequence[TimesAtSize]) -> dict[int, dict[int, float]]:
+    """Ratios by number of instants and size, both in ascending order; NaN without an answer."""
+    ratios: dict[int, dict[int, float]] = {}
+    for times in sorted(measured, key=lambda times: (times.instants, times.size)):
+        ratios.setdefault(times.instants, {})[times.size] = times.ratio
+    return ratios
 
 
 def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
@@ -122,42 +128,30 @@ def _titles(settings: Settings) -> list[str]:
     return [about(definitions[name]).title for name in entry_of(settings).grows]
 
 
-def _by_instants(measured: Sequence[TimesAtSize]) -> list[tuple[int, list[TimesAtSize]]]:
-    """Sizes in ascending order, by numbers of instants in ascending order."""
-    ordered = sorted(measured, key=lambda times: (times.instants, times.size))
-    return [(key, list(group)) for key, group in groupby(ordered, lambda times: times.instants)]
-
-
 def error_panels(study: Study) -> list[Panel]:
     """Errors of displacement and of friction force over time, a curve for each method."""
-    columns = {"error_displacement": "Displacement", "error_force": "Friction force"}
-    return [
-        Panel(
-            title,
+    panels = []
+    for name, title in (("error_displacement", "Displacement"), ("error_force", "Friction force")):
+        *latin, other = (
+            PanelCurve(own.method, own.seconds, np.maximum(getattr(own, name), SMALLEST), hue)
+            for hue, own in enumerate(study.curves, start=1)
+        )
+        # The solver that is the reference itself is a vertical line.
+        line = PanelCurve(other.label, np.repeat(other.x, 2), np.array(SPAN), 0, "dashed")
+        axes = (
             PanelAxis("Time", "s", logarithmic=True),
             PanelAxis("Relative error", logarithmic=True, limits=SPAN),
-            tuple(
-                _curve(curve, getattr(curve, name), n) for n, curve in enumerate(study.curves, 1)
-            ),
         )
-        for name, title in columns.items()
-    ]
-
-
-def _curve(curve: ErrorCurve, errors: Array, hue: int) -> PanelCurve:
-    """A method's line: a vertical one where the solver itself is the reference."""
-    if curve.kind == "incremental":
-        return PanelCurve(curve.method, np.repeat(curve.seconds, 2), np.array(SPAN), 0, "dashed")
-    return PanelCurve(curve.method, curve.seconds, np.maximum(errors, SMALLEST), hue)
+        panels.append(Panel(title, *axes, (*latin, line)))
+    return panels
 
 
 def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
     """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
     curves = []
-    for hue, (instants, group) in enumerate(_by_instants(measured), start=1):
-        sizes = np.array([float(times.size) for times in group])
-        ratios = np.array([times.ratio for times in group])
-        curves.append(PanelCurve(f"{instants} instants", sizes, ratios, hue, "points"))
+    for hue, (instants, ratios) in enumerate(_ratios(measured).items(), start=1):
+        sizes, values = np.array([*ratios.items()]).T
+        curves.append(PanelCurve(f"{instants} instants", sizes, values, hue, "points"))
     ends = np.array([curves[0].x[0], curves[0].x[-1]])
     return Panel(
         f"Time of {TIMES}",
@@ -167,7 +161,7 @@ def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
     )
 
 
-def write_curves(study: Study, folder: Path) -> list[Path]:
+def write_curves(study: Study, folder: Path) -> None:
     """Write `curves.csv` and `levels.csv` (s; errors as fractions).
 
     Raises
@@ -175,37 +169,27 @@ def write_curves(study: Study, folder: Path) -> list[Path]:
     OSError
         When a file cannot be written.
     """
-    columns = ("steps", "seconds", "error_displacement", "error_force")
-    curves = (
-        (curve.method, curve.kind, *map(float, point))
-        for curve in study.curves
-        for point in zip(*(getattr(curve, name) for name in columns), strict=True)
-    )
-    levels = (
-        (
-            *(curve.method, curve.kind, level),
-            *(curve.reached(level) or ("", "")),
-            curve.seconds_per_iteration,
-        )
-        for curve in study.curves
-        for level in LEVELS.values()
-    )
-    head = ["method", "kind", "step", *columns[1:]]
-    level_head = ["method", "kind", "level", "seconds", "step", "seconds_per_iteration"]
-    return [
-        write_csv(folder / "curves.csv", head, curves),
-        write_csv(folder / "levels.csv", level_head, levels),
-    ]
+    points, levels = [], []
+    for curve in study.curves:
+        which = curve.method, "latin" if curve.is_latin else "incremental"
+        columns = curve.steps, curve.seconds, curve.error_displacement, curve.error_force
+        points += [(*which, *map(float, point)) for point in zip(*columns, strict=True)]
+        for level in LEVELS.values():
+            reached = curve.reached(level) or ("", "")
+            levels.append((*which, level, *reached, curve.seconds_per_iteration))
+    head = ["method", "kind"]
+    columns_of_points = [*head, "step", "seconds", "error_displacement", "error_force"]
+    write_csv(folder / "curves.csv", columns_of_points, points)
+    more = ["level", "seconds", "step", "seconds_per_iteration"]
+    write_csv(folder / "levels.csv", [*head, *more], levels)
 
 
-def write_study(
-    study: Study, measured: Sequence[TimesAtSize], folder: Path
-) -> tuple[list[Path], str]:
+def write_study(study: Study, measured: Sequence[TimesAtSize], folder: Path) -> str:
     """Write `map.csv` and `study.html` into an existing folder.
 
     Returns
     -------
-    The files, and what whoever asked for them is to be told, if anything.
+    What whoever asked for them is to be told, if anything.
 
     Raises
     ------
@@ -213,18 +197,16 @@ def write_study(
         When a file cannot be written.
     """
     settings = study.settings
+    head = ["setting", "size", "instants", "latin", "incremental", "said"]
+    rows = ((entry_of(settings).grows[0], *astuple(times)) for times in measured)
+    write_csv(folder / "map.csv", head, rows)
     sections: list[Section] = [
-        f"<h2>Time to an error of the friction force</h2>\n{plain_table(table(study))}\n"
+        f"<h2>Time to an error of the friction force</h2>\n{html_table(table(study))}\n"
         f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(study)),
         f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
         PlotSection(SIZES, [ratio_panel(settings, measured)]),
-        f"{plain_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
+        f"{html_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
     ]
-    page = folder / "study.html"
-    message = write_page(page, "Error against run time", sections)
-    head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    setting = entry_of(settings).grows[0]
-    rows = ((setting, *astuple(times)) for times in measured)
-    return [write_csv(folder / "map.csv", head, rows), page], message
+    return write_page(folder / FILES[-1], "Error against run time", sections)

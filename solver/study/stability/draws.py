@@ -53,6 +53,8 @@ COUNTED = "layers", "wires", "construction"
 """Settings that say how many interfaces there are."""
 NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
+FOOLISH = -3.0, 3.0
+"""Decades of a factor on k that nobody would choose."""
 CHANGED = 0.15
 """How often a setting differs from its default."""
 TRIALS = 1000
@@ -79,10 +81,10 @@ def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
     method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
     return StabilityCase(
         f"row {row} of seed {seed}",
+        settings.scene,
         settings.changed(),
         NOT_WRONG,
-        scene=settings.scene,
-        method="pgd" if settings.linear_stage == "pgd" else method,
+        "pgd" if settings.linear_stage == "pgd" else method,
         error_force=settings.accuracy,
         error_displacement=math.inf,
     )
@@ -107,7 +109,11 @@ def draw(scene: str, seed: int, row: int) -> Settings:
     kind = CATALOGUE[scene].settings
     for _ in range(TRIALS):
         try:
-            return _without_idle(kind.checked(_values(kind, generator)))
+            settings = kind.checked(_values(kind, generator))
+            # Without what does nothing beside the others, so that a row says what matters.
+            changed = settings.changed().items()
+            values = {name: value for name, value in changed if settings.applies(name)}
+            return kind.checked({"method": settings.method, **values})
         except SettingError as refusal:
             last = refusal
     raise last
@@ -118,23 +124,16 @@ def log_uniform(generator: Generator, low: float, high: float) -> float:
     return float(np.exp(generator.uniform(math.log(low), math.log(high))))
 
 
-def _without_idle(settings: Settings) -> Settings:
-    """Settings without what does nothing beside the others, so that a row says what matters."""
-    changed = settings.changed().items()
-    values = {name: value for name, value in changed if settings.applies(name)}
-    return type(settings).checked({"method": settings.method, **values})
-
-
 def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     definitions = kind.definitions()
+    defaults = {name: definition.default for name, definition in definitions.items()}
     values = _mesh(kind.scene, definitions, generator)
     values["method"] = "paper" if generator.random() < 0.35 else "fast"
     mixed = generator.random() < 0.5
     for name, definition in definitions.items():
         if name in values or name in KEPT | AS_THEY_ARE.get(kind.scene, set()):
             continue
-        often = _often(name, about(definition).group, mixed)
-        if generator.random() < often:
+        if generator.random() < _often(name, about(definition).group, mixed):
             values[name] = _drawn(name, definition, generator)
     if "friction_factors" in values:
         some = {name: values[name] for name in COUNTED if name in values}
@@ -143,25 +142,27 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     if "layer_lengths" in values and generator.random() < 0.5:
         shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
         values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
-    if "elements_up" in definitions:
-        _stretch(kind.across, values, definitions, generator)
-    defaults = {name: definition.default for name, definition in definitions.items()}
+    if "elements_up" in definitions:  # elements up to a hundred times as long as high, or as wide
+        length = values.setdefault("length", defaults["length"])
+        power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
+        aspect = 10.0 ** generator.uniform(-power, power)
+        values[kind.across] = length * values["elements_up"] / (values["elements"] * aspect)
     if "cycles" in values:
         most = max((values["instants"] - 1) // INSTANTS_A_CYCLE, 1)
         values["cycles"] = min(values["cycles"], most)
     loads = LOADS.get(kind.scene)
     sizes = loads({**defaults, **values}, generator) if loads is not None else {}
+    every = {**defaults, **values, **sizes}
+    pressing = [every[name] for name in PRESSES if name in definitions]
     for name in ("cohesion", "friction_cap"):
-        given = [{**defaults, **values, **sizes}[p] for p in PRESSES if p in definitions]
-        if name in values and given:
-            most = {**defaults, **values}["friction"] * given[0]
+        if name in values and pressing:
+            most = every["friction"] * pressing[0]
             values[name] = most * log_uniform(generator, 0.01, 10.0)
     for name, size in sizes.items():
-        if isinstance(definitions[name], CurveParameter):
-            if generator.random() < CHANGED:
-                values[name] = _path(size, {**defaults, **values}["duration"], generator)
-        else:
+        if not isinstance(definitions[name], CurveParameter):
             values[name] = size
+        elif generator.random() < CHANGED:
+            values[name] = _path(size, every["duration"], generator)
     return values
 
 
@@ -202,32 +203,19 @@ def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -
     return mesh
 
 
-def _stretch(
-    across: str, values: dict[str, Any], definitions: dict[str, Parameter], generator: Generator
-) -> None:
-    """The sides of a body by the aspect of its elements, up to a hundred."""
-    length = values.setdefault("length", definitions["length"].default)
-    power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
-    aspect = 10.0 ** generator.uniform(-power, power)
-    values[across] = length * values["elements_up"] / (values["elements"] * aspect)
-
-
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
     """A value drawn by the definition alone."""
     if isinstance(definition, CurveParameter):
-        if definition.abscissa == "slip" and generator.random() < 0.4:
-            return _strength(generator)
-        if definition.abscissa == "position" and generator.random() < 0.4:
-            return _profile(name, generator)
-        if not definition.is_path and generator.random() < 0.4:
-            return _construction(generator)
+        make = TABLES.get(definition.abscissa) if definition.is_path else _construction
+        if make and generator.random() < 0.4:
+            return make(name, generator)
         return str(generator.choice(definition.presets))
     if isinstance(definition, param.Boolean):
         return bool(generator.random() < 0.5)
     if isinstance(definition, param.Selector):
         return str(generator.choice(definition.objects))
     if name in SPECIAL:
-        return SPECIAL[name](generator)
+        return float(SPECIAL[name](generator))
     low, high = WIDE.get(name, definition.softbounds)
     if isinstance(definition, param.Integer):
         return int(generator.integers(low, high + 1))
@@ -236,28 +224,19 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
     return float(generator.uniform(low, high))
 
 
-def _k_scale(generator: Generator) -> float:
-    """A factor on k, every third time a foolish one."""
-    decades = 3.0 if generator.random() < 0.4 else 1.0
-    return float(10.0 ** generator.uniform(-decades, decades))
-
-
-def _poisson(generator: Generator) -> float:
-    """Poisson's ratio, every second time near to one half."""
-    if generator.random() < 0.5:
-        return float(generator.uniform(0.0, 0.4999))
-    return 0.5 - log_uniform(generator, 1e-4, 1e-1)
-
-
 SPECIAL: dict[str, Callable[[Generator], float]] = {
-    "k_scale": _k_scale,
-    "poisson": _poisson,
-    "accuracy": lambda generator: log_uniform(generator, 1e-5, 0.1),
-    "tolerance": lambda generator: log_uniform(generator, 1e-12, 1.0),
+    "k_scale": lambda draw: (
+        10.0 ** draw.uniform(*(FOOLISH if draw.random() < 0.4 else (-1.0, 1.0)))
+    ),
+    "poisson": lambda draw: (
+        draw.uniform(0.0, 0.4999) if draw.random() < 0.5 else 0.5 - log_uniform(draw, 1e-4, 1e-1)
+    ),
+    "accuracy": lambda draw: log_uniform(draw, 1e-5, 0.1),
+    "tolerance": lambda draw: log_uniform(draw, 1e-12, 1.0),
 }
 
 
-def _construction(generator: Generator) -> list[list[float]]:
+def _construction(_name: str, generator: Generator) -> list[list[float]]:
     """A core, and a layer or two of wires around it with room to spare."""
     rows = [[1, float(generator.uniform(2e-3, 8e-3)), 0.0, 2e11]]
     around = rows[0][1]
@@ -281,11 +260,15 @@ def _profile(name: str, generator: Generator) -> list[list[float]]:
     return _with_peak(places, factors, peak, 1.0, generator)
 
 
-def _strength(generator: Generator) -> list[list[float]]:
+def _strength(_name: str, generator: Generator) -> list[list[float]]:
     """Factors over slip, from 1 on, up and down."""
     slips = np.cumsum(10.0 ** generator.uniform(-6.0, -3.0, int(generator.integers(1, 5))))
     factors = generator.uniform(0.0, 2.0, len(slips))
     return [[0.0, 1.0], *([float(s), float(g)] for s, g in zip(slips, factors, strict=True))]
+
+
+TABLES = {"slip": _strength, "position": _profile}
+"""Of curves over what."""
 
 
 def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:

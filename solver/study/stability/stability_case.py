@@ -1,14 +1,32 @@
-"""A case: a run that is to be made, and what may come of it."""
+"""Stability cases: runs that are to be made, what they come to, and what that is worth."""
 
 from __future__ import annotations
 
 import json
+import math
 import shlex
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+import tomllib
+import warnings
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 
-from solver.definitions import Pairs
+import numpy as np
+
+from solver.discrete import Problem
+from solver.latin import Ending, Solution
+from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
+from solver.reference.residual import kkt_residual
+from solver.reference.solution import Reference
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
+
+CASES = Path(__file__).with_name("cases.toml")
 
 
 class Verdict(StrEnum):
@@ -21,24 +39,33 @@ class Verdict(StrEnum):
     WRONG = "wrong"
 
 
-RIGHT = "right answer"
-UNSOLVED = "right answer, or said not to be"
-MUST_REFUSE = "refused in words"
-UNCLEAR = "right answer, or one that cannot be judged"
-NOT_WRONG = "anything but a wrong answer"
+MEANING: dict[str, str] = {
+    Verdict.RIGHT: "the errors are as small as they have to be; or certified, and the equations "
+    "hold up to rounding where there are several solutions",
+    Verdict.UNSOLVED: "not the right answer, and the run says so, and what to try",
+    Verdict.REFUSED: "a problem without a solution, or senseless, is refused in words",
+    Verdict.UNCLEAR: "called converged, not certified, and not judged, as the reference finds "
+    "several solutions or none",
+    Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
+    "not finite, or ended in a warning or an exception",
+}
+NOT_WRONG = "not wrong"
 PASSING = {
-    RIGHT: {Verdict.RIGHT},
-    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
-    MUST_REFUSE: {Verdict.REFUSED},
-    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    "right": {Verdict.RIGHT},
+    "unsolved": {Verdict.RIGHT, Verdict.UNSOLVED},
+    "unclear": {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
+    "refused": {Verdict.REFUSED},
     NOT_WRONG: set(Verdict) - {Verdict.WRONG},
 }
 """Verdicts with which a run passes, by what is expected of it."""
 PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
+AT_ROUNDING = 1e-8
+"""Residual of a certified solution, at most, by the equations alone."""
+APART = 1e-6
+"""Distance from which on two fields that solve the equations are two solutions."""
 RIGHT_UP_TO = 1e-6
 """Error of displacement and contact force up to which an answer is right."""
-GENERAL = {"friction_law": "general"}
 METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
 
 
@@ -50,32 +77,23 @@ class StabilityCase:
     ----------
     title
         What is extreme about it; or which one it is of random ones.
-    values
+    scene, values
         Settings that differ from the scene's own.
     expected
-        A key of `PASSING`: `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its
-        digits; `MUST_REFUSE` where there is no solution; `UNCLEAR` where friction is so large that
-        there may be several.
-    quick
-        Whether it is one of the few for a short check.
-    scene, method
-        As tables name them.
+        A key of `PASSING`.
+    method
+        As tables name it.
     error_force, error_displacement
         Errors up to which the answer is right.
     """
 
     title: str
-    values: Mapping[str, object] = field(default_factory=dict)
-    expected: str = RIGHT
-    quick: bool = False
-    scene: str = "bar"
+    scene: str
+    values: Mapping[str, object]
+    expected: str = "right"
     method: str = "fast"
     error_force: float = RIGHT_UP_TO
     error_displacement: float = RIGHT_UP_TO
-
-    def by(self, method: str) -> StabilityCase:
-        """The same by one of `METHODS`, precisely."""
-        return replace(self, method=method, values={**PRECISE, **METHODS[method], **self.values})
 
     @property
     def command(self) -> str:
@@ -88,25 +106,166 @@ class StabilityCase:
         return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
-def cases_with(
-    scene: str, common: Mapping[str, object], usually: str = RIGHT
-) -> Callable[..., StabilityCase]:
-    """A function that makes cases of a scene, which have some settings in common.
+def extreme_cases(scenes: Collection[str] = (), *, quick: bool = False) -> Iterator[StabilityCase]:
+    """Cases of some scenes, or of all, by each method; with `quick` only the few for a check."""
+    for scene, groups in tomllib.loads(CASES.read_text(encoding="utf-8")).items():
+        if scene not in (scenes or CATALOGUE):
+            continue
+        common = groups.pop("common", {})
+        for expected, cases in groups.items():
+            for title, values in cases.items():
+                if values.pop("quick", False) or not quick:
+                    for method, own in METHODS.items():
+                        all_values = {**PRECISE, **own, **common, **values}
+                        yield StabilityCase(title, scene, all_values, expected, method)
 
-    It takes what a case is called, what is expected of it, whether it is quick, and the settings
-    that make it one: these are its title where it has no other.
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run came to.
+
+    Attributes
+    ----------
+    ending, advice
+        Its status; `REFUSED` or `BROKEN`, and why.
+    certified, iterations, seconds, estimated_error
+        As the run itself says.
+    indicator, behaviour
+        At the end.
+    error_displacement, error_force
+        Relative distance to the reference; absolute (m, N) where reference and load are zero; NaN
+        where there is none.
+    residual
+        Of a certified run by `kkt_residual`; NaN of others.
+    floor
+        Residual of the reference, below which rounding lets nobody come: layers of 5000 times their
+        thickness have one of 3e-7. Measured where that of a certified solution is above rounding.
+    doubt
+        Why the reference is not the one solution, or empty.
     """
 
-    def case(
-        title: str = "", expected: str = usually, *, quick: bool = False, **values: object
-    ) -> StabilityCase:
-        title = title or ", ".join(f"{name}={value}" for name, value in values.items())
-        return StabilityCase(title, {**common, **values}, expected, quick, scene)
+    ending: str
+    advice: str
+    certified: bool = False
+    iterations: int = 0
+    seconds: float = 0.0
+    estimated_error: float = math.nan
+    indicator: float = math.nan
+    behaviour: float = math.nan
+    error_displacement: float = math.nan
+    error_force: float = math.nan
+    residual: float = math.nan
+    floor: float = 0.0
+    doubt: str = ""
 
-    return case
+
+def run(scene: str, values: Mapping[str, object]) -> Outcome:
+    """Run a scene of the catalogue to its stop rule, and measure what comes out.
+
+    Its settings differ by the values from the scene's own; a warning breaks it.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            settings = CATALOGUE[scene].settings.checked(values)
+            return _measured(finished_run(settings, errors=False, indicators=False).solution)
+        except RefusedError as refusal:
+            return Outcome(REFUSED, str(refusal))
+        except Exception as trouble:  # whatever it is belongs in the table
+            return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")
 
 
-def reversals(instants: int, peak: float) -> Pairs:
-    """A load of full size that turns at every instant of a second, (s, N)."""
-    step = 1.0 / (instants - 1)
-    return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
+def _measured(solution: Solution) -> Outcome:
+    """Compare a solution with the reference, and with the equations if it is certified."""
+    iterate, status, problem = solution.iterate, solution.status, solution.iterate.problem
+    if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
+        return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
+    reference, doubt = _reference(problem)
+    distance = None if reference is None else distance_to(reference, problem)
+    residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
+    error = distance.of_friction_force(iterate) if distance else math.nan
+    floor = 0.0
+    if reference and (residual > AT_ROUNDING or (solution.is_certified and error > APART)):
+        floor = kkt_residual(reference, problem)
+    if error > APART and max(residual, floor) <= AT_ROUNDING:
+        doubt = doubt or "there are several solutions: this one, and the reference"
+    last = solution.records[-1] if solution.records else None
+    return Outcome(
+        status.ending,
+        status.advice,
+        certified=solution.is_certified,
+        iterations=iterate.number,
+        seconds=last.seconds if last else iterate.seconds,
+        estimated_error=last.estimated_error if last else math.nan,
+        indicator=latin_indicator(iterate),
+        behaviour=behaviour_indicator(iterate),
+        error_displacement=distance.of_displacement(iterate) if distance else math.nan,
+        error_force=error,
+        residual=residual,
+        floor=floor,
+        doubt=doubt,
+    )
+
+
+def _reference(problem: Problem) -> tuple[Reference | None, str]:
+    """The reference, if there is one, and why it is not the one solution."""
+    try:
+        reference = reference_of(problem)
+    except NoReferenceError as refusal:
+        return None, str(refusal)
+    if lost := np.count_nonzero(~reference.converged):
+        return None, f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+    if reference.jumps_at is not None:
+        return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
+    several = np.count_nonzero(reference.ambiguous)
+    return reference, f"there are several solutions at {several} instants" if several else ""
+
+
+def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:
+    """Judge an outcome by its numbers and its status alone.
+
+    Parameters
+    ----------
+    outcome
+        Of a run.
+    force, displacement
+        Errors of contact force and displacement up to which the answer is right.
+    """
+    if outcome.ending == BROKEN or not outcome.advice:
+        return Verdict.WRONG
+    if outcome.ending == REFUSED:
+        return Verdict.REFUSED
+    if outcome.certified and not outcome.residual <= max(AT_ROUNDING, 2.0 * outcome.floor):
+        return Verdict.WRONG
+    if outcome.error_force <= force and outcome.error_displacement <= displacement:
+        return Verdict.RIGHT
+    if outcome.ending != Ending.CONVERGED:
+        return Verdict.UNSOLVED
+    if outcome.doubt:
+        # One solution of several is right.
+        return Verdict.RIGHT if outcome.certified else Verdict.UNCLEAR
+    return Verdict.WRONG
+
+
+@dataclass(frozen=True)
+class JudgedRun:
+    """A case, what it came to, and what that is worth."""
+
+    case: StabilityCase
+    outcome: Outcome
+
+    @property
+    def verdict(self) -> Verdict:
+        """What it is worth."""
+        return judge(self.outcome, self.case.error_force, self.case.error_displacement)
+
+    @property
+    def passed(self) -> bool:
+        """Whether it came to what it has to."""
+        return self.verdict in PASSING[self.case.expected]
+
+
+def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[JudgedRun]:
+    """Run cases, and yield each as soon as it is done."""
+    for case in cases:
+        yield JudgedRun(case, run(case.scene, case.values))

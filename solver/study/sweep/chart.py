@@ -49,14 +49,17 @@ def chart_of(
     Its values are on a logarithmic scale as is said, or where they go over several decades.
     """
     across, *up = plan.axes
-    runs, title = _runs(plan, rows, place, text), plan.readings[place].title
+    quantity, runs = plan.readings[place], _runs(plan, rows, place, text)
+    z = _measure(plan, place)[0] * grid(plan, rows, place).T
+    known = z[np.isfinite(z)] if is_map(plan) else runs.y[np.isfinite(runs.y)]
+    wide = is_wide(known) if logarithmic is None else logarithmic
+    # Nothing that is zero or less stands on a logarithmic axis.
+    wide = wide and bool((known > 0.0).any())
+    scale = PanelAxis(quantity.title, _measure(plan, place)[1], wide)
+    axes = [PanelAxis(of.title, of.unit, of.logarithmic, names=of.names) for of in plan.axes]
     if is_map(plan):
-        z = _measure(plan, place)[0] * grid(plan, rows, place).T
-        scale = _reading_axis(plan, place, z, logarithmic)
-        if scale.logarithmic:
-            z = np.where(z > 0.0, z, np.nan)
-        axes = _setting_axis(across), _setting_axis(up[0])
-        return Map(title, *axes, across.places, up[0].places, scale, z, runs)
+        z = np.where(z > 0.0, z, np.nan) if wide else z
+        return Map(quantity.title, axes[0], axes[1], across.places, up[0].places, scale, z, runs)
     curves = []
     for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
         own = np.flatnonzero(runs.hues == hue)
@@ -64,10 +67,9 @@ def chart_of(
         own = own[np.argsort(runs.x[own])] if across.is_numeric else own[:0]
         y = np.where(runs.holds[own], runs.y[own], np.nan)
         curves.append(PanelCurve(label, runs.x[own], y, hue))
-    x_axis, y_axis = _setting_axis(across), _reading_axis(plan, place, runs.y, logarithmic)
-    x_axis = replace(x_axis, limits=_limits(across.places, x_axis))
-    y_axis = replace(y_axis, limits=_limits(runs.y, y_axis))
-    return Panel(title, x_axis, y_axis, tuple(curves), runs)
+    x_axis = replace(axes[0], limits=_limits(across.places, axes[0]))
+    y_axis = replace(scale, limits=_limits(runs.y, scale))
+    return Panel(quantity.title, x_axis, y_axis, tuple(curves), runs)
 
 
 def is_map(plan: Plan) -> bool:
@@ -141,7 +143,10 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     for row, value, at in zip(rows, values, zip(*levels, strict=True), strict=True):
         point = ", ".join(of_axis[level] for of_axis, level in zip(texts, at, strict=True))
         number = text(value, unit) if math.isfinite(value) else ""
-        messages.append(f"{point}: {'; '.join(filter(None, (number, _reason(row, value))))}")
+        reason = ": ".join(filter(None, (row.ending, row.reason)))
+        if row.holds:
+            reason = NEVER if math.isinf(value) else NONE if math.isnan(value) else ""
+        messages.append(f"{point}: {'; '.join(filter(None, (number, reason)))}")
     values[~np.isfinite(values)] = np.nan
     return Runs(
         numbers,
@@ -153,30 +158,10 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     )
 
 
-def _reason(row: Row, value: float) -> str:
-    """Why a run is no answer, or nothing."""
-    if not row.holds:
-        return f"{row.ending}: {row.reason}" if row.reason else row.ending
-    return NEVER if math.isinf(value) else NONE if math.isnan(value) else ""
-
-
 def _texts(axis: Varied, text: Text) -> list[str]:
     """Title of a setting with each of its values."""
     values = axis.names or [text(value, axis.unit) for value in axis.values]
     return [f"{axis.title} {value}" for value in values]
-
-
-def _setting_axis(axis: Varied) -> PanelAxis:
-    return PanelAxis(axis.title, axis.unit, axis.logarithmic, names=axis.names)
-
-
-def _reading_axis(plan: Plan, place: int, values: Array, logarithmic: bool | None) -> PanelAxis:
-    """Axis of a reading; nothing that is zero or less stands on a logarithmic one."""
-    known = values[np.isfinite(values)]
-    if logarithmic is None:
-        logarithmic = is_wide(known)
-    is_logarithmic = logarithmic and bool((known > 0.0).any())
-    return PanelAxis(plan.readings[place].title, _measure(plan, place)[1], is_logarithmic)
 
 
 def _measure(plan: Plan, place: int) -> tuple[float, str]:

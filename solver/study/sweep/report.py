@@ -16,11 +16,11 @@ from scipy.special import stdtrit
 from solver.arrays import Array
 from solver.checked import dump
 from solver.definitions import SettingError
-from solver.study.page import PlotSection, Section, bullets, plain_table
+from solver.study.page import PlotSection, Section, bullets, html_table, text_of
 from solver.study.sweep.chart import charts, grid
 from solver.study.sweep.plan import Plan, Row
 
-BEFORE, AFTER = ("run",), ("ending", "start", "iterations done", "seconds in all", "reason")
+AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN, NEIGHBOURS = "own", "neighbour's"
 CONFIDENCE = 0.95
 CAPTION = (
@@ -46,13 +46,13 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
     if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
     which = [f", {axis.name}={value}" for axis in others for value in axis.values] or [""]
-    for place, reading in enumerate(plan.readings):
+    for place, name in enumerate(plan.of):
         curves = grid(plan, rows, place).T.reshape(len(which), -1)
         for words, curve in zip(which, curves, strict=True):
             power, margin, count = exponent_of(along.values, curve)
-            if not math.isnan(power):
-                law = f"{power:.2f}" + (f" ± {margin:.2f}" if count > 2 else "")
-                lines.append(f"{reading.name}{words}: {along.name}^({law}), of {count} runs")
+            law = f"{power:.2f}" + (f" ± {margin:.2f}" if count > 2 else "")
+            if count > 1:
+                lines.append(f"{name}{words}: {along.name}^({law}), of {count} runs")
     return lines
 
 
@@ -90,27 +90,20 @@ def title_of(plan: Plan) -> str:
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
     """Page of some rows, in the order of their points."""
     drawn, laws = charts(plan, rows), growth(plan, rows)
-    table = [heads(plan), *([_text(cell) for cell in cells(plan, row)] for row in rows)]
+    table = [heads(plan), *([text_of(cell, 6) for cell in cells(plan, row)] for row in rows)]
     return [
         f"<p><b>{escape(counts(plan, rows))}</b></p>",
         PlotSection(f"Charts of {len(rows)} runs", drawn),
         *([] if all(row.holds for row in rows) else [f'<p class="caption">{CAPTION}</p>']),
         *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
-        f"<h2>Every run</h2>\n{plain_table(table)}",
+        f"<h2>Every run</h2>\n{html_table(table)}",
         f"<h2>Settings</h2>\n{bullets(head(plan))}",
     ]
 
 
-def _text(cell: object) -> str:
-    if not isinstance(cell, float):
-        return str(cell)
-    return "-" if math.isnan(cell) else "never" if math.isinf(cell) else f"{cell:.6g}"
-
-
 def heads(plan: Plan) -> list[str]:
     """Names of the columns: the run, what varies, what is asked for, and how the run ended."""
-    varied = [axis.name for axis in plan.axes]
-    return [*BEFORE, *varied, *(one.name for one in plan.readings), *AFTER]
+    return ["run", *(axis.name for axis in plan.axes), *plan.of, *AFTER]
 
 
 def cells(plan: Plan, row: Row) -> list[object]:
@@ -124,17 +117,13 @@ def cells(plan: Plan, row: Row) -> list[object]:
 def csv_of(plan: Plan, rows: Sequence[Row]) -> str:
     """Rows as CSV, with what is fixed in front, in comments that begin with #."""
     comments = "".join(f"# {line}\n" for line in head(plan))
-    return comments + _written([heads(plan)]) + lines_of(plan, rows)
+    return f"{comments}{','.join(heads(plan))}\n{lines_of(plan, rows)}"
 
 
 def lines_of(plan: Plan, rows: Sequence[Row]) -> str:
     """Rows as lines of CSV."""
-    return _written([cells(plan, row) for row in rows])
-
-
-def _written(lines: Sequence[Sequence[object]]) -> str:
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(lines)
+    csv.writer(text, lineterminator="\n").writerows(cells(plan, row) for row in rows)
     return text.getvalue()
 
 
@@ -174,13 +163,10 @@ def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
         folder = "a folder of the same sweep, or a new one"
         raise SettingError("--out", str(file.parent), folder, "name another")
     whole = text[len(empty) : text.rfind("\n") + 1]
-    rows = [_row(plan, line) for line in csv.reader(io.StringIO(whole))]
-    return {row.number: row for row in rows}
-
-
-def _row(plan: Plan, line: Sequence[str]) -> Row:
-    number, *rest = line
-    *values, ending, start, iterations, seconds, reason = rest[len(plan.axes) :]
-    numbers = tuple(map(float, values))
-    is_warm = start == NEIGHBOURS
-    return Row(int(number), ending, reason, numbers, int(iterations), float(seconds), is_warm)
+    rows = {}
+    for number, *rest in csv.reader(io.StringIO(whole)):
+        *values, ending, start, iterations, seconds, reason = rest[len(plan.axes) :]
+        numbers, is_warm = tuple(map(float, values)), start == NEIGHBOURS
+        how = int(iterations), float(seconds), is_warm
+        rows[int(number)] = Row(int(number), ending, reason, numbers, *how)
+    return rows

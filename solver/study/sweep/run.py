@@ -17,8 +17,8 @@ from concurrent.futures import (
     wait,
 )
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -29,7 +29,13 @@ from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.study.quantities.finished import BROKEN, REFUSED, finished_run, settle
+from solver.study.quantities.finished import (
+    BROKEN,
+    REFUSED,
+    FinishedRun,
+    finished_run,
+    settle,
+)
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
@@ -47,28 +53,6 @@ PATIENCE = 0.2
 """Seconds between two looks at whether a sweep is still wanted."""
 
 
-@dataclass(frozen=True)
-class Common:
-    """What the runs of a sweep have in common, for whatever process does them.
-
-    Attributes
-    ----------
-    sweep
-        A name that no other sweep has.
-    plan, limit, fields, warm
-        As for `sweep`.
-    versions
-        Of who asks, which have to be those of who answers.
-    """
-
-    sweep: str
-    plan: Plan
-    limit: float
-    fields: str | None
-    warm: bool
-    versions: str
-
-
 @cache
 def versions() -> str:
     """Versions of all that results depend on."""
@@ -81,24 +65,47 @@ def field_file(number: int) -> str:
     return f"run-{number:05d}.npz"
 
 
-def run(common: Common, number: int) -> Row:
-    """Row of a point.
+def run(
+    plan: Plan, limit: float, fields: str | None, warm: bool, sweep: str, asked_by: str, number: int
+) -> Row:
+    """Row of a point of a plan.
+
+    Parameters
+    ----------
+    plan, limit, fields, warm
+        As for `sweep`.
+    sweep
+        A name that no other sweep has.
+    asked_by
+        Versions of who asks, which have to be those of who answers.
+    number
+        Of the point.
 
     Raises
     ------
     SettingError
         Where the result would be that of other code.
     """
-    if common.versions != versions():
-        raise SettingError(WORKER, versions(), common.versions, "install these on all workers")
-    readings = common.plan.readings
-    if any(reading.is_of_course for reading in readings):
+    if asked_by != versions():
+        raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
+    if any(reading.is_of_course for reading in plan.readings):
         settle()
-    began, nothing = time.perf_counter(), (math.nan,) * len(readings)
+    began, nothing = time.perf_counter(), (math.nan,) * len(plan.of)
     # A run that diverges is told by its status.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
-            row = _finished(common, number, began)
+            finished = _from_nearest(plan, sweep, number, warm, began + limit)
+            values = tuple(float(reading(finished)) for reading in plan.readings)
+            if fields is not None:
+                file = Path(fields) / field_file(number)
+                save_result(file, finished.settings, finished.solution)
+            status, iterations = finished.solution.status, finished.iterate.number
+            ending, reason = str(status.ending), status.advice
+            if status.ending is Ending.CANCELLED:
+                ending, reason = STUCK, TOO_LONG
+            elif status.ending is Ending.CONVERGED:
+                reason = ""
+            row = Row(number, ending, reason, values, iterations, was_warm=finished.was_warm)
         except RefusedError as refusal:
             row = Row(number, REFUSED, str(refusal), nothing)
         except Exception as trouble:  # whatever it is belongs in the table
@@ -106,12 +113,11 @@ def run(common: Common, number: int) -> Row:
     return replace(row, seconds=time.perf_counter() - began)
 
 
-def _finished(common: Common, number: int, began: float) -> Row:
-    """Row of a run, which starts from the nearest one that this process has done."""
-    plan = common.plan
-    if common.sweep not in _kept:
+def _from_nearest(plan: Plan, sweep: str, number: int, warm: bool, end: float) -> FinishedRun:
+    """Run a point, from the nearest that this process has done of a sweep; keep its states."""
+    if sweep not in _kept:
         _kept.clear()
-    kept = _kept.setdefault(common.sweep, deque(maxlen=KEPT))
+    kept = _kept.setdefault(sweep, deque(maxlen=KEPT))
     place = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
     nearest = min(list(kept), key=lambda own: math.dist(place, own[0]), default=None)
     reads = {reading.reads for reading in plan.readings}
@@ -119,24 +125,12 @@ def _finished(common: Common, number: int, began: float) -> Row:
         plan.settings_at(number),
         errors="errors" in reads,
         indicators="indicators" in reads,
-        cancelled=lambda: time.perf_counter() > began + common.limit,
+        cancelled=lambda: time.perf_counter() > end,
         before=nearest and nearest[1],
     )
-    if common.fields is not None:
-        file = Path(common.fields) / field_file(number)
-        save_result(file, finished.settings, finished.solution)
-    status = finished.solution.status
-    ending, reason = str(status.ending), status.advice
-    if status.ending is Ending.CANCELLED:
-        ending, reason = STUCK, TOO_LONG
-    elif status.ending is Ending.CONVERGED:
-        reason = ""
-    values = tuple(float(reading(finished)) for reading in plan.readings)
-    count, was_warm = finished.iterate.number, finished.was_warm
-    row = Row(number, ending, reason, values, count, was_warm=was_warm)
-    if common.warm and row.holds:
+    if warm and finished.solution.status.ending is Ending.CONVERGED:
         kept.append((place, finished.states))
-    return row
+    return finished
 
 
 def patience(limit: float) -> float:
@@ -189,14 +183,8 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
     """
-    common = Common(
-        uuid.uuid4().hex,
-        plan,
-        limit,
-        fields,
-        warm and not any(reading.is_of_course for reading in plan.readings),
-        versions(),
-    )
+    warm = warm and not any(reading.is_of_course for reading in plan.readings)
+    call = partial(run, plan, limit, fields, warm, uuid.uuid4().hex, versions())
     path = deque(() if following else (n for n in snake(plan.shape) if n not in done))
     under_way: dict[Future[Row], int] = {}
     tries = Counter[int]()
@@ -205,7 +193,7 @@ def sweep(
             path.extend(following(len(under_way)) if following else ())
             while path and len(under_way) < AHEAD:
                 number = path.popleft()
-                under_way[executor.submit(run, common, number)] = number
+                under_way[executor.submit(call, number)] = number
             if not under_way:
                 return
             for future in wait(under_way, PATIENCE, FIRST_COMPLETED).done:

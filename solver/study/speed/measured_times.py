@@ -1,35 +1,38 @@
-"""Errors of all methods against the time that they take, from settings to result.
+"""Times of all methods from settings to result: errors against them, and who is first where.
 
 Each method pays for what it needs: discretisation, factorisation, the coarser mesh, iterations. One
 pass without the clock finds the errors, and warms up; then timed passes run every method once, in
 turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
 
-Nothing is kept of what was solved before, and no garbage is collected meanwhile, as with `timeit`:
-to collect it bills all that the process holds. On a machine that others use too, seconds of the
+Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile: to collect it
+bills all that the process holds. On a machine that others use too, seconds of the
 processor say what seconds of the clock do not; what is set side by side is of one clock.
 """
 
 from __future__ import annotations
 
-import gc
 import math
+import statistics
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
+from itertools import islice, product
+from timeit import timeit
 from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.definitions import SettingError
 from solver.executors import machine
-from solver.latin import Solution, judged, solve
+from solver.latin import Ending, Solution, judged, solve
+from solver.latin.cost import run_cost
+from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import discretise
+from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 
@@ -48,6 +51,15 @@ PLAIN: dict[str, Any] = {
     "finish": "none",
 }
 """Settings that the forms of LATIN start from; all others are those of the run."""
+FACTORS = (0.5, 1.0, 2.0)
+"""On the sizes and on the instants of the settings."""
+LARGE = (*FACTORS, 4.0, 8.0)
+"""On the sizes, where minutes do not matter."""
+LONGEST, LONGEST_OF_LARGE = 10.0, 600.0
+"""Seconds from which, by estimate, a size is left out."""
+REPEATS = 3
+SLOW = 1.0
+"""Seconds from which one run is enough."""
 INCREMENTAL, FAST = "incremental solver", "LATIN fast"
 Clock = Callable[[], float]
 
@@ -75,14 +87,14 @@ class ErrorCurve:
     error_force: Array
 
     @property
-    def kind(self) -> str:
-        """Whose it is: "latin" or "incremental"."""
-        return "incremental" if self.method == INCREMENTAL else "latin"
+    def is_latin(self) -> bool:
+        """Whether it is a form of LATIN."""
+        return self.method != INCREMENTAL
 
     @property
     def seconds_per_iteration(self) -> float | None:
         """Median time between two iterations; None for a method that has none."""
-        if self.kind != "latin" or len(self.seconds) < 2:
+        if not self.is_latin or len(self.seconds) < 2:
             return None
         return float(np.median(np.diff(self.seconds)))
 
@@ -125,17 +137,17 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
     forms = forms_of(settings)
     errors = {method: _errors(form, distance) for method, form in forms.items()}
     steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
-    timed: dict[str, Callable[[], list[float]]] = {
-        method: partial(_by_iterations, form, len(errors[method])) for method, form in forms.items()
-    }
-    errors[INCREMENTAL] = np.zeros((1, 2))
-    steps[INCREMENTAL] = np.array([float(reference.steps)])
-    timed[INCREMENTAL] = lambda: [seconds_of(lambda: incremental(settings), time.perf_counter)]
-    samples: dict[str, list[list[float]]] = {method: [] for method in timed}
+    errors[INCREMENTAL], steps[INCREMENTAL] = np.zeros((1, 2)), np.array([float(reference.steps)])
+    samples: dict[str, list[list[float]]] = {method: [] for method in errors}
+
+    def iterate(method: str) -> None:
+        samples[method].append(_by_iterations(forms[method], len(errors[method])))
+
     for _ in range(repeats):
-        for method, times in samples.items():
-            with nothing_collected():
-                times.append(timed[method]())
+        for method in forms:
+            seconds_of(partial(iterate, method))
+        seconds = seconds_of(partial(incremental, settings), time.perf_counter)
+        samples[INCREMENTAL].append([seconds])
     curves = (
         ErrorCurve(method, steps[method], np.median(times, axis=0), *errors[method].T)
         for method, times in samples.items()
@@ -181,24 +193,9 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
     return [decision.seconds for _, decision in decisions]
 
 
-@contextmanager
-def nothing_collected() -> Iterator[None]:
-    """Collect no garbage meanwhile."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
-
-
 def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
     """Time of some work, s; of the processor unless another clock is given."""
-    with nothing_collected():
-        start = clock()
-        work()
-        return clock() - start
+    return timeit(work, timer=clock, number=1)
 
 
 def latin(settings: Settings) -> Solution:
@@ -209,3 +206,76 @@ def latin(settings: Settings) -> Solution:
 def incremental(settings: Settings) -> Reference:
     """Solve by increments."""
     return reference_of(discretise(settings))
+
+
+@dataclass(frozen=True)
+class TimesAtSize:
+    """Both solvers at one size.
+
+    Attributes
+    ----------
+    size, instants
+        Of the first setting that grows with the scene, and of time.
+    latin, incremental
+        Medians, s; NaN where it was left out.
+    message
+        Why there is no answer; empty where there is one.
+    """
+
+    size: int
+    instants: int
+    latin: float = math.nan
+    incremental: float = math.nan
+    message: str = ""
+
+    @property
+    def ratio(self) -> float:
+        """Time of LATIN over that of the incremental solver; NaN without an answer."""
+        return math.nan if self.message else self.latin / self.incremental
+
+
+def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSize]:
+    """Measure both solvers, in turns, on multiples of the present size and number of instants.
+
+    Parameters
+    ----------
+    settings
+        Of the middle of the table; the method is the fast one.
+    large
+        Whether to go on to sizes that take minutes.
+    """
+    names = entry_of(settings).grows
+    longest = LONGEST_OF_LARGE if large else LONGEST
+    measured: dict[tuple[int, int], TimesAtSize] = {}
+    for later, size in product(FACTORS, LARGE if large else FACTORS):
+        grown = {name: max(1, round(size * getattr(settings, name))) for name in names}
+        instants = round(later * (settings.instants - 1)) + 1
+        at = grown[names[0]], instants
+        if at not in measured:
+            measured[at] = _measured(settings, {**grown, "instants": instants}, at, longest)
+    return list(measured.values())
+
+
+def _measured(
+    settings: Settings, changes: dict[str, int], at: tuple[int, int], longest: float
+) -> TimesAtSize:
+    """Both solvers at one size, unless that takes too long, or one of them has no answer."""
+    try:
+        form = forms_of(settings.replace(**changes))[FAST]
+    except SettingError:
+        return TimesAtSize(*at, message="there is no such size")
+    most = form.max_iterations
+    cost = run_cost(discretise(form), method_of(form), most, with_reference=True)
+    if cost.seconds > longest:
+        return TimesAtSize(*at, message=f"left out: it would take about {cost}")
+    try:
+        if not incremental(form).converged.all():
+            return TimesAtSize(*at, message="the incremental solver finds no solution")
+    except NoReferenceError as refusal:
+        return TimesAtSize(*at, message=str(refusal))
+    ending = latin(form).status.ending
+    seconds: list[tuple[float, ...]] = []
+    while not seconds or (len(seconds) < REPEATS and sum(seconds[0]) < SLOW):
+        seconds.append(tuple(seconds_of(partial(solve, form)) for solve in (latin, incremental)))
+    mine, others = map(statistics.median, zip(*seconds, strict=True))
+    return TimesAtSize(*at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}")
