@@ -11,7 +11,8 @@ import panel_material_ui as pmui
 import param
 
 from app.browser import Echoes
-from app.files import CurveDialog, FilesPanel
+from app.files.opener import FilesPanel
+from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, mask_of

@@ -12,17 +12,17 @@ from app.browser import listen
 from app.cases import CasePanel
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
-from app.export import TakeAway
-from app.fit import FitTab
+from app.experiments.fit import FitTab
+from app.experiments.reports import Reports
+from app.experiments.whatif import WhatIf
+from app.files.export import TakeAway
+from app.files.link import Link, read, show
 from app.glossary import glossary
 from app.lessons.panel import LessonPanel
-from app.link import Link, read, show
 from app.live import STYLE, Live, column
-from app.reports import Reports
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.whatif import WhatIf
 from app.widgets import wrapped
 from solver.settings import Settings
 

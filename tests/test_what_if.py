@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from sweeps import TINY, Here
 
-from app import jobs, reports
-from app.jobs import Job, Sweep, share_of
-from app.questions import READY, Question, iterations_over_k, question_of
+from app.experiments import jobs, reports
+from app.experiments.jobs import Job, Sweep, share_of
+from app.experiments.questions import READY, Question, iterations_over_k, question_of
+from app.experiments.whatif import WhatIf, nearest
 from app.state import PageState, default_settings
-from app.whatif import WhatIf, nearest
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
@@ -233,7 +233,7 @@ def test_a_run_stands_still_while_a_study_is_timed(
     made.kind.value = reports.STUDY
     made.start()
     assert not made.state.running
-    assert made._cancel.visible
+    assert made.cancel_button.visible
     monkeypatch.setattr(Done, "is_over", True)
     made.look()
     assert made.state.running

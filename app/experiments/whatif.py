@@ -13,8 +13,8 @@ import panel_material_ui as pmui
 from bokeh.events import Tap
 
 from app.charts import in_units, keys, overlay
-from app.jobs import SETTINGS, Job, Sweep, follow
-from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
+from app.experiments.jobs import SETTINGS, Job, Sweep, follow
+from app.experiments.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
 from app.refusals import message_of
 from app.state import ANSWER, PageState, answer
 from app.units import sizes_of, unit_for
@@ -202,8 +202,8 @@ class WhatIf:
         if self._job is not None:
             self._job.cancel()
         else:
-            settings = dump(answer(self.state.settings))
-            self._job = Job(["mesh", SETTINGS, "--of", self.question.of], settings)
+            texts = {SETTINGS: dump(answer(self.state.settings))}
+            self._job = Job(["mesh", SETTINGS, "--of", self.question.of], texts)
         self.look()
 
     # Chart
