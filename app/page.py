@@ -9,7 +9,6 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import listen
-from app.cases import CasePanel
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.experiments.fit import FitTab
@@ -18,6 +17,7 @@ from app.experiments.whatif import WhatIf
 from app.files.export import TakeAway
 from app.files.link import Link, read, show
 from app.glossary import glossary
+from app.lessons.cases import CasePanel
 from app.lessons.panel import LessonPanel
 from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
@@ -96,7 +96,6 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda event: self._lesson.update(), "frame")
         self._turn(state.tab)
         self._lesson.show()
         self._case.show()
