@@ -15,7 +15,7 @@ from app.files.opener import FilesPanel
 from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
-from app.widgets import button, mask_of
+from app.widgets import button, looks, mask_of
 from solver.definitions import CurveParameter, Parameter, about
 from solver.scenes import CATALOGUE, chief_of, ends_of
 
@@ -37,30 +37,6 @@ ON_UNDERLINE = {
     "& .MuiFormLabel-root": {"display": "none"},
 }
 """A slider stands in place of the line under its field, whose label is its name too."""
-GROUP = {
-    "& .MuiAccordionSummary-root": {"minHeight": "36px", "padding": "0 4px"},
-    "& .MuiAccordionSummary-content": {"margin": "4px 0 !important"},
-    "& .MuiAccordionDetails-root": {"padding": "0 0 8px"},
-}
-PICTURES = {
-    "display": "grid",
-    "gridTemplateColumns": "repeat(4, 1fr)",
-    "& .MuiToggleButton-root": {
-        "flexDirection": "column",
-        "textTransform": "none",
-        "fontSize": "11px",
-        "lineHeight": 1.2,
-        "padding": "3px 0",
-        "border": 0,
-        "borderRadius": "4px",
-    },
-    "& .MuiToggleButton-root::before": {
-        "content": '""',
-        "width": "48px",
-        "height": "32px",
-        "backgroundColor": "currentColor",
-    },
-}
 
 
 class SettingControl:
@@ -262,7 +238,8 @@ class Controls:
             width=WIDTH,
             margin=0,
             size="small",
-            sx=PICTURES | pictures,
+            sx=pictures,
+            **looks("pictures"),
         )
         self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
         self._chief = pn.Column(margin=0)
@@ -272,7 +249,7 @@ class Controls:
             title_variant="body2",
             disable_gutters=True,
             elevation=0,
-            sx=GROUP,
+            **looks("groups"),
         )
         self._groups.param.watch(lambda event: self._open(), "active")
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))

@@ -23,7 +23,7 @@ from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import wrapped
+from app.widgets import looks, wrapped
 from solver.settings import Settings
 
 COMPACT = {
@@ -35,20 +35,6 @@ COMPACT = {
     },
 }
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
-WHITE = {"&.MuiIconButton-root, & .MuiIconButton-root": {"color": "#fff"}}
-IN_HEADER = {
-    "& button": {
-        "color": "#fff",
-        "borderColor": "#ffffff80",
-        "textTransform": "none",
-        "padding": "2px 10px",
-        "whiteSpace": "nowrap",
-    },
-    "& button.Mui-selected, & button.Mui-selected:is(:hover, :focus)": {
-        "color": "#0b3d66",
-        "backgroundColor": "#fff",
-    },
-}
 
 
 class Page:
@@ -127,9 +113,9 @@ class Page:
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
-            self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
+            self.state.param.tab, label="", size="small", margin=(0, 8), **looks("in-header")
         )
-        space, look = pn.layout.HSpacer(), {"margin": 0, "sx": WHITE}
+        space, look = pn.layout.HSpacer(), {"margin": 0, **looks("in-header")}
         buttons = [
             pmui.IconButton(icon=icon, description=title, on_click=action, **look)
             for title, (icon, action) in actions.items()

@@ -95,18 +95,21 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
     made = asked(LOADS)
     first, second = made.spans
     first.name.value = "length"
-    first.low.value, first.high.value, first.count.value = "0.5", "2000 mm", 3
+    first.values.value = "0.5:2000 mm:3:log"
     assert made.question.vary[0] == "length=0.5:2:3:log"
-    first.spacing.value = "a list"
+    first.values.value = "500 mm, 1, 2"
     assert made.question.vary[0] == "length=0.5,1,2"
-    first.listed.value = "1, long"
+    first.values.value = "1, long"
     assert "number" in made.message.object
-    first.listed.value = "-1, 2"
-    assert "cannot be" in made.message.object
-    assert made.question.vary[0] == "length=0.5,1,2"
-    first.listed.value = "1, 2"
+    for wrong in ("-1, 2", "1:2", "1:2:x"):
+        first.values.value = wrong
+        assert "cannot be" in made.message.object
+        assert made.question.vary[0] == "length=0.5,1,2"
+    first.values.value = "1, 2"
     second.name.value = "acceleration"
     assert made.question.vary[1] == "acceleration=none,anderson"
+    second.values.value = "anderson"
+    assert made.question.vary[1] == "acceleration=anderson"
 
 
 @pytest.mark.usefixtures("here")
@@ -136,7 +139,7 @@ def test_the_scale_of_the_values_is_linear_or_logarithmic_as_one_likes() -> None
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
     settings = default_settings(scene)
-    offered = [question for _, make in READY.values() if (question := make(settings))]
+    offered = [question for make in READY.values() if (question := make(settings))]
     assert len(offered) >= 3
     for question in offered:
         assert question.refusal(settings) == ""

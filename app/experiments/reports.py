@@ -11,25 +11,15 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.experiments.jobs import OUT, SETTINGS, Job, follow
-from app.experiments.questions import PLAIN
+from app.experiments.questions import TEXTS
 from app.state import PageState
-from app.widgets import button, changing_text, download, wrapped
+from app.widgets import button, changing_text, download, looks, wrapped
 from app.worker.references import has_reference
 from solver.checked import dump
 from solver.study.proof.report import PAGE
 
+WORDS: dict[str, str] = TEXTS["reports"]
 FIGURES, STUDY, STABILITY, PROOF = "The paper's figures", "Study", "Stability", "Proof"
-WORDS = {
-    FIGURES: "The paper's Figs. 3 to 8, computed anew for its bar (Table 1): each with what the "
-    "paper says of it, and the numbers that bear it out or do not. Takes some seconds.",
-    STUDY: "Error against run time: every form of LATIN and the incremental solver solve the "
-    "present settings in turn. The run of this page stands still meanwhile, to leave the clock "
-    "alone.",
-    STABILITY: "Stiff and extreme cases of every scene, whatever the settings of the page: does "
-    "each end with the right answer, or say that it has none?",
-    PROOF: "Closed forms and published numbers, each beside what LATIN and the incremental solver "
-    "find. A name that is a link opens that run.",
-}
 NO_REFERENCE = (
     "The reference to measure errors by would take too long here: choose fewer bodies or "
     "elements, or the command line."
@@ -156,7 +146,12 @@ class Reports(CommandTab):
 
     def __init__(self, state: PageState) -> None:
         self.kind = pmui.RadioButtonGroup(
-            label="", options=list(WORDS), value=FIGURES, size="small", margin=(6, 6), sx=PLAIN
+            label="",
+            options=list(WORDS),
+            value=FIGURES,
+            size="small",
+            margin=(6, 6),
+            **looks("words"),
         )
         self.repeats = pmui.Select(
             label="Timed passes",

@@ -14,31 +14,12 @@ from app.lessons.catalogue import CASES, PENDING, settings_of
 from app.lessons.guide import Guide, text_button
 from app.state import PageState
 from app.units import number, unit_for
-from app.widgets import button, mask_of
+from app.widgets import button, looks, mask_of
 from solver.definitions import about
 from solver.scenes import mesh_of
 from solver.study.cases.case import Case
 from solver.study.quantities.quantity import Quantity
 
-CARD = {
-    "&.MuiButton-root": {
-        "flexDirection": "column",
-        "justifyContent": "flex-start",
-        "width": "134px",
-        "height": "124px",
-        "padding": "6px 2px",
-        "textTransform": "none",
-        "lineHeight": 1.25,
-    },
-    "&.MuiButton-root::before": {
-        "content": '""',
-        "width": "96px",
-        "height": "64px",
-        "marginBottom": "6px",
-        "flexShrink": 0,
-        "backgroundColor": "currentColor",
-    },
-}
 ANSWERS_STAY = "Decomposition", "Method", "Stop"
 """Groups of settings that leave what is known as it is."""
 
@@ -62,7 +43,14 @@ class CasePanel(Guide):
 
     def _list(self) -> Any:
         cards = [
-            button(case.title, partial(self.open, name), variant="text", margin=0, sx=_card(case))
+            button(
+                case.title,
+                partial(self.open, name),
+                variant="text",
+                margin=0,
+                sx={"&.MuiButton-root::before": mask_of(case.picture)},
+                **looks("picture"),
+            )
             for name, case in CASES.items()
         ]
         return pn.FlexBox(*cards, gap="4px", margin=0)
@@ -100,12 +88,6 @@ class CasePanel(Guide):
         )
         texts = (lambda: head, partial(self._number, case), lambda: change)
         return [*map(self._markdown, texts), *map(self._control, case.controls), buttons]
-
-
-def _card(case: Case) -> dict[str, Any]:
-    """Look of a button that is a picture with its title."""
-    before = "&.MuiButton-root::before"
-    return CARD | {before: CARD[before] | mask_of(case.picture)}
 
 
 def _written(value: float, quantity: Quantity) -> str:

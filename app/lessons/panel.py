@@ -26,12 +26,11 @@ from app.lessons.handout import handout
 from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
-from app.widgets import download
+from app.widgets import download, looks
 from solver.lessons.lesson import SUBJECTS, Lesson
 
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""
-LEFT = {"&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
 
 
 class LessonPanel(Guide):
@@ -87,7 +86,7 @@ class LessonPanel(Guide):
     def _titles(self, subject: str) -> pn.Column:
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
         buttons = [
-            text_button(lesson.title, partial(self.open, name), sx=LEFT, variant="text")
+            text_button(lesson.title, partial(self.open, name), **looks("choice"), variant="text")
             for name, lesson in LESSONS.items()
             if lesson.subject == subject
         ]
@@ -174,7 +173,7 @@ class LessonPanel(Guide):
                 variant="contained" if number == self._state.prediction else "outlined",
                 color="success" if not is_asked and number == lesson.right else "primary",
                 disabled=not is_asked,
-                sx=LEFT,
+                **looks("choice"),
             )
             for number, choice in enumerate(lesson.choices)
         ]
