@@ -54,7 +54,6 @@ class SettingControl:
         self._is_updating = self._is_dragged = False
         self._echoes = Echoes()
         self._dialog: CurveDialog | None = None
-        self._edit_button: pmui.Button | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
@@ -79,7 +78,9 @@ class SettingControl:
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            return field, pn.Column(field, margin=0)
+            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
+            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
+            return field, pn.Column(field, self._edit_button, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
@@ -131,7 +132,7 @@ class SettingControl:
     def _show(self, value: Any) -> None:
         if isinstance(self._definition, CurveParameter):
             self.field.value = POINTS if isinstance(value, tuple) else value
-            self._offer_points(isinstance(value, tuple))
+            self._edit_button.visible = isinstance(value, tuple)
             if self._dialog is not None:
                 self._dialog.update()
         elif self.slider is None:
@@ -140,14 +141,6 @@ class SettingControl:
             self.field.value = self._echoes.give(self._written(value), self.field.value)
             if not self._is_dragged:
                 self._show_on_slider(value)
-
-    def _offer_points(self, are_there: bool) -> None:
-        if are_there and self._edit_button is None:
-            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
-            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
-            self.view.append(self._edit_button)
-        if self._edit_button is not None:
-            self._edit_button.visible = are_there
 
     def _show_on_slider(self, value: float) -> None:
         low, high = self._definition.softbounds

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import panel as pn
@@ -16,14 +18,13 @@ from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
 from app.files.export import TakeAway
 from app.files.link import Link, read, show
-from app.glossary import glossary
 from app.lessons.cases import CasePanel
 from app.lessons.panel import LessonPanel
 from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import looks, wrapped
+from app.widgets import dialog, looks, wrapped
 from solver.settings import Settings
 
 COMPACT = {
@@ -196,3 +197,15 @@ def open_page() -> pmui.Page:
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template
+
+
+def glossary() -> pmui.Dialog:
+    """A dialog of the keys, and of what words mean."""
+    texts = tomllib.loads((Path(__file__).parent / "glossary.toml").read_text(encoding="utf-8"))
+    tables = pn.pane.HTML("".join(map(_table, texts.values())), sizing_mode="stretch_width")
+    return dialog("Keys and words", tables, width_option="md")
+
+
+def _table(entries: dict[str, str]) -> str:
+    rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in entries.items())
+    return f'<table style="text-align:left;font-size:14px;margin-bottom:12px">{rows}</table>'
