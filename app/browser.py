@@ -27,16 +27,6 @@ SHORTEST = 0.02
 """Seconds of a pause between pictures that is kept."""
 LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
-HELP = {
-    "Space": "run, pause, or run anew",
-    "s": "one iteration; of a run that has ended, show the next",
-    "r": "start again, and wait after the first iteration",
-    "t": "play through time, or stop",
-    "← →": "the instant before, the next instant",
-    "Shift ← →": "the iteration before, the next iteration",
-    "p": "presenter view, for a projector, and back",
-    "?": "this list, and what the words of the page mean",
-}
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
 """Elements that take keys for themselves."""
 LISTEN = """

@@ -14,8 +14,6 @@ import pandas as pd
 from bokeh.embed import components
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
-from contourpy import contour_generator
-from holoviews.util.locator import MaxNLocator
 
 from app.units import unit_for
 from app.views.colors import FORCE, REFERENCE
@@ -226,8 +224,14 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         colorbar=True,
         clabel=" ",
     )
-    paths, labels = contours(chart)
-    yield hv.Contours(paths, ["x", "y"]).opts(color="#000", alpha=0.75, line_width=1.2)
+    lines = contours(chart)
+    yield hv.Contours(lines, ["x", "y"], "z").opts(color="#000", alpha=0.75, line_width=1.2)
+    # Not all in the same place, where lines are close.
+    places = [len(line["x"]) * (1 + number % 3) // 4 for number, line in enumerate(lines)]
+    labels = [
+        (line["x"][i], line["y"][i], f"{line['z']:.4g}")
+        for line, i in zip(lines, places, strict=True)
+    ]
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
@@ -255,29 +259,15 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
     return hv.Rectangles(table.assign(**sides), list(sides), list(table))
 
 
-def levels(values: Array, *, is_logarithmic: bool) -> Array:
-    """Values that are easily read, between others, none where these are the same."""
-    low, high = values.min(initial=np.inf), values.max(initial=-np.inf)
-    if low >= high:
-        return np.array([])
-    if is_logarithmic:
-        powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
-        several = np.outer(powers, [1.0, 2.0, 5.0] if len(powers) <= 4 else [1.0]).ravel()
-    else:
-        several = MaxNLocator(LEVELS).tick_values(low, high)
-    return np.asarray(several[(several > low) & (several < high)])
-
-
-def contours(chart: Map) -> tuple[list[Array], list[tuple[float, float, str]]]:
-    """Lines of equal value, straight between runs on the page, and values with their places."""
-    if min(chart.z.shape) == 1:
-        return [], []
-    (x, x_back), (y, y_back), (z, _) = map(_even, (chart.x, chart.y, chart.scale))
+def contours(chart: Map) -> list[dict[str, Any]]:
+    """Lines of equal and round values "z" through the places "x" and "y"."""
     known = chart.z[np.isfinite(chart.z)]
-    at = levels(known, is_logarithmic=chart.scale.logarithmic)
-    made = contour_generator(x(chart.x_values), y(chart.y_values), z(chart.z))
-    lines = [(f"{level:.4g}", line.T) for level in at for line in made.lines(z(level))]
-    paths = [np.stack([x_back(across), y_back(up)], 1) for _, (across, up) in lines]
-    # Not all in the same place, where lines are close.
-    places = [len(path) * (1 + number % 3) // 4 for number, path in enumerate(paths)]
-    return paths, [(*p[i], text) for p, i, (text, _) in zip(paths, places, lines, strict=True)]
+    if min(chart.z.shape) == 1 or known.max(initial=-np.inf) <= known.min(initial=np.inf):
+        return []
+    levels: Any = LEVELS
+    if chart.scale.logarithmic:
+        steps = [1.0, 2.0, 5.0] if known.max() < 1e4 * known.min() else [1.0]
+        powers = np.arange(*np.floor(np.log10([known.min(), 10.0 * known.max()])))
+        levels = np.outer(10.0**powers, steps).ravel()
+    values = hv.QuadMesh((chart.x_values, chart.y_values, chart.z))
+    return list(hv.operation.contours(values, levels=levels).data)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import secrets
 import time
-from collections.abc import Callable
 from html import escape
 from typing import Any
 
@@ -129,7 +128,7 @@ class ClassMember(param.Parameterized):
     """The part of a page in a class: it leads one, follows one, or neither.
 
     Its worker is ended while it follows. `room` is the class that is led or followed, `left` the
-    one that was followed last.
+    code of the one that was followed last.
     """
 
     message = param.String(doc="What is to be said of the class, in a sentence.")
@@ -138,7 +137,7 @@ class ClassMember(param.Parameterized):
         super().__init__()
         self.state, self._supervisor, self._document = state, supervisor, document
         self.room: Classroom | None = None
-        self.left: Classroom | None = None
+        self.left = ""
         self._is_due = False
         state.param.watch(lambda *events: self.leads and self.room.notify(), SHARED)
         state.param.watch(lambda event: self.room and self.room.notify(), "prediction")
@@ -183,35 +182,25 @@ class ClassMember(param.Parameterized):
         if self.room is None:
             self._lead(begin_class(self))
 
-    def end(self) -> None:
-        """End the class that this page leads."""
-        if self.leads:
-            self.room.end()
-            self.room = self.state.poll = None
-            self.state.room = self._address()
-            self.message = ""
-
     def leave(self) -> None:
-        """Follow no more, and go on with a run of its own."""
-        if not self.follows:
+        """End the class that this page leads, or go on with a run of its own."""
+        room, state, followed = self.room, self.state, self.follows
+        if room is None:
             return
-        state, room = self.state, self.room
-        self.left, self.room = room, None
+        self.room = state.poll = None
+        self.left = room.code if followed else ""
+        state.room = self._address()
+        self.message = f"You have left class {room.code}." if followed else ""
+        if not followed:
+            room.end()
+            return
         room.part(self)
         # The leader's history stays the leader's, and so do its numbers.
         state.history = History()
         if state.newest is not None:
             state.history.add(state.newest)
-        state.poll = None
-        state.room = self._address()
-        self.message = f"You have left class {room.code}."
         self._supervisor.begin()
         state.run()
-
-    def follow_again(self) -> None:
-        """Follow the class that was left."""
-        if self.left is not None and not self.left.is_over:
-            self._follow(self.left)
 
     def open_counts(self) -> None:
         """Have all see how many predicted what."""
@@ -238,7 +227,7 @@ class ClassMember(param.Parameterized):
     def _follow(self, room: Classroom) -> None:
         self._supervisor.end()
         self.state.send = self._send
-        self.room, self.left = room, None
+        self.room = room
         room.members.append(self)
         room.notify()
         self.state.room = self._address()
@@ -303,7 +292,7 @@ class ClassDialog:
     def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
-        self._act = button("", lambda: self._offer()[1](), variant="text")
+        self._act = button("", self._leave_or_return, variant="text")
         self._code = button("Code", lambda: self.open(), variant="text")
         parts = self._message, self._act, self._code
         self.view = pn.Row(*parts, visible=False, margin=0, align="center", css_classes=["class"])
@@ -335,7 +324,7 @@ class ClassDialog:
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
             below = how_to_open()
-        return [pn.pane.HTML(large + below), button("End the class", self._end)]
+        return [pn.pane.HTML(large + below), button("End the class", self._leave)]
 
     def _begin(self) -> None:
         self._member.begin()
@@ -349,23 +338,22 @@ class ClassDialog:
             refusal = self._member.message if code else "Write a code."
             self._field.param.update(error_state=True, helper_text=refusal)
 
-    def _end(self) -> None:
-        self._member.end()
+    def _leave(self) -> None:
+        self._member.leave()
         self.dialog.open = False
 
-    def _offer(self) -> tuple[str, Callable[[], None]]:
-        """What one can do, and its name; nothing outside of a class."""
+    def _leave_or_return(self) -> None:
         member = self._member
-        if member.leads:
-            return "End the class", self._end
-        if member.follows:
-            return "Go on by myself", member.leave
-        can_return = member.left is not None and not member.left.is_over
-        return "Follow again" if can_return else "", member.follow_again
+        if member.room is None:
+            member.enter(member.left)
+        else:
+            self._leave()
 
     def _show(self) -> None:
-        label, _ = self._offer()
-        self._message.object = escape(self._member.message)
-        self._act.param.update(label=label or " ", visible=bool(label))
-        self._code.visible = self._member.leads
-        self.view.visible = bool(self._member.message)
+        member = self._member
+        self._message.object = escape(member.message)
+        here = "End the class" if member.leads else "Go on by myself"
+        label = "Follow again" if member.room is None else here
+        self._act.param.update(label=label, visible=bool(member.room or member.left))
+        self._code.visible = member.leads
+        self.view.visible = bool(member.message)

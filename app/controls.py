@@ -11,10 +11,11 @@ import panel_material_ui as pmui
 import param
 
 from app.browser import Echoes
-from app.files import CurveDialog, FilesPanel
+from app.files.opener import FilesPanel
+from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
-from app.widgets import button, mask_of
+from app.widgets import button, looks, mask_of
 from solver.definitions import CurveParameter, Parameter, about
 from solver.scenes import CATALOGUE, chief_of, ends_of
 
@@ -36,30 +37,6 @@ ON_UNDERLINE = {
     "& .MuiFormLabel-root": {"display": "none"},
 }
 """A slider stands in place of the line under its field, whose label is its name too."""
-GROUP = {
-    "& .MuiAccordionSummary-root": {"minHeight": "36px", "padding": "0 4px"},
-    "& .MuiAccordionSummary-content": {"margin": "4px 0 !important"},
-    "& .MuiAccordionDetails-root": {"padding": "0 0 8px"},
-}
-PICTURES = {
-    "display": "grid",
-    "gridTemplateColumns": "repeat(4, 1fr)",
-    "& .MuiToggleButton-root": {
-        "flexDirection": "column",
-        "textTransform": "none",
-        "fontSize": "11px",
-        "lineHeight": 1.2,
-        "padding": "3px 0",
-        "border": 0,
-        "borderRadius": "4px",
-    },
-    "& .MuiToggleButton-root::before": {
-        "content": '""',
-        "width": "48px",
-        "height": "32px",
-        "backgroundColor": "currentColor",
-    },
-}
 
 
 class SettingControl:
@@ -77,7 +54,6 @@ class SettingControl:
         self._is_updating = self._is_dragged = False
         self._echoes = Echoes()
         self._dialog: CurveDialog | None = None
-        self._edit_button: pmui.Button | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
@@ -102,7 +78,9 @@ class SettingControl:
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            return field, pn.Column(field, margin=0)
+            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
+            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
+            return field, pn.Column(field, self._edit_button, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
@@ -154,7 +132,7 @@ class SettingControl:
     def _show(self, value: Any) -> None:
         if isinstance(self._definition, CurveParameter):
             self.field.value = POINTS if isinstance(value, tuple) else value
-            self._offer_points(isinstance(value, tuple))
+            self._edit_button.visible = isinstance(value, tuple)
             if self._dialog is not None:
                 self._dialog.update()
         elif self.slider is None:
@@ -163,14 +141,6 @@ class SettingControl:
             self.field.value = self._echoes.give(self._written(value), self.field.value)
             if not self._is_dragged:
                 self._show_on_slider(value)
-
-    def _offer_points(self, are_there: bool) -> None:
-        if are_there and self._edit_button is None:
-            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
-            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
-            self.view.append(self._edit_button)
-        if self._edit_button is not None:
-            self._edit_button.visible = are_there
 
     def _show_on_slider(self, value: float) -> None:
         low, high = self._definition.softbounds
@@ -261,7 +231,8 @@ class Controls:
             width=WIDTH,
             margin=0,
             size="small",
-            sx=PICTURES | pictures,
+            sx=pictures,
+            **looks("pictures"),
         )
         self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
         self._chief = pn.Column(margin=0)
@@ -271,7 +242,7 @@ class Controls:
             title_variant="body2",
             disable_gutters=True,
             elevation=0,
-            sx=GROUP,
+            **looks("groups"),
         )
         self._groups.param.watch(lambda event: self._open(), "active")
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))

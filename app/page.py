@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import listen
-from app.cases import CasePanel
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
-from app.export import TakeAway
-from app.fit import FitTab
-from app.glossary import glossary
+from app.experiments.fit import FitTab
+from app.experiments.reports import Reports
+from app.experiments.whatif import WhatIf
+from app.files.export import TakeAway
+from app.files.link import Link, read, show
+from app.lessons.cases import CasePanel
 from app.lessons.panel import LessonPanel
-from app.link import Link, read, show
 from app.live import STYLE, Live, column
-from app.reports import Reports
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.whatif import WhatIf
-from app.widgets import wrapped
+from app.widgets import dialog, looks, wrapped
 from solver.settings import Settings
 
 COMPACT = {
@@ -35,20 +36,6 @@ COMPACT = {
     },
 }
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
-WHITE = {"&.MuiIconButton-root, & .MuiIconButton-root": {"color": "#fff"}}
-IN_HEADER = {
-    "& button": {
-        "color": "#fff",
-        "borderColor": "#ffffff80",
-        "textTransform": "none",
-        "padding": "2px 10px",
-        "whiteSpace": "nowrap",
-    },
-    "& button.Mui-selected, & button.Mui-selected:is(:hover, :focus)": {
-        "color": "#0b3d66",
-        "backgroundColor": "#fff",
-    },
-}
 
 
 class Page:
@@ -96,7 +83,6 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda event: self._lesson.update(), "frame")
         self._turn(state.tab)
         self._lesson.show()
         self._case.show()
@@ -128,9 +114,9 @@ class Page:
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
-            self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
+            self.state.param.tab, label="", size="small", margin=(0, 8), **looks("in-header")
         )
-        space, look = pn.layout.HSpacer(), {"margin": 0, "sx": WHITE}
+        space, look = pn.layout.HSpacer(), {"margin": 0, **looks("in-header")}
         buttons = [
             pmui.IconButton(icon=icon, description=title, on_click=action, **look)
             for title, (icon, action) in actions.items()
@@ -211,3 +197,15 @@ def open_page() -> pmui.Page:
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template
+
+
+def glossary() -> pmui.Dialog:
+    """A dialog of the keys, and of what words mean."""
+    texts = tomllib.loads((Path(__file__).parent / "glossary.toml").read_text(encoding="utf-8"))
+    tables = pn.pane.HTML("".join(map(_table, texts.values())), sizing_mode="stretch_width")
+    return dialog("Keys and words", tables, width_option="md")
+
+
+def _table(entries: dict[str, str]) -> str:
+    rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in entries.items())
+    return f'<table style="text-align:left;font-size:14px;margin-bottom:12px">{rows}</table>'

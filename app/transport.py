@@ -11,7 +11,7 @@ import panel_material_ui as pmui
 
 from app.browser import Echoes
 from app.state import ANSWER, PACES, SEARCH, PageState, known
-from app.widgets import button, wrapped
+from app.widgets import button, looks, wrapped
 
 PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
@@ -22,14 +22,6 @@ FOLLOWS = 400
 other more quickly the browser sends the older one back (see `Echoes`)."""
 HELD = 1.0
 """Seconds after a move of it for which it stays where the hand has left it."""
-ROUND = {
-    "minWidth": "30px",
-    "padding": "4px",
-    "& .MuiButton-startIcon": {"margin": 0},
-    "& .MuiButton-startIcon > *": {"fontSize": "24px !important"},
-}
-PASSED = ".MuiTooltip-popper { pointer-events: none !important }"
-"""A tooltip lies over the next buttons, and would stay under a pointer on its way to them."""
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
@@ -69,7 +61,7 @@ class Transport:
             size="small",
             margin=(4, 6),
             description="Watch the search from nothing, or have the answer at once.",
-            sx={"& button": {"textTransform": "none", "padding": "3px 9px"}},
+            **looks("words"),
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
         pace = pmui.Select.from_param(
@@ -201,6 +193,5 @@ def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button
         variant="text",
         color="default",
         margin=2,
-        sx=ROUND,
-        stylesheets=[PASSED],
+        **looks("icon"),
     )

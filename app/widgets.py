@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -12,7 +13,13 @@ import panel_material_ui as pmui
 
 from solver.scenes.entry import Emblem
 
+SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(encoding="utf-8")
 TEXT = "p { margin: 0; font-size: 14px; line-height: 1.43 }"
+
+
+def looks(role: str) -> dict[str, Any]:
+    """Look of a widget in a role that `widgets.css` knows."""
+    return {"css_classes": [role], "stylesheets": [SHEET]}
 
 
 def changing_text(**options: Any) -> pn.pane.Markdown:

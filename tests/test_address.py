@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.files.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
 from app.lessons.catalogue import CASES, settings_of
-from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache

@@ -9,8 +9,8 @@ from typing import Any
 import panel as pn
 import pytest
 
-from app.cases import CasePanel
 from app.frame import Frame
+from app.lessons.cases import CasePanel
 from app.lessons.catalogue import CASES, LESSONS, PENDING, readings_of, settings_of
 from app.lessons.panel import LessonPanel
 from app.live import Card

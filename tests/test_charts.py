@@ -14,7 +14,7 @@ import pytest
 from bokeh.models import ColorBar, ColumnDataSource
 from sweeps import tiny
 
-from app.charts import in_units, keys, levels, overlay, render
+from app.charts import contours, in_units, keys, overlay, render
 from solver.study import page
 from solver.study.chart import Chart, Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, write_page
@@ -104,17 +104,19 @@ def test_a_chart_that_fills_shows_what_is_new_in_the_same_figure() -> None:
     assert figure.yaxis.axis_label == other.y.label
 
 
-@pytest.mark.parametrize(
-    ("ends", "is_logarithmic", "first"),
-    [([0.0, 10.0], False, 1.5), ([1.0, 1e3], True, 2.0), ([3.0, 3.1], False, 3.015)],
-)
-def test_levels_are_round_numbers_inside_the_scale(
-    ends: list[float], is_logarithmic: bool, first: float
+@pytest.mark.parametrize("is_logarithmic", [False, True])
+def test_lines_of_equal_value_are_of_round_numbers_and_lie_where_these_are(
+    is_logarithmic: bool,
 ) -> None:
-    values = levels(np.array(ends), is_logarithmic=is_logarithmic)
-    assert values[0] == pytest.approx(first)
-    assert ends[0] < values.min()
-    assert values.max() < ends[1]
+    chart = chart_of(AREA, CELLS, logarithmic=is_logarithmic)
+    x, y = np.meshgrid(chart.x_values, chart.y_values)
+    chart = replace(chart, z=x * y)
+    assert not contours(replace(chart, z=np.nan * chart.z))
+    lines = contours(chart)
+    assert len(lines) > 4
+    for line in lines:
+        assert float(f"{line['z']:.2g}") == line["z"]
+        assert line["x"] * line["y"] == pytest.approx(line["z"], rel=0.05)
 
 
 def test_a_page_of_a_command_loads_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

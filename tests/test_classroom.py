@@ -92,7 +92,7 @@ def leader() -> Iterator[Seat]:
     seat.member.begin()
     tick(seat)
     yield seat
-    seat.member.end()
+    seat.member.leave()
 
 
 def code_of(leader: Seat) -> str:
@@ -145,7 +145,7 @@ def test_whoever_changes_anything_goes_on_alone_and_may_follow_again(
     assert follower.state.history is not leader.state.history
     tick(leader, follower)
     assert leader.state.settings.values()["peak"] != 700.0
-    follower.member.follow_again()
+    follower.member.enter(follower.member.left)
     assert follower.state.frame is leader.state.frame
     assert not follower.worker.is_there
 
@@ -200,7 +200,7 @@ def test_the_leaders_page_loaded_again_leads_on(leader: Seat, frame: Frame) -> N
     shown = show(again, frame)
     tick(again, follower)
     assert follower.state.frame is shown
-    again.member.end()
+    again.member.leave()
 
 
 def test_a_class_waits_five_minutes_for_its_leader(

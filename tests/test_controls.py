@@ -9,7 +9,7 @@ import param
 import pytest
 
 from app.controls import POINTS, Controls, SettingControl
-from app.files import FilesPanel
+from app.files.opener import FilesPanel
 from app.refusals import nearest_allowed
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of

@@ -52,7 +52,7 @@ def test_a_measured_loop_is_compared_and_fitted_and_the_fit_is_run(
     page.get_by_role("checkbox", name="Friction coefficient").check()
     button(page, "Start").click()
     with page.expect_download() as event:
-        button(page, "Take away (.html)").click()
+        button(page, "fit.html").click()
     assert "Friction" in event.value.path().read_text(encoding="utf-8").title()
     button(page, "Use these settings").click()
     is_solved(page)

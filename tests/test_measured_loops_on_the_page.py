@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from bars import SMALL
 
-from app.columns_dialog import BOTH, LOOP, ROW, TableOpener
-from app.fit import FitTab
+from app.experiments.fit import FitTab
+from app.files.opener import TableOpener
+from app.files.tables import BOTH, LOOP, TABLES
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.tables import TABLES
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.settings import Settings
@@ -41,49 +41,48 @@ def opener(state: PageState, text: str, name: str = "rig.csv") -> TableOpener:
 def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     state = PageState(bar())
     made = opener(state, "Weg [mm],Kraft [kN]\n0,0\n1,0.5\n2,0.7\n1,0.1\n0,-0.4\n")
-    dialog, loop = made.dialog, state.brought
+    loop = state.brought
     assert isinstance(loop, MeasuredLoop)
-    assert dialog.view.open
+    assert made.dialog.open
     assert loop.force.tolist() == [0.0, 500.0, 700.0, 100.0, -400.0]
     assert "Weg in mm, Kraft in kN" in made.message.object
-    assert dialog.use.value == LOOP
-    assert [unit.value for unit in dialog.units] == ["s", "mm", "kN"]
-    dialog.units[1].value = "µm"
+    assert (made.use.value, made.heads.value) == (LOOP, "Weg [mm], Kraft [kN]")
+    made.heads.value = "Weg [µm], Kraft [kN]"
     assert state.brought.displacement.max() == pytest.approx(2e-6)
     assert "passed over" not in made.message.object
-    dialog.columns[0].value = dialog.columns[0].options[ROW]
-    dialog.units[0].value = "ms"
+    made.heads.value = "Weg [µm], Kraft [kN], time [ms]"
     assert state.brought.times.tolist() == pytest.approx([0.0, 1e-3, 2e-3, 3e-3, 4e-3])
-    dialog.use.value = f"{BOTH} load"
-    assert state.settings.load == tuple(enumerate([0.0, 500.0, 700.0, 100.0, -400.0]))
-    assert state.settings.duration == 4.0
-    dialog.units[0].value = "min"
+    made.use.value = f"{BOTH}load"
+    assert state.settings.load[:2] == ((0.0, 0.0), (1e-3, 500.0))
+    assert state.settings.duration == pytest.approx(4e-3)
+    made.heads.value = "Weg [µm], Kraft [kN], time [min]"
     assert state.settings.duration == 240.0
-    made._remove.clicks += 1
+    made.remove_button.clicks += 1
     assert state.brought is None
 
 
-def test_columns_without_names_are_chosen_and_what_is_no_number_is_said() -> None:
+def test_columns_without_names_are_named_and_what_is_no_number_is_said() -> None:
     state = PageState(bar())
     made = opener(state, "1,0,7,5\n2,1,7,6\n3,2,7,x\n4,3,7,9\n")
     assert "finite numbers" in made.message.object or "columns" in made.message.object
-    dialog = made.dialog
-    dialog.use.value = LOOP
-    dialog.columns[1].value, dialog.columns[2].value = 1, 0
+    made.use.value = LOOP
+    made.heads.value = "force, displacement"
+    assert "4 columns" in made._understood.object
+    made.heads.value = "force, displacement, 3, 4"
     assert isinstance(state.brought, MeasuredLoop)
     assert state.brought.displacement.tolist() == [0.0, 1.0, 2.0, 3.0]
-    dialog.columns[2].value = 3
-    assert "line 3" in dialog._message.object
+    made.heads.value = "1, displacement, 3, force"
+    assert "line 3" in made._understood.object
     assert state.brought.force.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
-def test_a_table_of_time_and_load_is_a_path_as_before_without_a_dialog() -> None:
+def test_a_table_of_time_and_load_is_a_path_without_a_dialog() -> None:
     state = PageState(bar())
     made = opener(state, "time,force\n0,0\n1,800\n2,0\n")
     assert state.settings.load == ((0.0, 0.0), (1.0, 800.0), (2.0, 0.0))
-    assert not made.dialog.view.open
-    assert made.dialog.use.value == "load"
-    made.dialog.units[1].value = "kN"
+    assert not made.dialog.open
+    assert made.use.value == "load"
+    made.heads.value = "time, force [kN]"
     assert state.settings.load[1] == (1.0, 800_000.0)
 
 
@@ -110,24 +109,24 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     tab = FitTab(state, opened.append)
     assert tab.start_button.disabled
     state.brought = loop_of_a_run(bar(friction=0.37))
-    assert not tab.start_button.disabled
+    assert tab.start_button.disabled
     tab.chosen.value = ["contact_stiffness", "friction"]
+    assert not tab.start_button.disabled
     tab.start()
     folder = tab.job.folder
     while tab.job is not None:
-        assert tab._cancel.visible
+        assert tab.cancel_button.visible
         time.sleep(0.2)
         tab.look()
     assert not folder.exists()
-    assert tab.found is not None, tab.message.object
-    assert "± " in tab.table.object
-    assert "% away, before" in tab.message.object
+    assert "standard error" in tab.page.object, tab.progress.object
     tab.use()
     (settings,) = opened
     assert (settings.friction, settings.contact_stiffness) == (0.37, 8.0)
     assert settings.finish == state.settings.finish
     state.brought = None
     assert tab.start_button.disabled
+    assert "standard error" in tab.page.object
     tab.end()
 
 
@@ -141,7 +140,7 @@ def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
     while tab.job is not None:
         time.sleep(0.1)
         tab.look()
-    assert "goes one way 3 times" in tab.message.object
+    assert "goes one way 3 times" in tab.progress.object
     assert not folder.exists()
     state.change(elements=400, substructures=1, instants=400)
     state.brought = loop_of_a_run(bar())
@@ -149,5 +148,5 @@ def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
     folder = tab.job.folder
     tab.cancel()
     assert tab.job is None
-    assert tab.message.object == "Cancelled."
+    assert tab.progress.object == "Fit: Cancelled."
     assert not folder.exists()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.link import read
+from app.files.link import read
 from app.state import SEARCH
 from solver.cli import main
 from solver.files import settings_from_command

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from app.link import Place, query_of, read
+from app.files.link import Place, query_of, read
 from solver.checked import dump
 from solver.definitions import allowed, parse
 from solver.files import settings_from_command, settings_from_toml

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from refusals import refusal
 
-from app.link import read as read_address
+from app.files.link import read as read_address
 from solver.cli import main
 from solver.curves import GivenCurve, curve_of
 from solver.definitions import SettingError

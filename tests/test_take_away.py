@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from app.browser import Display
-from app.export import TakeAway, history_table, offline_page, plot_table, program
+from app.files.export import TakeAway, history_table, offline_page, plot_table, program
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings

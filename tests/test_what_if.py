@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from sweeps import TINY, Here
 
-from app import jobs, reports
-from app.jobs import Job, Sweep, share_of
-from app.questions import READY, Question, iterations_over_k, question_of
+from app.experiments import jobs, reports
+from app.experiments.jobs import Job, Sweep, share_of
+from app.experiments.questions import READY, Question, iterations_over_k, question_of
+from app.experiments.whatif import WhatIf, nearest
 from app.state import PageState, default_settings
-from app.whatif import WhatIf, nearest
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
@@ -95,18 +95,21 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
     made = asked(LOADS)
     first, second = made.spans
     first.name.value = "length"
-    first.low.value, first.high.value, first.count.value = "0.5", "2000 mm", 3
+    first.values.value = "0.5:2000 mm:3:log"
     assert made.question.vary[0] == "length=0.5:2:3:log"
-    first.spacing.value = "a list"
+    first.values.value = "500 mm, 1, 2"
     assert made.question.vary[0] == "length=0.5,1,2"
-    first.listed.value = "1, long"
+    first.values.value = "1, long"
     assert "number" in made.message.object
-    first.listed.value = "-1, 2"
-    assert "cannot be" in made.message.object
-    assert made.question.vary[0] == "length=0.5,1,2"
-    first.listed.value = "1, 2"
+    for wrong in ("-1, 2", "1:2", "1:2:x"):
+        first.values.value = wrong
+        assert "cannot be" in made.message.object
+        assert made.question.vary[0] == "length=0.5,1,2"
+    first.values.value = "1, 2"
     second.name.value = "acceleration"
     assert made.question.vary[1] == "acceleration=none,anderson"
+    second.values.value = "anderson"
+    assert made.question.vary[1] == "acceleration=anderson"
 
 
 @pytest.mark.usefixtures("here")
@@ -136,7 +139,7 @@ def test_the_scale_of_the_values_is_linear_or_logarithmic_as_one_likes() -> None
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
     settings = default_settings(scene)
-    offered = [question for _, make in READY.values() if (question := make(settings))]
+    offered = [question for make in READY.values() if (question := make(settings))]
     assert len(offered) >= 3
     for question in offered:
         assert question.refusal(settings) == ""
@@ -233,7 +236,7 @@ def test_a_run_stands_still_while_a_study_is_timed(
     made.kind.value = reports.STUDY
     made.start()
     assert not made.state.running
-    assert made._cancel.visible
+    assert made.cancel_button.visible
     monkeypatch.setattr(Done, "is_over", True)
     made.look()
     assert made.state.running

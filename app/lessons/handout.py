@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from bokeh.embed import file_html
@@ -22,33 +23,7 @@ from solver.lessons import Lesson
 
 WIDTH, HEIGHT = 660, 230
 """Pixels of the picture; two plots stand side by side in its width."""
-PAGE = """{% macro plot(name) -%}
-<div id="{{ roots[name].elementid }}" data-root-id="{{ roots[name].id }}"></div>
-{%- endmacro %}<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
-{{ library|safe }}<style>
-@page { size: A4; margin: 16mm; }
-:root { color-scheme: light; }
-body { max-width: 178mm; margin: 0 auto; font: 11pt/1.45 system-ui, sans-serif; color: #000;
-  background: #fff; }
-h1 { font-size: 18pt; margin: 0; } h2 { font-size: 14pt; }
-.question { font-weight: 600; } ul.choices { list-style: "☐  "; padding-left: 2em; }
-.room { height: 60mm; background: repeating-linear-gradient(#fff 0 9mm, #bbb 9mm 9.4mm);
-  print-color-adjust: exact; }
-.overleaf { break-before: page; }
-.plots { display: grid; grid-template-columns: 1fr 1fr; gap: 4mm; }
-</style></head><body>
-<small>Slipfront. {{ place }}</small><h1>{{ title }}</h1>
-{{ text|safe }}
-{{ plot("picture") }}
-<p class="question">{{ question }}</p>
-<ul class="choices">{% for choice in choices %}<li>{{ choice }}</li>{% endfor %}</ul>
-{% if has_curve %}{{ plot("blank") }}{% endif %}
-<p>Why?</p><div class="room"></div>
-<section class="overleaf"><h2>{{ right }}.</h2><p>{{ why }}</p>
-{{ explanation|safe }}
-<div class="plots">{% for name in plots %}{{ plot(name) }}{% endfor %}</div>
-{% if address %}<p><small>To try it: {{ address }}</small></p>{% endif %}
-</section>{{ plot_script|safe }}</body></html>"""
+PAGE = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
 
 
 def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:

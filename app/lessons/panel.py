@@ -9,9 +9,7 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-import param
 
-from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.catalogue import (
     LESSONS,
@@ -21,30 +19,28 @@ from app.lessons.catalogue import (
     parts_of,
     place_of,
     readings_of,
-    settings_of,
 )
 from app.lessons.curve import DrawnCurve
+from app.lessons.guide import Guide, text_button
 from app.lessons.handout import handout
 from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
-from app.widgets import button, dialog, download
+from app.widgets import download, looks
 from solver.lessons import SUBJECTS, Lesson
 
-PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""
-_button = partial(button, margin=(3, 0))
-LEFT = {"&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
 
 
-class LessonPanel:
+class LessonPanel(Guide):
     """The lesson that a page is in, if it is in one.
 
-    The transport plays the picture while the question is open; `changed` is called when another
-    lesson, or its answer, is shown; `open_counts` has a class see how many predicted what. `view`
-    stands beside the plots, `dialog` is the list of all lessons.
+    The transport plays the picture while the question is open; `open_counts` has a class see how
+    many predicted what.
     """
+
+    kind, known = "lesson", LESSONS
 
     def __init__(
         self,
@@ -53,41 +49,18 @@ class LessonPanel:
         changed: Callable[[], None],
         open_counts: Callable[[], None],
     ) -> None:
-        self._state, self._transport = state, transport
-        self._changed, self._open_counts = changed, open_counts
-        self._texts: list[tuple[pn.pane.Markdown, str]] = []
-        self._controls: list[SettingControl] = []
+        super().__init__(state, "Lessons", changed)
+        self._transport, self._open_counts = transport, open_counts
         self._curve: DrawnCurve | None = None
         self._choices = pn.Column(margin=0)
         self._shown: tuple[str, bool] | None = None
-        self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
-        self.dialog = dialog("Lessons", width_option="md")
         state.param.watch(lambda *events: self.show(), ["lesson", "prediction", "poll"])
-        state.param.watch(lambda event: self._follow_settings(), "settings")
-
-    @property
-    def lesson(self) -> Lesson | None:
-        """The lesson that is open."""
-        return LESSONS.get(self._state.lesson)
 
     @property
     def kinds(self) -> tuple[type[View], ...] | None:
         """The plots that stand beside it; None without a lesson."""
-        lesson = self.lesson
+        lesson = LESSONS.get(self._state.lesson)
         return kinds_of(lesson, is_answered=not self._state.is_asked) if lesson else None
-
-    def open(self, name: str) -> None:
-        """Begin a lesson, with its scene and settings."""
-        self.dialog.open = False
-        with param.parameterized.batch_call_watchers(self._state):
-            self._state.param.update(lesson=name, case="", prediction=None)
-            self._state.adopt(settings_of(LESSONS[name]))
-
-    def offer(self) -> None:
-        """Show the list of all lessons."""
-        if not self.dialog.objects:
-            self.dialog[:] = [pn.FlexBox(*map(self._offers, SUBJECTS), gap="8px 32px", margin=0)]
-        self.dialog.open = True
 
     def predict(self, choice: int) -> None:
         """Take a prediction, which alone, or of who leads, goes on to the answer."""
@@ -97,14 +70,9 @@ class LessonPanel:
             # One watches from the start what was out of sight.
             self._state.run()
 
-    def update(self) -> None:
-        """Bring the quantities in its sentences up to the frame."""
-        for pane, text in self._texts:
-            pane.object = filled(text, self._state.frame)
-
     def show(self) -> None:
         """Show the question, or the answer, of the lesson, and what a class predicts."""
-        state, lesson = self._state, self.lesson
+        state, lesson = self._state, LESSONS.get(self._state.lesson)
         shown = state.lesson, state.is_asked
         if shown != self._shown:
             self._shown = shown
@@ -112,41 +80,30 @@ class LessonPanel:
         if lesson is not None:
             self._choices[:] = [*self._choices_of(lesson, state.poll), *self._of_class(state.poll)]
 
-    def _offers(self, subject: str) -> pn.Column:
+    def _list(self) -> Any:
+        return pn.FlexBox(*map(self._titles, SUBJECTS), gap="8px 32px", margin=0)
+
+    def _titles(self, subject: str) -> pn.Column:
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
         buttons = [
-            _button(lesson.title, lambda name=name: self.open(name), sx=LEFT, variant="text")
+            text_button(lesson.title, partial(self.open, name), **looks("choice"), variant="text")
             for name, lesson in LESSONS.items()
             if lesson.subject == subject
         ]
         return pn.Column(pn.pane.Markdown(title, margin=(0, 8)), *buttons, width=380, margin=0)
 
-    def _follow_settings(self) -> None:
-        """Leave a lesson for another scene; show its controls as settings are."""
-        lesson = self.lesson
-        if lesson is not None and self._state.settings.scene != lesson.settings.scene:
-            self._end()
-        for control in self._controls:
-            control.update()
-
     def _build(self, lesson: Lesson | None) -> None:
         state = self._state
-        self._texts, self._controls = [], []
         self._transport.stop()
         if lesson is None:
-            self.view.param.update(objects=[], visible=False)
-            state.readings = []
-            self._changed()
+            self._fill(list, [])
             return
-        state.readings = readings_of(lesson)
         if state.is_asked or self._curve is None or self._curve.lesson is not lesson:
             self._curve = DrawnCurve(lesson) if lesson.draw else None
         if self._curve is not None and not state.is_asked:
             # A figure's own models change under the document's lock, which a click does not have.
             pn.state.execute(self._curve.reveal, schedule=True)
-        title = f"<small>{place_of(lesson)}</small>\n\n### {lesson.title}"
-        self.view.param.update(objects=[self._markdown(title), *self._parts(lesson)], visible=True)
-        self._changed()
+        self._fill(partial(self._parts, lesson), readings_of(lesson))
         self._look(lesson)
 
     def _look(self, lesson: Lesson) -> None:
@@ -161,14 +118,17 @@ class LessonPanel:
 
     def _parts(self, lesson: Lesson) -> list[Any]:
         """The question, and after the choice the answer with what explains it."""
+        title = f"<small>{place_of(lesson)}</small>\n\n### {lesson.title}"
         figures = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
-        question = [self._markdown(f"**{lesson.question}**"), self._choices]
-        explore = _button("Explore freely", self._end, variant="text")
+        question = [*self._paragraphs((f"**{lesson.question}**",)), self._choices]
+        explore = text_button("Explore freely", self._end, variant="text")
         if self._state.is_asked:
-            return [*self._paragraphs(lesson.text), *figures, *question, explore]
+            paragraphs = self._paragraphs((title, *lesson.text))
+            return [*paragraphs, *figures, *question, explore]
         explanation = self._paragraphs(lesson.explanation)
         buttons = pn.FlexBox(*self._onward(lesson), explore, margin=(8, 0))
-        return [*question, self._verdict(lesson), *figures, *explanation, buttons]
+        head = self._paragraphs((title,))
+        return [*head, *question, self._verdict(lesson), *figures, *explanation, buttons]
 
     def _verdict(self, lesson: Lesson) -> pmui.Alert:
         """The right choice and why, in the colour of whether it was predicted."""
@@ -187,28 +147,17 @@ class LessonPanel:
         following, poll = dict(pairwise(LESSONS)).get(lesson.name), self._state.poll
         if following is None or not (poll is None or poll.leads):
             return [on_paper]
-        return [_button("Next lesson", lambda: self.open(following)), on_paper]
+        return [text_button("Next lesson", lambda: self.open(following)), on_paper]
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
         """Panes of text, with controls where they are named."""
-        shown: list[Any] = []
-        for part in (part for text in paragraphs for part in parts_of(text)):
-            if isinstance(part, Control):
-                self._controls.append(SettingControl(part.setting, self._state))
-                shown.append(self._controls[-1].view)
-            elif part:
-                shown.append(self._markdown(part))
-        return shown
-
-    def _markdown(self, text: str) -> pn.pane.Markdown:
-        pane = pn.pane.Markdown(
-            filled(text, self._state.frame),
-            margin=0,
-            sizing_mode="stretch_width",
-            stylesheets=PARAGRAPH,
-        )
-        self._texts.append((pane, text))
-        return pane
+        parts = (part for text in paragraphs for part in parts_of(text) if part)
+        return [
+            self._control(part.setting)
+            if isinstance(part, Control)
+            else self._markdown(lambda part=part: filled(part, self._state.frame))
+            for part in parts
+        ]
 
     def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
         """Buttons of the choices; with what a class predicts of each once that is open."""
@@ -218,13 +167,13 @@ class LessonPanel:
             # Whoever is right or wrong reads it below.
             return []
         return [
-            _button(
+            text_button(
                 f"{choice}: {counts[number]}" if counts else choice,
                 lambda number=number: self.predict(number),
                 variant="contained" if number == self._state.prediction else "outlined",
                 color="success" if not is_asked and number == lesson.right else "primary",
                 disabled=not is_asked,
-                sx=LEFT,
+                **looks("choice"),
             )
             for number, choice in enumerate(lesson.choices)
         ]
@@ -233,16 +182,12 @@ class LessonPanel:
         """What follows the choices: who has predicted, and the way to the answer."""
         is_asked = self._state.is_asked
         if poll is None:
-            show = _button("Show me", lambda: self.predict(WITHOUT), variant="text")
+            show = text_button("Show me", lambda: self.predict(WITHOUT), variant="text")
             return [show] if is_asked else []
         waits = " The answer comes with the class." if is_asked and not poll.leads else ""
         parts = [pn.pane.Markdown(f"{poll.predicted} of {poll.present} have predicted.{waits}")]
         if poll.leads and not poll.counts:
-            parts.append(_button("Open the counts", self._open_counts, variant="outlined"))
+            parts.append(text_button("Open the counts", self._open_counts, variant="outlined"))
         if poll.leads and is_asked:
-            parts.append(_button("Go on to the answer", lambda: self.predict(WITHOUT)))
+            parts.append(text_button("Go on to the answer", lambda: self.predict(WITHOUT)))
         return parts
-
-    def _end(self) -> None:
-        """Leave the lesson; the run stays."""
-        self._state.lesson = ""

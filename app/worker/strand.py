@@ -15,8 +15,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from app.frame import Bytes, DeformedGeometry, Geometry
 from app.messages import Needs
-from app.worker.geometry import StressField, floats, thinned
-from app.worker.outlines import Indices, outlines_of
+from app.worker.geometry import Indices, StressField, floats, outlines_of, thinned
 from solver.arrays import Array
 from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import (

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import replace
+
 from app.state import PageState
+from solver.columns import column_of
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import settings_from_toml
@@ -14,11 +18,13 @@ from solver.study.measured_loop import Axes, MeasuredLoop, axes_of, columns_of, 
 from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
+LOOP, BOTH = "loop", "loop and "
+"""What a table is used as, beside the name of a path alone; the second is before one."""
 Content = Settings | OtherResults | MeasuredLoop
 
 
-def opened(source: str, data: bytes, settings: Settings, axes: Axes) -> tuple[Content, str]:
-    """Read a file: settings (.toml), else results if it has places, a loop, or a load path.
+def opened(source: str, data: bytes, settings: Settings) -> tuple[list[Content], str] | None:
+    """What a file of settings (.toml) or of results over places has; None of other tables.
 
     Returns
     -------
@@ -31,17 +37,39 @@ def opened(source: str, data: bytes, settings: Settings, axes: Axes) -> tuple[Co
     """
     if source.lower().endswith(".toml"):
         read = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
-        return read, f"{source}: settings of the scene {read.scene}."
-    table = table_of(data, source)
-    if {"x", "position"} & {column.key for column in table.columns}:
-        brought = read_results(data, source, settings)
-        return brought, f"{source}: {brought.message}."
-    try:
-        columns = columns_of(table, axes)
-    except SettingError:
-        return with_path(settings, path_of(table, settings), table)
-    loop = loop_in(table, columns, source, axes)
-    return loop, f"{source}: {loop.message}."
+        return [read], f"{source}: settings of the scene {read.scene}."
+    if not any(column.quantities[0] & {"position"} for column in table_of(data, source).columns):
+        return None
+    brought = read_results(data, source, settings)
+    return [brought], f"{source}: {brought.message}."
+
+
+def use_of(table: Table, settings: Settings, axes: Axes) -> str:
+    """What a table is used as by its head: a loop, or a path."""
+    with suppress(SettingError):
+        columns_of(table, axes)
+        return LOOP
+    return path_of(table, settings)
+
+
+def read_as(
+    use: str, table: Table, source: str, settings: Settings, axes: Axes
+) -> tuple[list[Content], str]:
+    """What a table has that is used as a loop, a path, or both, and what was understood.
+
+    Raises
+    ------
+    SettingError
+        If its columns are not those of this use, or are refused.
+    """
+    contents, messages = list[Content](), list[str]()
+    if use.startswith(LOOP):
+        loop = loop_in(table, columns_of(table, axes), source, axes)
+        contents, messages = [loop], [f"{source}: {loop.message}."]
+    if use != LOOP:
+        changed, message = with_path(settings, use.removeprefix(BOTH), table)
+        contents, messages = [*contents, changed], [*messages, message]
+    return contents, " ".join(messages)
 
 
 def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
@@ -67,6 +95,29 @@ def table_of(data: bytes | str, source: str) -> Table:
         return SettingError("the table", source, "a table of time and value", remedy)
 
     return read_table(data, refuse)
+
+
+def renamed(table: Table, heads: str) -> Table:
+    """A table with other names and units of its columns, between commas.
+
+    One name more is that of a last column, the number of each row from 0.
+
+    Raises
+    ------
+    SettingError
+        For fewer or more names.
+    """
+    columns = [column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))]
+    width = len(table.columns)
+    if len(columns) == width:
+        return replace(table, columns=columns)
+    if len(columns) != width + 1:
+        raise table.refuse(f"it has {width} columns: write as many names, or one more")
+    rows = [
+        (line, [*cells, *[""] * (width - len(cells)), str(number)])
+        for number, (line, cells) in enumerate(table.rows)
+    ]
+    return replace(table, columns=columns, rows=rows)
 
 
 def paths_of(settings: Settings) -> dict[str, CurveParameter]:

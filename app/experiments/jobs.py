@@ -8,7 +8,7 @@ import os
 import re
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from functools import cache
@@ -64,14 +64,15 @@ def executor() -> Executor:
 class Job:
     """A command that is waiting, running, or done.
 
-    Its arguments, as after `python -m solver`, may name the folder `OUT`, and the file `SETTINGS`,
-    whose text the settings are.
+    Its arguments, as after `python -m solver`, may name the folder `OUT`, and files by the names of
+    their texts.
     """
 
-    def __init__(self, arguments: Sequence[str], settings: str = "") -> None:
+    def __init__(self, arguments: Sequence[str], texts: Mapping[str, str] | None = None) -> None:
         self._place = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
         self.folder = Path(self._place.name)
-        (self.folder / SETTINGS).write_text(settings, encoding="utf-8")
+        for name, text in (texts or {}).items():
+            (self.folder / name).write_text(text, encoding="utf-8")
         self._began = time.monotonic()
         self._is_cancelled = False
         self._future = executor().submit(command, tuple(arguments), self.folder)

@@ -1,8 +1,7 @@
-"""Files of a user: settings that are saved and opened, and the points of paths."""
+"""A dialog of the points of one path, which are dragged, typed, pasted, or come from a table."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,49 +11,18 @@ import panel_material_ui as pmui
 from bokeh.models import ColumnDataSource, PointDrawTool
 from bokeh.plotting import figure
 
-from app.columns_dialog import TableOpener
+from app.files.tables import TABLES, table_of, with_path
 from app.refusals import message_of
-from app.state import PageState, default_settings
-from app.tables import TABLES, table_of, with_path
+from app.state import PageState
 from app.units import units_of_points
 from app.views.colors import LATIN
-from app.widgets import button, dialog, download
-from solver.checked import dump
+from app.widgets import dialog
 from solver.definitions import about
 from solver.refusal import RefusedError
 from solver.scenes import points_of
 
 MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""
-
-
-class FilesPanel:
-    """Buttons that save settings and open files, and what was understood of these.
-
-    `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
-    """
-
-    def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
-        self._state, self._copy = state, copy
-        look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
-        outlined = {**look, "variant": "outlined"}
-        self._opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
-        self.file, self.message = self._opener.file, self._opener.message
-        self.view = pn.Column(
-            button("Copy link", self._copy_link, icon="link", **outlined),
-            download(
-                "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
-            ),
-            self._opener.view,
-            button("All settings to default", self._reset, icon="restart_alt", **outlined),
-            margin=0,
-        )
-
-    def _copy_link(self) -> None:
-        self.message.object = f"The link to what is shown is copied. {self._copy()}"
-
-    def _reset(self) -> None:
-        self._state.adopt(default_settings(self._state.settings.scene))
 
 
 class CurveDialog:

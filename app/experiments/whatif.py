@@ -13,8 +13,17 @@ import panel_material_ui as pmui
 from bokeh.events import Tap
 
 from app.charts import in_units, keys, overlay
-from app.jobs import SETTINGS, Job, Sweep, follow
-from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
+from app.experiments.jobs import SETTINGS, Job, Sweep, follow
+from app.experiments.questions import (
+    FIELD,
+    READY,
+    TENTH,
+    TEXTS,
+    Question,
+    Span,
+    quantities,
+    question_of,
+)
 from app.refusals import message_of
 from app.state import ANSWER, PageState, answer
 from app.units import sizes_of, unit_for
@@ -161,7 +170,7 @@ class WhatIf:
         if parameter is not None:
             self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
         for title, ready in self._ready.items():
-            ready.visible = READY[title][1](settings) is not None
+            ready.visible = READY[title](settings) is not None
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
         if self.sweep is None or self.question != before:
@@ -192,8 +201,8 @@ class WhatIf:
             self.state.question = str(question)
 
     def _on_ready(self, title: str) -> None:
-        self._help.object, make = READY[title]
-        self.question = make(self.state.settings)
+        self._help.object = TEXTS["questions"][title]
+        self.question = READY[title](self.state.settings)
         self.state.question = str(self.question)
         self.start()
 
@@ -202,8 +211,8 @@ class WhatIf:
         if self._job is not None:
             self._job.cancel()
         else:
-            settings = dump(answer(self.state.settings))
-            self._job = Job(["mesh", SETTINGS, "--of", self.question.of], settings)
+            texts = {SETTINGS: dump(answer(self.state.settings))}
+            self._job = Job(["mesh", SETTINGS, "--of", self.question.of], texts)
         self.look()
 
     # Chart

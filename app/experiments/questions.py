@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,12 +25,13 @@ from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantity import Quantity
 from solver.study.sweep import Plan, plan_of
-from solver.study.sweep.plan import axis_of
 
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
-PLAIN = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding": "4px 14px"}}
-EVEN, DECADES, LISTED = "even steps", "even ratios", "a list"
 LOG = ":log"
+GRAMMAR = (
+    "FROM:TO:NUMBER are so many values in even steps, FROM:TO:NUMBER:log in even ratios; "
+    "others stand between commas."
+)
 VALUES, COARSE = 13, 10
 """Values of a range, and along each side of a map."""
 TENTH, HUNDREDTH = 0.1, 0.01
@@ -211,46 +214,27 @@ def _map(settings: Settings, across: str | None, up: str | None, of: str) -> Que
     return Question(tuple(vary), of)
 
 
-READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
-    "Energy over amplitude": (
-        "Energy that friction takes over the size of the load. On logarithmic scales a straight "
-        "line is a power: 3 where slip spreads from an end, 1 where all slips.",
-        _energy,
-    ),
-    "Iterations over k": (
-        "Iterations over the factor on k, with and without acceleration. It is steepest with the "
-        "paper's method.",
-        iterations_over_k,
-    ),
-    "Iterations over k and substructures": (
-        "Iterations over the factor on k, for several numbers of substructures.",
-        lambda settings: (
-            iterations_over_k(settings, "substructures")
-            if "substructures" in variable(settings)
-            else None
-        ),
-    ),
-    "Iterations over bricks": (
-        "Iterations until the contact force is within 1 % over the courses of a wall, with and "
-        "without the coarse problem, which carries the load through all bricks at once.",
-        _bricks,
-    ),
-    "Energy over friction and load": (
-        "Energy dissipated over friction and load.",
-        lambda settings: _map(settings, "friction", _load(settings), "dissipation"),
-    ),
-    "Fretting map": (
-        "Share of the contact that slips at once in the last cycle, over the load and what "
-        "presses: 0 is stick, 1 gross slip.",
-        _fretting,
-    ),
-    "Shakedown limit": (
-        "How many times as far the load may swing to and fro until slip goes on for ever, over "
-        "friction. Below 1 it does so now. Pressed twice as hard, it is twice as much.",
-        _shakedown,
-    ),
+def _cuts(settings: Settings) -> Question | None:
+    has_cuts = "substructures" in variable(settings)
+    return iterations_over_k(settings, "substructures") if has_cuts else None
+
+
+def _energies(settings: Settings) -> Question | None:
+    return _map(settings, "friction", _load(settings), "dissipation")
+
+
+TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))
+"""A word on each question and report, by what its button says."""
+READY: dict[str, Callable[[Settings], Question | None]] = {
+    "Energy over amplitude": _energy,
+    "Iterations over k": iterations_over_k,
+    "Iterations over k and substructures": _cuts,
+    "Iterations over bricks": _bricks,
+    "Energy over friction and load": _energies,
+    "Fretting map": _fretting,
+    "Shakedown limit": _shakedown,
 }
-"""Questions that are ready, by what their buttons say, with a word on each."""
+"""Questions that are ready, by what their buttons say."""
 
 
 class Span:
@@ -263,20 +247,8 @@ class Span:
         self._nothing = {"–": ""} if is_optional else {}
         self._changed, self._is_updating = changed, False
         self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
-        spacings, self._is_number = [EVEN, DECADES, LISTED], pn.rx(False)
-        self.spacing = pmui.Select(
-            label="Values in", options=spacings, width=140, visible=self._is_number, **FIELD
-        )
-        ends = {"width": 110, "visible": self._is_number & (self.spacing.rx() != LISTED), **FIELD}
-        self.low = pmui.TextInput(label="from", **ends)
-        self.high = pmui.TextInput(label="to", **ends)
-        self.count = pmui.IntInput(label="Values", value=2, start=2, **ends)
-        is_listed = self._is_number & (self.spacing.rx() == LISTED)
-        self.listed = pmui.TextInput(label="Values", width=330, visible=is_listed, **FIELD)
-        self.chosen = pmui.CheckButtonGroup(label="", size="small", margin=(4, 6), sx=PLAIN)
-        self.view = pn.FlexBox(
-            self.name, self.spacing, self.low, self.high, self.count, self.listed, self.chosen
-        )
+        self.values = pmui.TextInput(label="Values", description=GRAMMAR, width=330, **FIELD)
+        self.view = pn.FlexBox(self.name, self.values)
         for field in self.view:
             field.param.watch(self._on_field, "value")
 
@@ -286,21 +258,14 @@ class Span:
         name, _, values = text.partition("=")
         titles = {_titled(known, settings): key for key, known in variable(settings).items()}
         self.name.param.update(options={**self._nothing, **titles}, value=name)
-        definition = settings.definitions().get(name)
-        is_number = isinstance(definition, param.Number)
-        if is_number:
+        definition, label = settings.definitions().get(name), "Values"
+        if isinstance(definition, param.Number):
             unit = unit_of(definition)
-            numbers = [f"{v / unit.factor:.10g}" for v in axis_of(settings, text).values]
-            self.low.param.update(label=unit.titled("from"), value=numbers[0])
-            self.high.value, self.count.value = numbers[-1], max(len(numbers), 2)
-            label = unit.titled("Values, separated by commas")
-            self.listed.param.update(label=label, value=", ".join(numbers))
-            in_range = DECADES if text.endswith(LOG) else EVEN
-            self.spacing.value = in_range if ":" in text else LISTED
+            label = unit.titled(label)
+            values = _converted(values, lambda text: f"{float(text) / unit.factor:.10g}")
         elif definition is not None:
-            self.chosen.param.update(options=names_of(definition), value=values.split(","))
-        self._is_number.rx.value = is_number
-        self.chosen.visible = definition is not None and not is_number
+            label = f"Values: {', '.join(names_of(definition))}"
+        self.values.param.update(label=label, value=values, visible=bool(name))
         self._is_updating = False
 
     def text(self) -> str:
@@ -314,17 +279,11 @@ class Span:
         name = self.name.value
         if not name:
             return ""
-        definition = self._settings.definitions()[name]
-        if not isinstance(definition, param.Number):
-            return f"{name}={','.join(self.chosen.value)}"
-        is_listed = self.spacing.value == LISTED
-        texts = self.listed.value.split(",") if is_listed else [self.low.value, self.high.value]
-        unit, si = unit_of(definition), about(definition).unit
-        values = [f"{typed(text, unit, si):.12g}" for text in texts]
-        if is_listed:
-            return f"{name}={','.join(values)}"
-        log = LOG * (self.spacing.value == DECADES)
-        return f"{name}={':'.join([*values, str(self.count.value)])}{log}"
+        definition, values = self._settings.definitions()[name], self.values.value
+        if isinstance(definition, param.Number):
+            unit, si = unit_of(definition), about(definition).unit
+            values = _converted(values, lambda text: f"{typed(text, unit, si):.12g}")
+        return f"{name}={values.replace(' ', '')}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:
         """Have the question changed; another setting brings its own values."""
@@ -333,6 +292,14 @@ class Span:
         if event.obj is self.name:
             self.show(self._settings, proposed(self._settings, event.new) if event.new else "")
         self._changed()
+
+
+def _converted(values: str, convert: Callable[[str], str]) -> str:
+    """The ends of a range, or all numbers of a list, each as a function gives it."""
+    sign = ":" if ":" in values else ","
+    parts = values.split(sign)
+    ends = 2 if sign == ":" else len(parts)
+    return sign.join([*map(convert, parts[:ends]), *parts[ends:]])
 
 
 def _titled(definition: Parameter, settings: Settings) -> str:

@@ -1,0 +1,138 @@
+"""The tab Fit: settings under which a run is nearest to a measured loop, and what that tells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+
+import holoviews as hv
+import numpy as np
+import pandas as pd
+import panel as pn
+import panel_material_ui as pmui
+
+from app.charts import in_units, keys, overlay
+from app.experiments.jobs import OUT, SETTINGS
+from app.experiments.reports import LOOKS, Command, CommandTab, Files
+from app.files.opener import TableOpener
+from app.files.tables import TABLES, axes_on
+from app.state import PageState
+from app.widgets import button
+from solver.checked import dump
+from solver.definitions import about
+from solver.files import settings_from_toml
+from solver.settings import Settings
+from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.compared_runs import fittable
+from solver.study.fit import MOST
+from solver.study.fit_report import LOOP
+from solver.study.measured_loop import MeasuredLoop
+
+MEASURED = "measured.csv"
+NO_LOOP = (
+    "Open a table of displacement and force, with time if you have it. It is drawn beside the run, "
+    "here and on the loop of the tab Live."
+)
+NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
+
+
+class FitTab(CommandTab):
+    """The tab: the state has the measured loop and where the settings begin.
+
+    `open_run` opens the run of some settings on the live tab.
+    """
+
+    def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
+        self._open_run = open_run
+        opener = TableOpener(state, "Open a measured loop", TABLES, 230)
+        self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
+        self.use_button = button("Use these settings", self.use, icon="check", **LOOKS)
+        self._keys = pn.pane.HTML("", margin=(4, 8))
+        self._pipe = hv.streams.Pipe(data=None)
+        self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        super().__init__(state, "Fit", {}, opener.view, self.chosen)
+        self.view.extend([self._keys, self._chart])
+        self.buttons.insert(1, self.use_button)
+        self.chosen.param.watch(lambda event: self.show(), "value")
+        self.show()
+
+    @property
+    def measured(self) -> MeasuredLoop | None:
+        """The loop, if one was brought that is of these quantities."""
+        brought = self.state.brought
+        if not isinstance(brought, MeasuredLoop):
+            return None
+        units = tuple(unit for _, unit in axes_on(self.state))
+        return brought if brought.units == units else None
+
+    @property
+    def command(self) -> Command:
+        """The fit of the settings that are ticked to the loop."""
+        names, loop = ",".join(self.chosen.value), self.measured
+        arguments = ("fit", SETTINGS, "--with", MEASURED, "--vary", names, "--out", OUT)
+        settings = dump(self.state.settings)
+        return arguments, ((SETTINGS, settings), (MEASURED, loop.csv() if loop else ""))
+
+    @property
+    def refusal(self) -> str:
+        """What is missing, or nothing."""
+        return NO_LOOP if self.measured is None else "" if self.chosen.value else NO_SETTING
+
+    @property
+    def words(self) -> str:
+        """What it does."""
+        return "Settings with which the run is as near to a measured loop as can be."
+
+    @property
+    def written(self) -> Files:
+        """What is shown: what the last fit has written, whatever is set now."""
+        return next(reversed(self._done.values()), {})
+
+    def show(self) -> None:
+        """Offer the settings that can be fitted, and show the last fit."""
+        settings = self.state.settings
+        titles = {about(settings.definitions()[n]).title: n for n in fittable(settings)}
+        kept = [name for name in self.chosen.value if name in titles.values()]
+        if self.chosen.options != titles or self.chosen.value != kept:
+            self.chosen.param.update(options=titles, value=kept)
+        self.use_button.visible = bool(self.written)
+        super().show()
+        self._draw()
+
+    def look(self) -> None:
+        """Follow the fit: its nearest loop so far moves onto the measured one."""
+        super().look()
+        if self.job is not None and self.state.tab == "Fit":
+            self._draw()
+
+    def _draw(self) -> None:
+        """Draw the measured loop, the run of the page, and the nearest so far, until the report."""
+        chart = self._panel() if self.job is not None or not self.written else None
+        self._chart.visible, self._keys.visible = chart is not None, chart is not None
+        if chart is None:
+            return
+        self._keys.object = keys([chart])
+        self._pipe.send(in_units(chart))
+        if self._chart.object is None:
+            self._chart.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
+
+    def _panel(self) -> Panel | None:
+        measured, frame = self.measured, self.state.frame
+        if measured is None:
+            return None
+        curves = [PanelCurve("measured", measured.displacement, measured.force, 5, "points")]
+        if frame is not None and frame.run.settings.scene == self.state.settings.scene:
+            loop = np.asarray(frame.loop, dtype=float)
+            curves.append(PanelCurve("run of the page", *loop, 0, "dotted"))
+        file = None if self.job is None else self.job.folder / OUT / LOOP
+        if file is not None and file.exists():
+            _, across, up = pd.read_csv(file).to_numpy().T
+            curves.append(PanelCurve("nearest run", across, up, 1))
+        x, y = (PanelAxis(title, unit) for title, unit in axes_on(self.state))
+        return Panel(escape(measured.source), x, y, tuple(curves))
+
+    def use(self) -> None:
+        """Have the page run with what was found, in as many digits as one reads."""
+        found = settings_from_toml(self.written[SETTINGS].decode())
+        values = {name: getattr(found, name) for name in fittable(found)}
+        self._open_run(found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()}))

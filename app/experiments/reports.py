@@ -1,0 +1,227 @@
+"""Tabs on which long commands are started, followed and read: Reports, and what Fit has alike."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.experiments.jobs import OUT, SETTINGS, Job, follow
+from app.experiments.questions import TEXTS
+from app.state import PageState
+from app.widgets import button, changing_text, download, looks, wrapped
+from app.worker.references import has_reference
+from solver.checked import dump
+from solver.study.proof.report import PAGE
+
+WORDS: dict[str, str] = TEXTS["reports"]
+FIGURES, STUDY, STABILITY, PROOF = "The paper's figures", "Study", "Stability", "Proof"
+NO_REFERENCE = (
+    "The reference to measure errors by would take too long here: choose fewer bodies or "
+    "elements, or the command line."
+)
+LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
+KEPT = 12
+"""Reports that a server keeps for all of its pages."""
+FRAME = (
+    '<iframe title="{title}" srcdoc="{page}" '
+    'style="width: 100%; height: calc(100vh - 240px); min-height: 300px; border: 0"></iframe>'
+)
+Command = tuple[tuple[str, ...], tuple[tuple[str, str], ...]]
+"""Arguments, and the names and texts of files that these name."""
+Files = dict[str, bytes]
+DONE: dict[Command, Files] = {}
+"""Files of finished reports, by the command that wrote them."""
+
+
+class CommandTab(ABC):
+    """A tab with fields for a command, which is started there, and whose report is read there.
+
+    `job` is the command that is waiting or runs, `page` shows the report, `files` has buttons that
+    save what the command has written, which is kept in `done`; `buttons` are all buttons.
+    """
+
+    def __init__(
+        self, state: PageState, tab: str, done: dict[Command, Files], *fields: Any
+    ) -> None:
+        self.state, self._tab, self._done = state, tab, done
+        self.job: Job | None = None
+        self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
+        self.cancel_button = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
+        self._words = changing_text(margin=(0, 8))
+        self.progress = changing_text(margin=(6, 8))
+        self.files = pn.Row(margin=0)
+        self.buttons = wrapped(self.start_button, self.cancel_button, self.files)
+        self.page = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 8))
+        self.view = pn.Column(
+            self._words,
+            *fields,
+            self.buttons,
+            self.progress,
+            self.page,
+            sizing_mode="stretch_width",
+            css_classes=[tab.lower()],
+        )
+        state.param.watch(lambda event: self.show(), ["settings", "tab", "brought"])
+        follow(self.look, self.end)
+
+    @property
+    @abstractmethod
+    def command(self) -> Command:
+        """The command of the fields as they are."""
+
+    @property
+    @abstractmethod
+    def refusal(self) -> str:
+        """Why it cannot be started, or nothing."""
+
+    @property
+    @abstractmethod
+    def words(self) -> str:
+        """What it does."""
+
+    @property
+    def written(self) -> Files:
+        """What is shown: the files that the command of the fields has written."""
+        return self._done.get(self.command, {})
+
+    def start(self) -> None:
+        """Have the command run, in place of the one before."""
+        self.end()
+        self._running = self.command
+        arguments, texts = self._running
+        self.job = Job(arguments, dict(texts))
+        self.show()
+        self.look()
+
+    def cancel(self) -> None:
+        """End the command that runs."""
+        if self.job is not None:
+            self.job.cancel()
+            self.look()
+
+    def end(self) -> None:
+        """Leave nothing behind."""
+        if self.job is not None:
+            self.job.close()
+            self.job = None
+
+    def look(self) -> None:
+        """Follow the command that runs."""
+        job = self.job
+        if job is None:
+            return
+        kind = self._running[0][0].capitalize()
+        self.progress.object = f"{kind}: {job.progress}" if job.progress else ""
+        if not job.is_over:
+            return
+        if not job.failure:
+            self._done[self._running] = job.files
+            while len(self._done) > KEPT:
+                self._done.pop(next(iter(self._done)))
+        self.end()
+        self.show()
+
+    def show(self) -> None:
+        """Show what is chosen, and the report if there is one."""
+        if self.state.tab != self._tab:
+            return
+        is_busy, files = self.job is not None, self.written
+        self._words.object = f"{self.words} {self.refusal}"
+        label = "Do it again" if files else "Start"
+        self.start_button.param.update(disabled=is_busy or bool(self.refusal), label=label)
+        self.cancel_button.visible = is_busy
+        self.page.object = shown(files)
+        self.files[:] = [
+            download(name, name, lambda data=data: data, **LOOKS) for name, data in files.items()
+        ]
+
+
+class Reports(CommandTab):
+    """The tab of the reports of the command line; `kind` is the one that is chosen."""
+
+    def __init__(self, state: PageState) -> None:
+        self.kind = pmui.RadioButtonGroup(
+            label="",
+            options=list(WORDS),
+            value=FIGURES,
+            size="small",
+            margin=(6, 6),
+            **looks("words"),
+        )
+        self.repeats = pmui.Select(
+            label="Timed passes",
+            options=[3, 5, 9],
+            value=5,
+            width=130,
+            size="small",
+            description="How often each method runs; its median time counts.",
+            visible=self.kind.rx() == STUDY,
+        )
+        self.is_quick = pmui.Switch(
+            label="A quarter of the cases",
+            value=True,
+            margin=(10, 6),
+            visible=self.kind.rx() == STABILITY,
+        )
+        fields: Sequence[Any] = (self.kind, self.repeats, self.is_quick)
+        self._has_paused = False
+        super().__init__(state, "Reports", DONE, *fields)
+        for field in fields:
+            field.param.watch(lambda event: self.show(), "value")
+        self.show()
+        if not self.written:
+            self.start()
+
+    @property
+    def command(self) -> Command:
+        """The command of the report that is chosen."""
+        arguments = {
+            FIGURES: ["figures"],
+            STUDY: ["study", SETTINGS, "--repeats", str(self.repeats.value)],
+            STABILITY: ["stability", *["--quick"] * self.is_quick.value],
+            PROOF: ["proof"],
+        }[self.kind.value]
+        texts = ((SETTINGS, dump(self.state.settings)),) if SETTINGS in arguments else ()
+        return (*arguments, "--out", OUT), texts
+
+    @property
+    def refusal(self) -> str:
+        """Why it cannot be made, or nothing."""
+        is_refused = self.kind.value == STUDY and not has_reference(self.state.settings)
+        return NO_REFERENCE if is_refused else ""
+
+    @property
+    def words(self) -> str:
+        """What it is of."""
+        return WORDS[self.kind.value]
+
+    def start(self) -> None:
+        """Have the chosen report made; the page's run waits while methods are timed."""
+        super().start()
+        state = self.state
+        self._has_paused = self.kind.value == STUDY and state.running and not state.is_over
+        if self._has_paused:
+            state.pause()
+
+    def end(self) -> None:
+        """Leave nothing behind."""
+        super().end()
+        if self._has_paused:
+            self._has_paused = False
+            self.state.go_on()
+
+
+def shown(files: Files) -> str:
+    """The page among a report's files, in a frame; its links to runs lead to this server (HTML)."""
+    for name, data in files.items():
+        if name.endswith(".html"):
+            path = pn.state.location.pathname if pn.state.location is not None else ""
+            text = data.decode().replace(PAGE, path or "app")
+            text = text.replace("<style>", '<base target="_parent"><style>', 1)
+            return FRAME.format(title=escape(name), page=escape(text))
+    return ""

@@ -1,0 +1,205 @@
+"""Buttons that open and save files, and a dialog of what the columns of a table are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pandas as pd
+import panel as pn
+import panel_material_ui as pmui
+
+from app.files.tables import (
+    BOTH,
+    LOOP,
+    TABLES,
+    Content,
+    axes_on,
+    opened,
+    paths_of,
+    read_as,
+    renamed,
+    table_of,
+    use_of,
+)
+from app.refusals import message_of
+from app.state import PageState, default_settings
+from app.widgets import button, changing_text, dialog, download
+from solver.checked import dump
+from solver.definitions import about
+from solver.refusal import RefusedError
+from solver.settings import Settings
+from solver.study.measured_loop import MeasuredLoop
+from solver.tables import Table
+
+HELP = (
+    "Settings (.toml) that were saved here; or a table (.csv): of time and load; of displacement "
+    "and force, a measured loop, which is drawn beside the run; or of x, t and friction force or "
+    "displacement, as another program found them, which are drawn beside it, too."
+)
+HEADS = (
+    "A name for each column, with its unit in brackets, as in `time [s], displacement [mm], "
+    "force [kN]`. Others are passed over; one name more is that of the row's number."
+)
+SHOWN = 5
+"""Lines of a table that are shown."""
+
+
+class FilesPanel:
+    """Buttons that save settings and open files, and what was understood of these.
+
+    `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
+    """
+
+    def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
+        self._state, self._copy = state, copy
+        look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
+        outlined = {**look, "variant": "outlined"}
+        self._opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
+        self.file, self.message = self._opener.file, self._opener.message
+        self.view = pn.Column(
+            button("Copy link", self._copy_link, icon="link", **outlined),
+            download(
+                "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
+            ),
+            self._opener.view,
+            button("All settings to default", self._reset, icon="restart_alt", **outlined),
+            margin=0,
+        )
+
+    def _copy_link(self) -> None:
+        self.message.object = f"The link to what is shown is copied. {self._copy()}"
+
+    def _reset(self) -> None:
+        self._state.adopt(default_settings(self._state.settings.scene))
+
+
+class TableOpener:
+    """A button that opens a file, what was understood of it, and a dialog of its columns.
+
+    In the dialog `use` is what the table is used as, and `heads` are the names and units of its
+    columns. What is chosen holds at once.
+    """
+
+    def __init__(self, state: PageState, label: str, accept: str, width: int) -> None:
+        self._state, self._is_updating = state, False
+        self._table: Table | None = None
+        look: dict[str, Any] = {"margin": (4, 0), "size": "small", "width": width}
+        outlined = {**look, "variant": "outlined"}
+        self.file = pmui.FileInput(label=label, accept=accept, description=HELP, **outlined)
+        self.message = changing_text(margin=0)
+        self.columns_button = button(
+            "Columns and units", self.show, icon="view_column", visible=False, **outlined
+        )
+        self.remove_button = button("", self._forget, icon="close", **outlined)
+        wide: dict[str, Any] = {"size": "small", "margin": (6, 6), "sizing_mode": "stretch_width"}
+        self.use = pmui.Select(label="Use it as", **wide)
+        self.heads = pmui.TextInput(label="Columns", **wide)
+        self._rows = pn.pane.DataFrame(None, index=False, margin=(0, 6), max_height=190)
+        self._understood = changing_text(margin=(6, 6))
+        self.dialog = dialog(
+            "Columns and units",
+            *(self.use, self.heads, HEADS, self._rows, self._understood),
+            width_option="sm",
+        )
+        buttons = self.file, self.columns_button, self.remove_button
+        self.view = pn.Column(
+            pn.FlexBox(*buttons, margin=0, gap="0 8px"), self.message, self.dialog, margin=0
+        )
+        self.file.param.watch(lambda event: self._open(), "value")
+        for field in (self.use, self.heads):
+            field.param.watch(lambda event: self._reread(), "value")
+        state.param.watch(lambda event: self._on_brought(), "brought")
+        self._on_brought()
+
+    def show(self) -> None:
+        """Open the dialog, for the scene as it is now."""
+        self._offer(self.use.value)
+        self.dialog.open = True
+
+    def _open(self) -> None:
+        """Take a file as what it seems to be; of a loop the columns are shown."""
+        if not self.file.value:
+            return
+        source, data, settings = self.file.filename, self.file.value, self._state.settings
+        self._table = None
+        try:
+            contents, message = self._read(source, data)
+        except RefusedError as refused:
+            self._state.refusal = message = message_of(refused, settings)
+            contents = []
+        self.message.object = message
+        self.columns_button.visible = self._table is not None
+        self._take(contents)
+        if any(isinstance(content, MeasuredLoop) for content in contents):
+            self.show()
+
+    def _read(self, source: str, data: bytes) -> tuple[list[Content], str]:
+        state, axes = self._state, axes_on(self._state)
+        if (content := opened(source, data, state.settings)) is not None:
+            return content
+        self._table, self._source = table_of(data, source), source
+        names = [name.replace(",", " ") for name in names_of(self._table)]
+        cells = [cells + [""] * len(names) for _, cells in self._table.rows[:SHOWN]]
+        self._rows.object = pd.DataFrame([row[: len(names)] for row in cells], columns=names)
+        self._is_updating = True
+        self.heads.value = ", ".join(names)
+        self._is_updating = False
+        self._offer(LOOP)
+        use = use_of(self._table, state.settings, axes)
+        self._offer(use)
+        return read_as(use, self._table, source, state.settings, axes)
+
+    def _offer(self, use: str) -> None:
+        """Offer what a table may be used as in this scene."""
+        settings, axes = self._state.settings, axes_on(self._state)
+        units = {unit for _, unit in axes}
+        kinds = {"Measured loop": LOOP}
+        for name, definition in paths_of(settings).items():
+            title = about(definition).title
+            kinds[title] = name
+            if settings.curve_units(name)[1] in units:
+                kinds[f"Measured loop, and {title}"] = f"{BOTH}{name}"
+        self._is_updating = True
+        self.use.param.update(options=kinds, value=use if use in kinds.values() else LOOP)
+        self._is_updating = False
+
+    def _reread(self) -> None:
+        """Use the table as the dialog says."""
+        if self._is_updating or self._table is None:
+            return
+        settings, contents = self._state.settings, list[Content]()
+        try:
+            table = renamed(self._table, self.heads.value)
+            axes = axes_on(self._state)
+            contents, message = read_as(self.use.value, table, self._source, settings, axes)
+            self.message.object = message
+        except RefusedError as refused:
+            message = message_of(refused, settings)
+        self._understood.object = message
+        self._take(contents)
+
+    def _take(self, contents: list[Content]) -> None:
+        """Have the page show what was brought, or take settings over."""
+        for content in contents:
+            if isinstance(content, Settings):
+                self._state.adopt(content)
+            else:
+                self._state.brought = content
+
+    def _forget(self) -> None:
+        self.message.object = ""
+        self._state.brought = None
+
+    def _on_brought(self) -> None:
+        brought = self._state.brought
+        self.remove_button.visible = brought is not None
+        self.remove_button.label = f"Remove {brought.source}" if brought is not None else "Remove"
+
+
+def names_of(table: Table) -> list[str]:
+    """Names and units of the columns; of those without a name their numbers."""
+    return [
+        f"{column.name or place} [{column.unit}]" if column.unit else column.name or str(place)
+        for place, column in enumerate(table.columns, start=1)
+    ]
