@@ -95,7 +95,10 @@ class IncrementalContact:
         guesses = None if guess is None else guess[condensed.moving]
         kind = NewtonWithChangingFriction if own.ages or np.isfinite(own.cap).any() else Newton
         newton = kind(condensed, own, problem.rest, guesses, self._may_hold)
-        done = self._nothing_done()
+        n_moving, sizes = len(condensed.moving), condensed.gauge.shape
+        done = Marched(
+            *(np.zeros((size, problem.n_instants)) for size in (n_moving, n_moving, *sizes))
+        )
         ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
         for instant in range(problem.n_instants):
             if stop is not None and stop():
@@ -124,13 +127,6 @@ class IncrementalContact:
         if not self._is_analysed:
             self._is_analysed, self._collapse = True, collapse_of(self._problem)
         return self._collapse is None or instant < self._collapse.instant
-
-    def _nothing_done(self) -> Marched:
-        """Allocate what instants are written into."""
-        condensed = self._condensed
-        n_moving, (n_base, n_motions) = len(condensed.moving), condensed.gauge.shape
-        sizes = n_moving, n_moving, n_base, n_motions
-        return Marched(*(np.zeros((size, self._problem.n_instants)) for size in sizes))
 
     def _judged(self, done: Marched, reached: Flags) -> Reference:
         """All fields, and how far they are from equilibrium and laws."""

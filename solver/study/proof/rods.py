@@ -10,8 +10,8 @@ import numpy as np
 from solver.discrete.cross_section import mooring
 from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
+from solver.reference.closed_forms.masing import energy_of_cycle
 from solver.reference.closed_forms.pulled_bar import (
-    cycled_compliant_bar,
     pulled_changing_bar,
     pulled_compliant_bar,
 )
@@ -98,7 +98,12 @@ def _cycled(answer: Answer) -> Iterator[Number]:
 
 
 def _sprung_cycle(answer: Answer) -> Iterator[Number]:
-    return _loop(answer, *cycled_compliant_bar(PEAK, *_sprung(answer)))
+    """By Masing's rule."""
+
+    def grown(force: float) -> float:
+        return pulled_compliant_bar(force, *_sprung(answer))[0]
+
+    return _loop(answer, grown(PEAK) - 2.0 * grown(0.5 * PEAK), energy_of_cycle(PEAK, grown))
 
 
 def _loop(answer: Answer, back: float, energy: float) -> Iterator[Number]:
