@@ -30,7 +30,7 @@ from solver.reference.search import Minimum, Search, Tridiagonal
 from solver.reference.solution import Interrupted, Reference
 
 DEARER = 30
-"""Points that make a system of the general solver cost one more of the band's (measured)."""
+"""Points that make a system of the general solver cost one more of this one (measured)."""
 TRIALS = 50
 """Sets of points of the strength that are passed within an instant, at most."""
 BALANCED = 1e-6
