@@ -70,7 +70,9 @@ class IncrementalRod:
         if not rubs_on_supports(problem):
             raise ValueError("this solver knows Coulomb's friction of known bound on supports")
         self._dofs, self._rules = points_dofs(problem), rules_of(problem)
-        self._stiffness = Tridiagonal.of(assembled_stiffness(problem))
+        # Degrees of freedom are numbered along one rod after the other.
+        whole = assembled_stiffness(problem)
+        self._stiffness = Tridiagonal(whole.diagonal(), whole.diagonal(1))
         self._fixed, prescribed = problem.prescribed
         # The steps of the load and of the supports, one row an instant.
         self._load_steps = np.diff(external_force(problem).T, axis=0, prepend=0.0)

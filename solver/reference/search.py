@@ -16,7 +16,6 @@ from typing import Self
 
 import numpy as np
 from numpy.linalg import LinAlgError
-from scipy import sparse
 from scipy.linalg import blas, lapack
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
@@ -54,11 +53,6 @@ class Tridiagonal:
         sums[1:] += np.abs(beside)
         sums[:-1] += np.abs(beside)
         self.largest_row = float(sums.max())
-
-    @classmethod
-    def of(cls, matrix: sparse.csr_array) -> Self:
-        """The stiffness of rods, whose degrees of freedom are numbered one rod after the other."""
-        return cls(matrix.diagonal(), matrix.diagonal(1))
 
     def stiffened(self, slipping: Array) -> Self:
         """The matrix with more on its diagonal, or less, where degrees of freedom are not held."""
