@@ -9,9 +9,8 @@ from solver.definitions import SettingError
 from solver.discrete.probes import AxialForce
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
-from solver.reference.distance import distance_to
+from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.study.quantities import QUANTITIES

@@ -15,8 +15,8 @@ from small_scenes import SMALL
 from solver import report_commands
 from solver.cli import main
 from solver.latin import Ending
+from solver.reference.distance import kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
 from solver.study.stability.draws import draw, random_case

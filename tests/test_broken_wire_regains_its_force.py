@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver.latin import Ending, solve
-from solver.reference.closed_forms.broken_wire import broken_wire
+from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings

@@ -15,9 +15,8 @@ from solver.discrete import Given, Side, Support
 from solver.discrete.rods import End, Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Contact, FrictionLaw, Strength
-from solver.reference.distance import distance_to
+from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 

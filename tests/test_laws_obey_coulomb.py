@@ -140,8 +140,8 @@ def test_the_local_stage_obeys_every_law_along_its_search_direction(substructure
 
     rounding = 8.0 * EPS * np.abs(k[:, None] * incoming).max()
     support, load, law = (problem.interfaces[name] for name in ("support", "load", "friction"))
-    assert np.array_equal(displacement[support.rows], support.displacement)
-    assert np.all(np.abs(force[load.rows] - load.force) <= rounding)
+    assert np.array_equal(displacement[support.rows], support.values)
+    assert np.all(np.abs(force[load.rows] - load.values) <= rounding)
     for name, cut in problem.interfaces.items():
         if name.startswith("cut"):
             assert np.array_equal(displacement[cut.first], displacement[cut.second])

@@ -172,7 +172,7 @@ def test_work_on_a_closed_cycle_is_stored_or_dissipated(scene):
     for side in ("top", "right"):
         if side in problem.interfaces:
             rows = problem.interfaces[side].rows
-            prescribed = problem.interfaces[side].displacement
+            prescribed = problem.interfaces[side].values
             external += work(iterate.boundary_force[rows], prescribed, first)
     for part in problem.substructures:
         if part.body_force is not None:

@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
-from solver.reference.distance import distance_to
+from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings
 from solver.scenes.method import method_of

@@ -12,9 +12,8 @@ from solver.definitions import about
 from solver.files import settings_from_command
 from solver.latin import solve
 from solver.laws import FrictionLaw
-from solver.reference.distance import distance_to
+from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE, discretise, exact_of, features_of, law_of
 from solver.scenes.method import method_of
 from solver.study.quantities.cycle_measures import has_a_limit

@@ -12,10 +12,9 @@ from solver.discrete.bricks import bonded, with_opening
 from solver.discrete.wall import Wall
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import FrictionLaw, Strength
-from solver.reference.distance import distance_to
+from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
-from solver.reference.residual import kkt_residual
 from solver.scenes import CATALOGUE
 
 TIMES = np.linspace(0.0, 1.0, 21)

@@ -21,7 +21,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.contact_groups import ContactGroup, grouped
 from solver.discrete.substructure import Substructure
-from solver.laws import Contact, Interface, RowValues
+from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
 
 if TYPE_CHECKING:
     from solver.discrete.inside import Inside
@@ -149,16 +149,14 @@ class Problem:
         return {name: slice(*span) for name, span in zip(self.rubbing, pairwise(ends), strict=True)}
 
     @cached_property
-    def given_forces(self) -> list[RowValues]:
-        """Forces that are prescribed, interface by interface."""
-        laws = self.interfaces.values()
-        return [law.given_force for law in laws if law.given_force is not None]
+    def given_forces(self) -> list[Neumann]:
+        """Interfaces whose force is prescribed."""
+        return [law for law in self.interfaces.values() if isinstance(law, Neumann)]
 
     @cached_property
-    def given_displacements(self) -> list[RowValues]:
-        """Displacements that are prescribed, interface by interface."""
-        laws = self.interfaces.values()
-        return [law.given_displacement for law in laws if law.given_displacement is not None]
+    def given_displacements(self) -> list[Dirichlet]:
+        """Interfaces whose displacement is prescribed."""
+        return [law for law in self.interfaces.values() if isinstance(law, Dirichlet)]
 
     @cached_property
     def is_held(self) -> NDArray[np.bool_]:
@@ -168,7 +166,8 @@ class Problem:
     @cached_property
     def cuts(self) -> list[tuple[Indices, Indices]]:
         """Rows of both sides of the glued cuts, interface by interface."""
-        return [law.joined for law in self.interfaces.values() if law.joined is not None]
+        glued = [law for law in self.interfaces.values() if isinstance(law, Perfect)]
+        return [(law.first, law.second) for law in glued]
 
     @cached_property
     def sliding(self) -> tuple[Indices, Array]:

@@ -1,11 +1,10 @@
 """Interface laws: objects that own all that is said about them, all points at once."""
 
 from solver.laws.around import Bodies, PointOfBody, Rod
-from solver.laws.boundary import Dirichlet, Neumann
 from solver.laws.contact import OPEN, Contact
 from solver.laws.friction import Friction, FrictionLaw
-from solver.laws.interface import Component, Interface, RowValues
-from solver.laws.perfect import Perfect
+from solver.laws.interface import Component, Interface
+from solver.laws.linear import Dirichlet, Neumann, Perfect
 from solver.laws.play import Strength
 from solver.laws.unilateral import Unilateral
 
@@ -22,7 +21,6 @@ __all__ = [
     "Perfect",
     "PointOfBody",
     "Rod",
-    "RowValues",
     "Strength",
     "Unilateral",
 ]

@@ -18,7 +18,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.laws.around import Around, Rod
-from solver.laws.friction import Friction
+from solver.laws.friction import Friction, FrictionRule
 from solver.laws.interface import (
     Component,
     Gaps,
@@ -178,7 +178,7 @@ class Contact(Interface):
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Law for one k; contact comes first, because only it says what friction can carry."""
-        along = self.tangential.rule(k, n_instants)
+        along = FrictionRule(self.tangential, k, n_instants)
         if self.normal is None:
             return along
         bonds = bool(self.tangential.bound.any())

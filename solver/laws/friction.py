@@ -239,10 +239,6 @@ class Friction:
             start=_joined([law.start for law in laws], laws, 0.0),
         )
 
-    def rule(self, k: Array, n_instants: int) -> FrictionRule:
-        """Law that is ready for one k, and so many instants."""
-        return FrictionRule(self, k, n_instants)
-
 
 def is_intact(opening: Array, pressing: Array) -> Array:
     """1 up to the first instant at which a pair has opened, then 0; (n_pairs, n_instants) all."""

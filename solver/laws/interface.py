@@ -80,21 +80,6 @@ class Springs:
         displacement[self._above] = incoming[self._above] + (moved - under)
 
 
-class RowValues(NamedTuple):
-    """What is given at rows.
-
-    Attributes
-    ----------
-    rows
-        Shape (n,).
-    values
-        Displacements, or forces on the body, shape (n, n_instants), scaled.
-    """
-
-    rows: Indices
-    values: Array
-
-
 class MacroPart(NamedTuple):
     """Rows whose macro forces are in equilibrium (paper, eq. 1).
 
@@ -168,21 +153,6 @@ class Interface(ABC):
     def macro_parts(self) -> Iterator[MacroPart]:
         """Macro forces that are in equilibrium in the coarse problem."""
         return iter(())
-
-    @property
-    def given_force(self) -> RowValues | None:
-        """Forces that are prescribed here, or None."""
-        return None
-
-    @property
-    def given_displacement(self) -> RowValues | None:
-        """Displacements that are prescribed here, or None."""
-        return None
-
-    @property
-    def joined(self) -> tuple[Indices, Indices] | None:
-        """Rows that move together, shape (n,) each, or None."""
-        return None
 
     @property
     def acts(self) -> bool:

@@ -18,7 +18,7 @@ WALK_FROM_POINTS = 150
 """From this many points on, the walk beats the scan (measured: between 60 and 211)."""
 
 
-def play(target: Array, reach: Array, start: Array | None = None) -> Array:
+def play(target: Array, reach: Array) -> Array:
     """Follow a target with Coulomb play.
 
     Parameters
@@ -27,15 +27,13 @@ def play(target: Array, reach: Array, start: Array | None = None) -> Array:
         Position that the point would take without friction, shape (n_points, n_times), m.
     reach
         Distance at which it starts to slip, same shape or (n_points,), m; non-negative.
-    start
-        Position before, shape (n_points,), m; None is zero.
 
     Returns
     -------
     Position with friction, shape (n_points, n_times), m (solver/README.md, 2).
     """
     reach = reach if reach.ndim == target.ndim else reach[:, None]
-    result: Array = Play(target.shape[0], target.shape[1], start)(target, reach).copy()
+    result: Array = Play(*target.shape)(target, reach).copy()
     return result
 
 

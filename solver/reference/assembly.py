@@ -57,3 +57,22 @@ def jumps(problem: Problem) -> sparse.csr_array:
             first += len(law.positions)
     entries = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))
+
+
+def separated(load: Array) -> tuple[Array, Array]:
+    """Write loads, (n, n_instants), as patterns (n, rank) times courses, exact up to rounding.
+
+    A structure has few patterns of load, and instants many: so there is less to solve for. Where
+    it has many patterns, every instant counts as one.
+    """
+    patterns, rest = np.zeros((0, len(load))), load.copy()
+    smallest = float(np.finfo(float).eps * np.abs(load).max(initial=0.0))
+    while len(patterns) < load.shape[1] // 2:
+        largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())
+        pattern = rest[:, largest] - patterns.T @ (patterns @ rest[:, largest])
+        if np.abs(pattern).max(initial=0.0) <= smallest:
+            return patterns.T, patterns @ load
+        pattern /= np.linalg.norm(pattern)
+        patterns = np.vstack([patterns, pattern])
+        rest -= pattern[:, None] * (pattern @ rest)
+    return load, np.eye(load.shape[1])

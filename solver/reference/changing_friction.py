@@ -22,7 +22,6 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import CONVERGED, NEWTON_LIMIT, Marched, Newton
 from solver.reference.rules import HELD, Increment, Rules, Sides, States
-from solver.reference.unloading import unload
 
 SETTLED = 1e-12
 """Share of the largest force by which friction may differ from its law."""
@@ -49,7 +48,7 @@ class NewtonWithChangingFriction(Newton):
         rules: Rules,
         rest: Array | None,
         guesses: States | None,
-        may_hold: Callable[[int], bool] = lambda _: True,
+        may_hold: Callable[[int], bool],
     ) -> None:
         super().__init__(condensed, rules, rest, guesses, may_hold)
         self._gone = np.zeros_like(rules.gap)
@@ -139,12 +138,7 @@ class NewtonWithChangingFriction(Newton):
         rules = replace(self._rules, friction=self._rules.friction * factor[:, 0])
         self.response.set_friction(rules.friction, np.zeros_like(rules.friction))
         given = replace(sides, bound=sides.bound * factor)
-        for states in guesses:
-            solved = self._iterate(states, given)
-            if solved is not None:
-                return Reached(*solved, self._slip_of(solved[1], sides))
-        beyond = unload(self.response, rules, given)
-        solved = None if beyond is None else self._iterate(beyond, given)
+        solved = self._from_any(guesses, given) or self._unloaded(rules, given)
         return None if solved is None else Reached(*solved, self._slip_of(solved[1], sides))
 
     def _slip_of(self, step: Increment, sides: Sides) -> Array:

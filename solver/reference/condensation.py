@@ -33,8 +33,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force, jumps
-from solver.reference.dense import blocks, symmetrise
+from solver.reference.assembly import assembled_stiffness, external_force, jumps, separated
 from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of
 
@@ -53,6 +52,9 @@ slender bodies are 1e7 times those of contact."""
 
 TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
+
+BLOCK = 500
+"""Columns of a dense matrix at a time, where more would fill the memory."""
 
 
 class NoReferenceError(ValueError):
@@ -135,13 +137,13 @@ class Condensation:
         strained = sparse.csr_array(stiffness @ self._jumped)
         self._pulled = sparse.csr_array(self._glued.T @ strained)
         self._factor = factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
-        patterns, course = _separated(load)
+        patterns, course = separated(load)
         self._alone = self._solved(self._glued.T @ patterns) @ course
         load = self._jumped.T @ load - self._pulled.T @ self._alone
         whole = (self._jumped.T @ strained).toarray(order="C")
-        for columns in blocks(len(whole)):
+        for columns in _blocks(len(whole)):
             whole[:, columns] -= self._pulled.T @ self._solved(self._pulled[:, columns].toarray())
-        symmetrise(whole)
+        _symmetrise(whole)
         self._tie(whole)
         self.stiffness: Array = whole
         self.load: Array = self._balanced(load) + whole @ self._given_of_base
@@ -172,7 +174,7 @@ class Condensation:
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
         size = float(np.diagonal(stiffness).mean())
-        for rows in blocks(len(stiffness)):
+        for rows in _blocks(len(stiffness)):
             more = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
             stiffness[rows] -= more
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
@@ -253,25 +255,6 @@ def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
     return motions, np.asarray(base @ motions)
 
 
-def _separated(load: Array) -> tuple[Array, Array]:
-    """Write loads, (n, n_instants), as patterns (n, rank) times courses, exact up to rounding.
-
-    A structure has few patterns of load, and instants many: so there is less to solve for. Where
-    it has many patterns, every instant counts as one.
-    """
-    patterns, rest = np.zeros((0, len(load))), load.copy()
-    smallest = float(np.finfo(float).eps * np.abs(load).max(initial=0.0))
-    while len(patterns) < load.shape[1] // 2:
-        largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())
-        pattern = rest[:, largest] - patterns.T @ (patterns @ rest[:, largest])
-        if np.abs(pattern).max(initial=0.0) <= smallest:
-            return patterns.T, patterns @ load
-        pattern /= np.linalg.norm(pattern)
-        patterns = np.vstack([patterns, pattern])
-        rest -= pattern[:, None] * (pattern @ rest)
-    return load, np.eye(load.shape[1])
-
-
 def factored(matrix: sparse.csc_array) -> SuperLU:
     """Factor a stiffness, shape (n, n); NotHeldError where something moves that costs no force."""
     try:
@@ -287,6 +270,20 @@ def factored(matrix: sparse.csc_array) -> SuperLU:
     if np.any(pivots <= LOOSE * matrix.diagonal()[np.argsort(factor.perm_c)]):
         raise NotHeldError(_NOT_HELD)
     return factor
+
+
+def _blocks(size: int) -> list[slice]:
+    """Slices of as many columns, or rows, as are taken at a time."""
+    return [slice(first, first + BLOCK) for first in range(0, size, BLOCK)]
+
+
+def _symmetrise(matrix: Array) -> None:
+    """Replace a square matrix by the mean of it and its transpose."""
+    for rows in _blocks(len(matrix)):
+        others = slice(rows.start, None)
+        mean = matrix[rows, others] + matrix[others, rows].T
+        mean *= 0.5
+        matrix[rows, others], matrix[others, rows] = mean, mean.T
 
 
 _NOT_HELD = (

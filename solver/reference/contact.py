@@ -22,6 +22,7 @@ from solver.laws import OPEN
 from solver.laws.play import follow, play
 from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, TooLargeError
+from solver.reference.distance import broken_laws
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
 from solver.reference.rules import Rules, States, rules_of
@@ -94,7 +95,10 @@ class IncrementalContact:
         guesses = None if guess is None else guess[condensed.moving]
         kind = NewtonWithChangingFriction if own.ages or np.isfinite(own.cap).any() else Newton
         newton = kind(condensed, own, problem.rest, guesses, self._may_hold)
-        done = self._nothing_done()
+        n_moving, sizes = len(condensed.moving), condensed.gauge.shape
+        done = Marched(
+            *(np.zeros((size, problem.n_instants)) for size in (n_moving, n_moving, *sizes))
+        )
         ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
         for instant in range(problem.n_instants):
             if stop is not None and stop():
@@ -124,13 +128,6 @@ class IncrementalContact:
             self._is_analysed, self._collapse = True, collapse_of(self._problem)
         return self._collapse is None or instant < self._collapse.instant
 
-    def _nothing_done(self) -> Marched:
-        """Allocate what instants are written into."""
-        condensed = self._condensed
-        n_moving, (n_base, n_motions) = len(condensed.moving), condensed.gauge.shape
-        sizes = n_moving, n_moving, n_base, n_motions
-        return Marched(*(np.zeros((size, self._problem.n_instants)) for size in sizes))
-
     def _judged(self, done: Marched, reached: Flags) -> Reference:
         """All fields, and how far they are from equilibrium and laws."""
         problem, condensed, rules = self._problem, self._condensed, self._rules
@@ -143,7 +140,11 @@ class IncrementalContact:
         slip = np.diff(moved, axis=1, prepend=0.0)
         slip += condensed.jump(condensed.motions @ done.motion)
         opening = moved + condensed.jump(rigid) + rules.gap[:, None]
-        unbalanced = _unbalanced(condensed, rules, deformation, forces, opening, slip)
+        wrong = broken_laws(rules, condensed.unit, forces, opening, slip)
+        # The force of a normal jump that is prescribed is not determinate, so it has no law.
+        wrong[np.setdiff1d(np.flatnonzero(rules.normal), condensed.moving)] = 0.0
+        wrong = np.concatenate([wrong, np.abs(condensed.unbalanced(deformation, forces))])
+        unbalanced = wrong.max(axis=0, initial=0.0)
         slip[condensed.moving] = done.slip
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
@@ -169,33 +170,6 @@ def jumps_in(problem: Problem) -> int:
     """Number of components of contact that `IncrementalContact` condenses."""
     laws = problem.rubbing.values()
     return sum(len(component.above) for law in laws for component in law.components)
-
-
-def _unbalanced(
-    condensed: Condensation,
-    rules: Rules,
-    deformation: Array,
-    force: Array,
-    opening: Array,
-    slip: Array,
-) -> Array:
-    """KKT residual of every instant, a force, scaled.
-
-    The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
-    opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness
-    r of the pair makes a force of a length; the conditions hold if and only if both distances
-    vanish.
-    """
-    unit = condensed.unit[:, None]
-    bound = rules.bounds(force, slip, opening)
-    pressed = np.maximum(force - unit * opening, 0.0)
-    rubbed = np.clip(force - unit * slip, -bound, bound)
-    wrong = np.abs(force - np.where(rules.normal[:, None], pressed, rubbed))
-    # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
-    moving = np.isin(np.arange(len(force)), condensed.moving)
-    wrong[rules.normal & ~moving] = 0.0
-    unbalanced = np.abs(condensed.unbalanced(deformation, force)).max(axis=0, initial=0.0)
-    return np.asarray(np.maximum(unbalanced, wrong.max(axis=0, initial=0.0)))
 
 
 def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Errors: distances to a reference (solver/README.md, 4)."""
+"""Errors: how far fields are from a reference (solver/README.md, 4), and from their equations."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, jumps
+from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.glued import self_stresses
-from solver.reference.rules import rules_of
+from solver.reference.rules import Rules, rules_of
 
 VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
@@ -21,6 +21,9 @@ VANISHING = 1e-8
 LEAST_SHARE = 0.01
 """Share of pressure and friction together that each of them counts as, at least: a friction that is
 next to nothing beside the pressure that it comes from has no digits that a run could find."""
+ELASTIC = 1e-4
+"""Share of the forces inside elements that counts like a contact force: they leave so much more
+rounding. In slender bodies they are 1e5 times what acts on them."""
 
 
 class Fields(Protocol):
@@ -171,3 +174,56 @@ def determinate_forces(problem: Problem) -> Flags:
     ring = np.any(self_stresses(free_jumps, rules.compliance[moving] == 0.0) != 0.0, axis=1)
     moves[moving[ring]] = False
     return np.asarray(moves[:, None] | slips)
+
+
+def kkt_residual(fields: Fields, problem: Problem) -> float:
+    """Largest violation of equilibrium and laws, as a share of the forces in play.
+
+    By the equations alone, at every instant, however the fields were found.
+
+    Parameters
+    ----------
+    fields
+        Displacement and contact force, SI.
+    problem
+        Whose equations they should obey.
+
+    Returns
+    -------
+    Relative to the largest contact force, or to a small share of what the displacement alone makes
+    of forces inside elements, which rounding is a share of; and to the load where all vanish.
+    """
+    displacement = fields.displacement / problem.scales.displacement
+    force = fields.contact_force / problem.scales.force
+    stiffness, all_jumps = assembled_stiffness(problem), jumps(problem)
+    outer = external_force(problem)
+    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
+    inner = stiffness @ displacement
+    unbalanced = (inner - outer - all_jumps.T @ force)[free]
+    elastic = abs(stiffness) @ np.abs(displacement)
+    size = max(
+        float(np.abs(part).max(initial=0.0)) for part in (ELASTIC * elastic, ELASTIC * outer, force)
+    )
+    rules = rules_of(problem)
+    # Lengths become forces by the stiffness of the jump's own degrees of freedom.
+    unit = abs(all_jumps) @ stiffness.diagonal()
+    unit = unit / (1.0 + unit * rules.compliance)
+    jump = all_jumps @ displacement + rules.compliance[:, None] * force
+    opening, slip = jump + rules.gap[:, None], np.diff(jump, axis=1, prepend=0.0)
+    broken = broken_laws(rules, unit, force, opening, slip) * determinate_forces(problem)
+    largest = max(float(np.abs(part).max(initial=0.0)) for part in (unbalanced, broken))
+    return largest / size if size > 0.0 else largest
+
+
+def broken_laws(rules: Rules, unit: Array, force: Array, opening: Array, slip: Array) -> Array:
+    """How far contacts are from their laws, as forces, shape (n_forces, n_instants), scaled.
+
+    It is the distance of the normal force from (f - r g)+ with the opening g, and of the friction
+    force from f - r v cut to its bound, with the slip v. A stiffness r of the pair, `unit`, of
+    shape (n_forces,), makes a force of a length; laws hold if and only if the distances vanish.
+    """
+    unit = unit[:, None]
+    bound = rules.bounds(force, slip, opening)
+    pressed = np.maximum(force - unit * opening, 0.0)
+    rubbed = np.clip(force - unit * slip, -bound, bound)
+    return np.abs(force - np.where(rules.normal[:, None], pressed, rubbed))

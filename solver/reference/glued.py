@@ -42,6 +42,13 @@ def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]
     return int(count), number
 
 
+def _is_forest(jumps: sparse.csr_array) -> bool:
+    """Whether there is no ring: no jump that depends on others."""
+    size, ground = jumps.shape
+    trees, _ = trees_of(graph_of(jumps), ground)
+    return bool(size + trees == ground + 1)
+
+
 def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_array]:
     """T and Z.
 
@@ -110,10 +117,21 @@ def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
     rigid
         Jumps with nothing in series, shape (n_jumps,): what has tells its own force.
     """
-    stresses = _of_rigid(jumps[np.flatnonzero(rigid)])
-    whole = np.zeros((len(rigid), stresses.shape[1]))
-    whole[rigid] = stresses
-    return whole
+    size, places = len(rigid), np.flatnonzero(rigid)
+    jumps = jumps[places]
+    if _is_forest(jumps):
+        return np.zeros((size, 0))
+    products = sparse.csr_array(jumps @ jumps.T)
+    _, group = connected_components(products, directed=False)
+    stresses = []
+    for number in np.flatnonzero(_rings(jumps, group)):
+        members = np.flatnonzero(group == number)
+        values, vectors = np.linalg.eigh(products[members][:, members].toarray())
+        null = vectors[:, values < NONE]
+        whole = np.zeros((size, null.shape[1]))
+        whole[places[members]] = np.where(np.abs(null) > NONE, null, 0.0)
+        stresses.append(whole)
+    return np.concatenate(stresses, axis=1)
 
 
 def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_array]:
@@ -130,12 +148,10 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     what all jumps are of them, shape (n_jumps, n_base).
     """
     size = len(rigid)
-    edges = graph_of(jumps)
-    trees, _ = trees_of(edges, jumps.shape[1])
-    if rigid.all() or size + trees == jumps.shape[1] + 1:  # a forest: no ring
+    if rigid.all() or _is_forest(jumps):
         return np.arange(size), sparse.csr_array(sparse.eye_array(size))
     dear = np.where(rigid, 1.0, 2.0)
-    first, last = edges
+    first, last = edges = graph_of(jumps)
     # Of edges that join the same two points SciPy would take the sum of both for one.
     order = np.lexsort((np.arange(size), dear, last, first))
     new = np.ones(size, dtype=bool)
@@ -158,24 +174,6 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     ties = sparse.csr_array((values, (rows, columns)), shape=(size, len(base)))
     ties.eliminate_zeros()
     return base, ties
-
-
-def _of_rigid(jumps: sparse.csr_array) -> Array:
-    size, ground = jumps.shape
-    trees, _ = trees_of(graph_of(jumps), ground)
-    if size + trees == ground + 1:  # a forest: no ring
-        return np.zeros((size, 0))
-    products = sparse.csr_array(jumps @ jumps.T)
-    _, group = connected_components(products, directed=False)
-    stresses = []
-    for number in np.flatnonzero(_rings(jumps, group)):
-        members = np.flatnonzero(group == number)
-        values, vectors = np.linalg.eigh(products[members][:, members].toarray())
-        null = vectors[:, values < NONE]
-        whole = np.zeros((size, null.shape[1]))
-        whole[members] = np.where(np.abs(null) > NONE, null, 0.0)
-        stresses.append(whole)
-    return np.concatenate(stresses, axis=1)
 
 
 def _rings(jumps: sparse.csr_array, group: Indices) -> Indices:

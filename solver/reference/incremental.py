@@ -18,19 +18,21 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
+from numpy.linalg import LinAlgError
 
-from solver.arrays import Array
+from solver.arrays import Array, at_instant
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
-from solver.reference.band import Band
 from solver.reference.condensation import LEFT_INSIDE, NoReferenceError
 from solver.reference.contact import IncrementalContact
-from solver.reference.rules import Starts, States
-from solver.reference.search import Minimum, Search, bounds_of, least_with_changing_bound
+from solver.reference.rules import Starts, States, rules_of
+from solver.reference.search import Minimum, Search, Tridiagonal
 from solver.reference.solution import Interrupted, Reference
 
 DEARER = 30
-"""Points that make a system of the general solver cost one more of the band's (measured)."""
+"""Points that make a system of the general solver cost one more of this one (measured)."""
+TRIALS = 50
+"""Sets of points of the strength that are passed within an instant, at most."""
 BALANCED = 1e-6
 """KKT residual over all that acts up to which an instant is solved; rounding leaves 1e-15, and more
 beside loads of 1e9 times what friction holds."""
@@ -67,16 +69,18 @@ class IncrementalRod:
         self._problem = problem
         if not rubs_on_supports(problem):
             raise ValueError("this solver knows Coulomb's friction of known bound on supports")
-        self._dofs = points_dofs(problem)
-        self._band = Band(assembled_stiffness(problem))
+        self._dofs, self._rules = points_dofs(problem), rules_of(problem)
+        # Degrees of freedom are numbered along one rod after the other.
+        whole = assembled_stiffness(problem)
+        self._stiffness = Tridiagonal(whole.diagonal(), whole.diagonal(1))
         self._fixed, prescribed = problem.prescribed
         # The steps of the load and of the supports, one row an instant.
         self._load_steps = np.diff(external_force(problem).T, axis=0, prepend=0.0)
         self._moves = np.diff(prescribed.T, axis=0, prepend=0.0)
         self._movable = np.ones(problem.n_dofs)
         self._movable[self._fixed] = 0.0
-        self._bounds = bounds_of(problem)
-        self._search = self._search_within(self._bounds[0].first)
+        self._search = self._search_within(self._bound(0))
+        self._systems = 0
 
     @cached_property
     def _general(self) -> IncrementalContact:
@@ -100,59 +104,102 @@ class IncrementalRod:
             points for it.
         """
         start, starts = time.perf_counter(), Starts()
-        band, solved = self._band, self._band.solutions
+        self._systems = 0
         minima: list[Minimum] = []
         balance, status, gone = np.zeros((3, self._problem.n_dofs))
-        guessed = status.copy()
         for instant in range(self._problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and band.solutions - solved >= most:
+            if most is not None and self._systems >= most:
                 break
-            done, from_guess = band.solutions, starts.from_guess
-            begin = status
+            done, from_guess = self._systems, starts.from_guess
             if guess is not None and from_guess:
-                guessed[self._dofs] = guess[:, instant]
-                begin = guessed
-            least = self._minimise(instant, self._load_steps[instant] + balance, begin, gone)
+                status = self._on_dofs(guess[:, instant])
+            least = self._minimise(instant, self._load_steps[instant] + balance, status, gone)
             if least is None:
                 dearer = 1 + len(self._dofs) // DEARER
                 return self._general.march(guess, most and most // dearer, stop)
             minima.append(least)
-            starts.took(band.solutions - done, from_guess=from_guess)
+            starts.took(self._systems - done, from_guess=from_guess)
             balance, status = least.pull, least.status
             gone = gone + np.abs(least.increment)
-        seconds = time.perf_counter() - start
-        return self._gathered(minima, band.solutions - solved, seconds)
+        return self._gathered(minima, time.perf_counter() - start)
+
+    def _on_dofs(self, values: Array | States) -> Array:
+        """Values of the points that rub, (n_points,), and 0 elsewhere, (n_dofs,)."""
+        spread = np.zeros(self._problem.n_dofs)
+        spread[self._dofs] = values
+        return spread
+
+    def _bound(self, instant: int) -> Array:
+        """Friction bound before any slip, shape (n_dofs,), scaled."""
+        return self._on_dofs(at_instant(self._rules.bound, instant)[:, 0])
+
+    def _search_within(self, bound: Array) -> Search:
+        return Search(self._stiffness, bound * self._movable, self._movable)
 
     def _minimise(self, instant: int, force: Array, status: Array, gone: Array) -> Minimum | None:
         """Minimise phi over one instant, from a guess of the statuses; None where it has none.
 
         `gone` is the slip accumulated before; all have shape (n_dofs,).
         """
-        move = self._moves[instant]
+        move, rules = self._moves[instant], self._rules
         given = np.zeros(len(force))
         given[self._fixed] = move
-        is_constant = len(self._bounds) == 1
-        bounds = self._bounds[0 if is_constant else instant]
-        search = self._search if is_constant else self._search_within(bounds.first)
-        load = self._movable * (force - self._band.product(given))
-        status = status * search.rubs
+        load = self._movable * (force - self._stiffness.product(given))
+        bound = self._bound(instant)
         least: Minimum | None
-        if bounds.stay:
-            least = search(load, status)
+        if rules.ages:
+            least = self._with_changing_bound(bound, load, status, gone)
         else:
-            least = least_with_changing_bound(self._band, bounds, self._movable, load, status, gone)
+            search = self._search
+            if rules.bound.shape[1] > 1:
+                search = self._search_within(bound)
+            done = search.solutions
+            least = search(load, status * search.rubs)
+            self._systems += search.solutions - done
         if least is not None:
             least.increment[self._fixed] = move
-            reached = bounds.at(gone + np.abs(least.increment))
-            least.pull[self._fixed] = reached[self._fixed] * np.sign(move)
+            if rules.ages:
+                slipped = gone + np.abs(least.increment)
+                bound *= self._on_dofs(rules.factor(slipped[self._dofs]))
+            least.pull[self._fixed] = bound[self._fixed] * np.sign(move)
         return least
 
-    def _search_within(self, bound: Array) -> Search:
-        return Search(self._band, bound * self._movable, self._movable)
+    def _with_changing_bound(
+        self, first: Array, force: Array, status: Array, gone: Array
+    ) -> Minimum | None:
+        """Minimum that the instant before certainly goes over into, None where that is not sure.
 
-    def _gathered(self, minima: list[Minimum], steps: int, seconds: float) -> Reference:
+        Which points of the strength are passed within the instant is found by trial. It is sure if
+        the structure is stable where points slip, however far they have softened on the way: then
+        no other minimum slips there alone.
+        """
+        rules, movable, dofs, end = self._rules, self._movable, self._dofs, gone
+        for _ in range(TRIALS):
+            factor, slope = rules.factor(end[dofs]), rules.growth(end[dofs])
+            slope = first * self._on_dofs(slope) * movable
+            bound = (first * self._on_dofs(factor) - slope * (end - gone)) * movable
+            search = Search(self._stiffness.stiffened(slope), bound, movable)
+            try:
+                least = search(force, status * search.rubs)
+                reached = gone + np.abs(least.increment)
+                if np.array_equal(rules.segment(end[dofs]), rules.segment(reached[dofs])):
+                    growth = self._on_dofs(rules.lowest_growth(gone[dofs], reached[dofs]))
+                    softest = self._stiffness.stiffened(first * growth * movable)
+                    slips = movable * (least.increment != 0.0)
+                    softest.solve_kept(slips, np.zeros_like(force))
+                    if np.any(bound[slips > 0.0] < 0.0):
+                        return None
+                    return replace(least, pull=least.pull + slope * least.increment)
+            except LinAlgError:
+                return None
+            finally:
+                self._systems += search.solutions
+            end, status = reached, least.status
+        return None
+
+    def _gathered(self, minima: list[Minimum], seconds: float) -> Reference:
         """Solution of the first instants' minima, after which nothing moves."""
         problem, dofs = self._problem, self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
@@ -161,7 +208,7 @@ class IncrementalRod:
         solved = np.zeros(problem.n_instants, dtype=bool)
         solved[: len(minima)] = [least.residual <= BALANCED for least in minima]
         moved = np.cumsum(increments, axis=0).T
-        inside = self._band.largest_row * float(np.abs(moved).max(initial=0.0))
+        inside = self._stiffness.largest_row * float(np.abs(moved).max(initial=0.0))
         displacement = moved * problem.scales.displacement
         return Reference(
             problem=problem,
@@ -175,7 +222,7 @@ class IncrementalRod:
             converged=solved,
             is_lost=not solved[: len(minima)].all(),
             ambiguous=np.zeros(problem.n_instants, dtype=bool),
-            steps=steps,
+            steps=self._systems,
             seconds=seconds,
         )
 

@@ -63,7 +63,7 @@ class Newton:
         rules: Rules,
         rest: Array | None,
         guesses: States | None,
-        may_hold: Callable[[int], bool] = lambda _: True,
+        may_hold: Callable[[int], bool],
     ) -> None:
         self.response = Response(condensed, rules)
         self._may_hold, self._is_lost = may_hold, False
@@ -148,16 +148,21 @@ class Newton:
             # A body that falls, rolls or slides a long way touches elsewhere than one instant
             # before, or slips as a whole.
             guesses.append(self._at_rest[:, instant])
-        for guess in guesses:
-            solved = self._iterate(guess, sides)
-            if solved is not None:
-                return solved
-        solved = None
-        if not self._is_lost and self._may_hold(instant):
-            states = unload(self.response, self._rules, sides)
-            solved = None if states is None else self._iterate(states, sides)
+        solved = self._from_any(guesses, sides)
+        if solved is None and not self._is_lost and self._may_hold(instant):
+            solved = self._unloaded(self._rules, sides)
         self._is_lost = self._is_lost or solved is None
         return solved
+
+    def _from_any(self, guesses: list[States], sides: Sides) -> tuple[States, Increment] | None:
+        """Find states and step from the first guess that leads to them, or None."""
+        solutions = (self._iterate(states, sides) for states in guesses)
+        return next((solved for solved in solutions if solved is not None), None)
+
+    def _unloaded(self, rules: Rules, sides: Sides) -> tuple[States, Increment] | None:
+        """Find states and step from large pressure on, or None."""
+        states = unload(self.response, rules, sides)
+        return None if states is None else self._iterate(states, sides)
 
     def _iterate(self, states: States, sides: Sides) -> tuple[States, Increment] | None:
         """Seek the states from a guess, or None where they cycle."""

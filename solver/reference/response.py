@@ -8,14 +8,16 @@ motions a. Their equations say what free jumps carry, what held ones come to, an
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import lapack
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.reference.condensation import Condensation
-from solver.reference.dense import Factors
 from solver.reference.rules import HELD, Increment, Rules, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is free."""
+SINGULAR = 1e-12
+"""Pivot, as a share of the largest, below which a system is singular."""
 FEW = 4
 """Rows of S at most, one in so many, that are gathered sooner than all of S is read."""
 
@@ -189,10 +191,9 @@ class Response:
             matrix[:, : len(self._free)] += self._stiffer * self._slips[:, self._free]
         if not self._is_plain:
             matrix = self._with_motions(matrix)
-        self._factors = Factors(matrix, scaled=not self._is_plain)
-        self.turned = self._factors.turned
-        least = 0.0 if self._factors.scaled else LOOSE * float(self.unit.max(initial=0.0))
-        self.singular = self._factors.make_sure(least)
+        least = LOOSE * float(self.unit.max(initial=0.0)) if self._is_plain else 0.0
+        self._factors = Factors(matrix, least, scaled=not self._is_plain)
+        self.turned, self.singular = self._factors.turned, self._factors.singular
 
     def _with_motions(self, forces: Array) -> Array:
         """All equations: what is in series comes to its end, and y is chosen."""
@@ -232,3 +233,60 @@ class Response:
         jumps = np.zeros((len(numbers), len(self._base)))
         jumps[np.arange(len(numbers)), numbers] = 1.0
         return jumps
+
+
+class Factors:
+    """A square matrix, factored.
+
+    If `scaled`, rows and columns are brought to one size first, by powers of two, and what
+    is solved is refined once: then every row holds up to the rounding of its own terms (Skeel,
+    Math. Comp. 35, 1980).
+
+    Attributes
+    ----------
+    turned
+        Whether its determinant is negative.
+    singular
+        Whether a pivot is too small, or not above `least`.
+    """
+
+    def __init__(self, matrix: Array, least: float, *, scaled: bool) -> None:
+        self._scaled = scaled
+        if scaled:
+            self._rows = _sizes(matrix, 1)
+            matrix = self._rows[:, None] * matrix
+            self._columns = _sizes(matrix, 0)
+            matrix = matrix * self._columns
+        self._matrix = self._factors = matrix
+        self._pivots = np.zeros(0, dtype=np.intp)
+        if len(matrix):
+            self._factors, self._pivots, _ = lapack.dgetrf(matrix)
+        diagonal = np.diagonal(self._factors)
+        swaps = np.count_nonzero(self._pivots != np.arange(len(matrix)))
+        self.turned = bool((np.count_nonzero(diagonal < 0.0) + swaps) % 2)
+        sizes = np.abs(diagonal)
+        least = max(SINGULAR * float(sizes.max(initial=0.0)), least)
+        self.singular = bool(sizes.min(initial=np.inf) <= least)
+
+    def solve(self, right: Array) -> Array:
+        """Solve A x = b, b of shape (n, k); where A is singular, by the least x that fits best."""
+        if not len(right):
+            return right
+        if not self._scaled:
+            return self._solve(right)
+        right = self._rows[:, None] * right
+        solution = self._solve(right)
+        if not self.singular:
+            solution += self._solve(right - self._matrix @ solution)
+        return np.asarray(self._columns[:, None] * solution)
+
+    def _solve(self, right: Array) -> Array:
+        if self.singular:
+            return np.asarray(np.linalg.lstsq(self._matrix, right, rcond=SINGULAR)[0])
+        return np.asarray(lapack.dgetrs(self._factors, self._pivots, right)[0]).reshape(right.shape)
+
+
+def _sizes(matrix: Array, axis: int) -> Array:
+    """Powers of two that bring the largest entries along an axis near 1."""
+    _, exponent = np.frexp(np.abs(matrix).max(axis=axis, initial=0.0))
+    return np.asarray(np.ldexp(1.0, -exponent))

@@ -8,7 +8,7 @@ where the contact is open or there is no friction.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -25,6 +25,8 @@ HELD = 0
 EXPECTED = 2.5
 """Systems that an instant takes from the states of the one before, until it is known: the most on
 charts of the bar, where a guess from a neighbour takes 1 to 7, and one from an iterate 1.7."""
+OF_JUMPS = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance", "strength")
+"""Fields of rules that have a row for each jump."""
 PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
 """Of friction that slip does not change."""
 
@@ -89,16 +91,10 @@ class Rules:
         partner = place[self.partner[moving]]
         alone = partner < 0
         partner[alone] = np.flatnonzero(alone)
-        return replace(
-            self,
-            normal=self.normal[moving],
-            gap=self.gap[moving],
-            partner=partner,
-            friction=self.friction[moving] * ~alone,
-            bound=self.bound[moving],
-            cap=self.cap[moving],
-            compliance=self.compliance[moving],
-            strength=self.strength[moving],
+        own = {name: getattr(self, name)[moving] for name in OF_JUMPS}
+        return Rules(
+            **own | {"partner": partner, "friction": own["friction"] * ~alone},
+            strengths=self.strengths,
         )
 
     @cached_property
@@ -162,8 +158,7 @@ def rules_of(problem: Problem) -> Rules:
             strengths.append(of_law)
         parts += _components(law, first, strengths.index(of_law))
         first += len(law.components) * len(law.positions)
-    names = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance", "strength")
-    stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in names}
+    stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS}
     return Rules(**stacked, strengths=tuple(strengths))
 
 

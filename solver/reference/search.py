@@ -1,39 +1,104 @@
-"""The minimum over one instant where friction has a known bound (solver/README.md, 6 and 14).
+"""The minimum over one instant of rods on supports with a known bound (solver/README.md, 6 and 14).
 
-Where friction hardens or softens with slip the bound is linear in the slip increment v, b + g |v|,
-between two points of its strength, so that, with G = diag(g),
+With the stiffness K of rods one after the other, which is tridiagonal, and the bounds r,
 
-    phi(v) = 1/2 v' (K + G) v - g' v + sum b |v|:
+    phi(v) = 1/2 v' K v - g' v + sum r |v|.
 
-the same minimum, of a structure that is stiffer, or softer, where it slips. Which points of the
-strength are passed within the instant is found by trial.
+Where friction hardens or softens with slip its bound is b + c |v|: the same minimum, of a structure
+that is stiffer, or softer, where it slips.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Self
 
 import numpy as np
 from numpy.linalg import LinAlgError
+from scipy.linalg import blas, lapack
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
-from solver.discrete.problem import Problem
-from solver.reference.assembly import points_dofs
-from solver.reference.band import Band, summed
-from solver.reference.rules import Rules, rules_of
 
 NEWTON_LIMIT = 8
 """Steps from one guess of the statuses before a better one is sought."""
-TRIALS = 50
-"""Sets of points of the strength that are passed, at most."""
-COARSEST = 8
-"""Degrees of freedom below which no coarser mesh is asked for a guess."""
+COARSEST = 64
+"""Degrees of freedom of a rod below which no coarser mesh is asked for a guess (measured)."""
 HELD = 1e-13
 """Force that moves a rod as one by a unit, over the largest row of the stiffness, which is none."""
 LEASH = 1e-10
 """Stiffness over the same that holds a loose rod for a step: it goes far, and keeps its digits."""
+
+
+class Tridiagonal:
+    """A symmetric tridiagonal matrix, solved again and again with other degrees of freedom held.
+
+    Parameters
+    ----------
+    diagonal, beside
+        Its entries, shape (n,), and those beside it, shape (n - 1,).
+    slipping
+        What is added to the diagonal where degrees of freedom are not held, shape (n,).
+
+    Attributes
+    ----------
+    largest_row
+        Largest sum of the sizes of a row, without what is added.
+    """
+
+    def __init__(self, diagonal: Array, beside: Array, slipping: Array | None = None) -> None:
+        self.diagonal, self.beside, self._slipping = diagonal, beside, slipping
+        self._upper = np.asfortranarray([np.append(0.0, beside), diagonal])
+        sums = np.abs(diagonal)
+        sums[1:] += np.abs(beside)
+        sums[:-1] += np.abs(beside)
+        self.largest_row = float(sums.max())
+
+    def stiffened(self, slipping: Array) -> Self:
+        """The matrix with more on its diagonal, or less, where degrees of freedom are not held."""
+        slipping = slipping if self._slipping is None else self._slipping + slipping
+        return type(self)(self.diagonal, self.beside, slipping)
+
+    def product(self, field: Array) -> Array:
+        """K v."""
+        force: Array = blas.dsbmv(1, 1.0, self._upper, field)
+        return force if self._slipping is None else force + self._slipping * field
+
+    def solve_kept(self, keep: Array, force: Array) -> Array:
+        """Solve on the degrees of freedom where `keep` is 1; where it is 0, the force must be 0.
+
+        Raises
+        ------
+        LinAlgError
+            If these can move without force.
+        """
+        diagonal = self.diagonal
+        if self._slipping is not None:
+            diagonal = diagonal + self._slipping * keep
+        *_, solved, trouble = lapack.dptsv(diagonal, self.beside * keep[1:] * keep[:-1], force)
+        if trouble:
+            raise LinAlgError("the matrix is not positive definite where it is kept")
+        return np.asarray(solved)
+
+    def part(self, kept: slice) -> Self:
+        """The matrix of degrees of freedom that follow each other."""
+        inside = slice(kept.start, kept.stop - 1)
+        part = type(self)(self.diagonal[kept], self.beside[inside])
+        return part if self._slipping is None else part.stiffened(self._slipping[kept])
+
+    def tied(self, group: Indices) -> Self:
+        """Stiffness of neighbours that are tied together, by the number of their group, (n,)."""
+        diagonal = summed(group, self.diagonal)
+        is_inside = group[1:] == group[:-1]
+        # What ties two of one group counts on both sides of the diagonal.
+        np.add.at(diagonal, group[1:][is_inside], 2.0 * self.beside[is_inside])
+        tied = type(self)(diagonal, self.beside[~is_inside])
+        return tied if self._slipping is None else tied.stiffened(summed(group, self._slipping))
+
+
+def summed(group: Indices, values: Array) -> Array:
+    """Sum values by the number of their group, ascending from 0, shape (n_groups,)."""
+    return np.asarray(np.bincount(group, values), dtype=float)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,100 +112,65 @@ class Minimum:
     residual: float
 
 
-class _Guess(NamedTuple):
-    """Statuses, with increment and pull where they are the minimum's, else the rods that change."""
-
-    status: Array
-    solved: tuple[Array, Array] | None
-    changing: Flags
-
-
 class Search:
     """Minimise phi where some degrees of freedom are held at zero.
 
     Newton's method for the statuses takes a few steps from a good guess, but a front then advances
     by one point a step, and the method may cycle. So it gives up early, and starts again from the
     statuses of a mesh twice as coarse, found in the same way. Where that fails too, an active-set
-    method ends in finitely many steps. Rods that nothing ties to each other are solved together,
-    but each on its own way: those whose statuses are found wait for the others.
+    method ends in finitely many steps. So each rod goes on its own way, as nothing ties them.
+
+    Attributes
+    ----------
+    rubs
+        1 where a bound is above zero and nothing held, else 0, shape (n_dofs,).
+    solutions
+        Systems of full size that were solved.
     """
 
-    def __init__(self, band: Band, bound: Array, movable: Array) -> None:
-        self._band = band
+    def __init__(self, stiffness: Tridiagonal, bound: Array, movable: Array) -> None:
+        self._stiffness = stiffness
         self._bound = bound
         self._movable = movable
+        self.solutions = 0
+        self._parts: dict[int, tuple[slice, Search]] = {}
         self.rubs = (bound > 0.0) * movable
         self._free = movable - self.rubs  # neither held nor rubbing
         self._limit = np.where(self.rubs > 0.0, bound, np.inf)
-        self._starts = band.apart(movable)
+        is_tied = stiffness.beside * movable[1:] * movable[:-1] != 0.0
+        self._starts = np.flatnonzero(np.append(True, ~is_tied))
         sizes = np.diff(self._starts, append=len(movable))
         self._rod = np.repeat(np.arange(len(sizes)), sizes)
-        self._loose = self._loose_rods()
-
-    def _loose_rods(self) -> Flags:
-        """Rods that move as one without force, where nothing sticks."""
-        is_whole = np.logical_and.reduceat(self._movable > 0.0, self._starts)
-        if not is_whole.any():
-            return is_whole
-        pulled = np.abs(self._band.product(self._movable))
-        return is_whole & (
-            np.maximum.reduceat(pulled, self._starts) <= HELD * self._band.largest_row
-        )
+        # Rods that move as one without force, where nothing sticks.
+        self._loose: Flags = np.logical_and.reduceat(movable > 0.0, self._starts)
+        if self._loose.any():
+            pulled = np.maximum.reduceat(np.abs(stiffness.product(movable)), self._starts)
+            self._loose &= pulled <= HELD * stiffness.largest_row
 
     def __call__(self, force: Array, status: Array) -> Minimum:
         """Minimum, sought from a guess of the statuses; no force where nothing moves."""
-        guess = self._newton(force, status)
-        if guess.solved is not None:
-            return self._judged(force, guess.status, *guess.solved)
-        rods, settled = guess.changing, guess.status
-        if 2 * np.count_nonzero(rods) >= len(force):
-            return self._of(force, self._mended(force, status))
-        parts = Search(self._band.only(rods), self._bound[rods], self._movable[rods])
-        settled[rods] = parts._mended(force[rods], status[rods])
-        self._band.solutions += -(-parts._band.solutions * len(parts._bound) // len(force))
-        return self._of(force, settled)
-
-    def _of(self, force: Array, status: Array) -> Minimum:
-        """Minimum whose statuses these are."""
-        increment = self._slip(force, status)
-        return self._judged(force, status, increment, force - self._band.product(increment))
-
-    def _judged(self, force: Array, status: Array, increment: Array, pull: Array) -> Minimum:
+        status, changing, fields = self._newton(force, status)
+        if fields is None:
+            for rod in np.unique(self._rod[changing]):
+                own, search = self._of_rod(rod)
+                done = search.solutions
+                status[own] = search._mended(force[own], status[own])
+                self.solutions += -(-(search.solutions - done) * len(search.rubs) // len(force))
+            fields = self._fields(force, status)
+        increment, pull, _ = fields
         bound = self._bound
         held = np.where(status != 0.0, bound * status, np.minimum(np.maximum(pull, -bound), bound))
         violation = float((np.abs(pull - held) * self._movable).max())
         relative = violation / float(np.abs(force).sum()) if violation else 0.0
         return Minimum(increment, held, status, violation, relative)
 
-    def _mended(self, force: Array, status: Array) -> Array:
-        """Statuses where those of Newton's method do not come to rest."""
-        if len(force) >= COARSEST:
-            guess = self._newton(force, self._from_coarser(force, status))
-            if guess.solved is not None:
-                return guess.status
-            status = guess.status
-        return self._descend(force, status)
-
-    def _guessed(self, force: Array, status: Array) -> Array:
-        """Guess the statuses, where need be from those of a mesh that is coarser still."""
-        guess = self._newton(force, status)
-        if guess.solved is not None or len(force) < COARSEST:
-            return guess.status
-        again = self._from_coarser(force, status)
-        return self._newton(force, np.where(guess.changing, again, guess.status)).status
-
-    def _from_coarser(self, force: Array, status: Array) -> Array:
-        coarser, group = self._coarser
-        guess = coarser._guessed(summed(group, force), np.sign(summed(group, status)))
-        return np.asarray(self.rubs * guess[group])
-
-    def _newton(self, force: Array, status: Array) -> _Guess:
-        largest = np.abs(force).max()
+    def _newton(
+        self, force: Array, status: Array
+    ) -> tuple[Array, Flags, tuple[Array, Array, Array] | None]:
+        """Correct statuses by what they show; which change; the fields once none does."""
         changing = np.ones(len(status), dtype=bool)
         for _ in range(NEWTON_LIMIT):
-            increment = self._slip(force, status)
-            pull = force - self._band.product(increment)
-            limit = self._limit + self._rounding(largest, increment)
+            increment, pull, limit = fields = self._fields(force, status)
             corrected = np.where(
                 status != 0.0,
                 status * (status * increment > 0.0),
@@ -148,163 +178,85 @@ class Search:
             )
             changing = corrected != status
             if not changing.any():
-                return _Guess(status, (increment, pull), changing)
+                return status, changing, fields
             status = corrected
-        return _Guess(status, None, np.logical_or.reduceat(changing, self._starts)[self._rod])
+        return status, changing, None
 
-    @cached_property
-    def _coarser(self) -> tuple[Search, Indices]:
-        """The same structure with degrees of freedom of a rod tied in pairs; the pair of each."""
-        places = np.arange(len(self._rod)) - self._starts[self._rod]
-        begins = places % 2 == 0
-        group = np.cumsum(begins) - 1
-        movable = np.minimum(summed(group, self._movable), 1.0)
-        band = self._band.tied(group, self._movable)
-        return Search(band, summed(group, self._bound), movable), group
+    def _of_rod(self, rod: int) -> tuple[slice, Search]:
+        """Degrees of freedom of a rod, and the search on it alone."""
+        if rod not in self._parts:
+            first, last = np.searchsorted(self._rod, [rod, rod + 1])
+            own = slice(first, last)
+            part = Search(self._stiffness.part(own), self._bound[own], self._movable[own])
+            self._parts[rod] = own, part
+        return self._parts[rod]
 
-    def _slip(self, force: Array, status: Array) -> Array:
-        """Solve for the increment under given statuses; exactly zero where they are zero.
-
-        A loose rod of which all points slip goes as far as it has to for some of them to turn back.
-        """
-        keep, band = self._free + np.abs(status), self._band
-        if self._loose.any():
-            flies = self._loose & np.logical_and.reduceat(keep > 0.0, self._starts)
-            if flies.any():
-                leash = LEASH * band.largest_row
-                band = band.stiffened(np.where(flies[self._rod], leash, 0.0))
-                self._band.solutions += 1
-        return band.solve_kept(keep, keep * (force - self._bound * status))
-
-    def _rounding(self, largest: float, increment: Array) -> float:
-        """What rounding leaves of a pull, where the largest force is given."""
-        return ROUNDING * float(self._band.largest_row * np.abs(increment).max() + largest)
+    def _mended(self, force: Array, status: Array) -> Array:
+        """Statuses of a rod where those of Newton's method do not come to rest."""
+        if len(force) >= COARSEST:
+            coarser, group = self._coarser
+            forces = summed(group, force)
+            guess, _, fields = coarser._newton(forces, np.sign(summed(group, status)))
+            if fields is None:
+                guess = coarser._mended(forces, guess)
+            status, _, fields = self._newton(force, self.rubs * guess[group])
+            if fields is not None:
+                return status
+        return self._descend(force, status)
 
     def _descend(self, force: Array, status: Array) -> Array:
-        """Minimise phi by an active-set method, every step of which lowers phi.
+        """Minimise phi of a rod by an active-set method, every step of which lowers phi.
 
         A step ends where a first point stops, which then sticks; at a minimum over the slipping
         points that pulled most beyond its bound is released, and moves the way it is pulled.
         """
-        rod = self._rod
-        largest = np.abs(force).max()
-        increment = self._slip(force, status)
+        increment, _, _ = self._fields(force, status)
         status = status * (status * increment > 0.0)
         increment *= self._free + np.abs(status)
-        goes_on = np.ones(len(self._starts), dtype=bool)
-        released = np.zeros(len(force), dtype=bool)
-        while goes_on.any():
-            target = self._slip(force, status)
-            share = np.full(len(force), np.inf)
-            turns = status * target < 0.0
-            share[turns] = increment[turns] / (increment[turns] - target[turns])
-            least = np.minimum.reduceat(share, self._starts)
-            stops = goes_on & np.isfinite(least)
-            first = self._first(share == least[rod], stops)
+        released = -1
+        while True:
+            target, pull, limit = self._fields(force, status)
+            turns = np.flatnonzero(status * target < 0.0)
+            if not len(turns):
+                increment = target
+                excess = np.where(status == 0.0, np.abs(pull) - limit, -np.inf)
+                released = int(excess.argmax())
+                if excess[released] <= 0.0:
+                    return status
+                status[released] = np.sign(pull[released])
+                continue
+            shares = increment[turns] / (increment[turns] - target[turns])
+            first = turns[shares.argmin()]
             # One that goes back before it has moved was released within rounding of its bound; but
             # one that was slipping may have stood still all the while.
-            goes_on[rod[first[released[first] & (increment[first] == 0.0)]]] = False
-            increment += np.where(stops, least, 1.0)[rod] * (target - increment)
-            increment[first] = status[first] = 0.0
-            released[first] = False
-            status = np.where(stops[rod], status * (status * increment > 0.0), status)
+            is_done = first == released and increment[first] == 0.0
+            increment += shares.min() * (target - increment)
+            increment[first] = 0.0
+            status = status * (status * increment > 0.0)
             increment *= self._free + np.abs(status)
-            points = self._release(force, increment, status, largest, goes_on & ~stops)
-            released[points] = True
-            goes_on &= stops | np.isin(np.arange(len(goes_on)), rod[points])
-        return status
+            if is_done:
+                return status
 
-    def _release(
-        self, force: Array, increment: Array, status: Array, largest: float, rods: Flags
-    ) -> Indices:
-        """Release the point of each rod that is pulled most beyond its bound; those released."""
-        pull = force - self._band.product(increment)
-        excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
-        most = np.maximum.reduceat(excess, self._starts)
-        beyond = rods & (most > self._rounding(largest, increment))
-        points = self._first(excess == most[self._rod], beyond)
-        status[points] = np.sign(pull[points])
-        return points
+    def _fields(self, force: Array, status: Array) -> tuple[Array, Array, Array]:
+        """Increment, exactly zero where statuses are; pull; and its limit, rounding included.
 
-    def _first(self, is_one: Flags, rods: Flags) -> Indices:
-        """First of these degrees of freedom on each of the rods."""
-        places = np.flatnonzero(is_one & rods[self._rod])
-        return places[np.unique(self._rod[places], return_index=True)[1]]
+        A loose rod of which all points slip goes as far as it has to for some of them to turn back.
+        """
+        keep, stiffness = self._free + np.abs(status), self._stiffness
+        if self._loose.any():
+            flies = self._loose & np.logical_and.reduceat(keep > 0.0, self._starts)
+            if flies.any():
+                leash = LEASH * stiffness.largest_row
+                stiffness = stiffness.stiffened(np.where(flies[self._rod], leash, 0.0))
+        self.solutions += 1
+        increment = stiffness.solve_kept(keep, keep * (force - self._bound * status))
+        largest = self._stiffness.largest_row * np.abs(increment).max() + np.abs(force).max()
+        pull = force - self._stiffness.product(increment)
+        return increment, pull, self._limit + ROUNDING * float(largest)
 
-
-@dataclass(frozen=True, eq=False)
-class Bounds:
-    """Friction bounds of degrees of freedom at one instant.
-
-    Attributes
-    ----------
-    first
-        Before any slip, shape (n_dofs,), scaled.
-    dofs
-        Those that rub, shape (n,).
-    rules
-        What says how slip changes their bounds.
-    """
-
-    first: Array
-    dofs: Indices
-    rules: Rules
-
-    @property
-    def stay(self) -> bool:
-        """Whether slip changes nothing."""
-        return not self.rules.ages
-
-    def at(self, gone: Array) -> Array:
-        """Bounds after accumulated slip, shape (n_dofs,) both."""
-        bounds = self.first.copy()
-        if self.rules.ages:
-            bounds[self.dofs] *= self.rules.factor(gone[self.dofs])
-        return bounds
-
-    def growth(self, first: Array, last: Array) -> Array:
-        """Least growth of the bound per slip on the way from one slip to another, (n_dofs,)."""
-        growths = np.zeros_like(self.first)
-        dofs = self.dofs
-        growths[dofs] = self.first[dofs] * self.rules.lowest_growth(first[dofs], last[dofs])
-        return growths
-
-
-def bounds_of(problem: Problem) -> list[Bounds]:
-    """Bounds of all interfaces, which are on supports: of every instant, or of all alike."""
-    dofs, rules = points_dofs(problem), rules_of(problem)
-    first = np.zeros((problem.n_dofs, rules.bound.shape[1]))
-    first[dofs] = rules.bound
-    return [Bounds(bound, dofs, rules) for bound in np.ascontiguousarray(first.T)]
-
-
-def least_with_changing_bound(
-    band: Band, bounds: Bounds, movable: Array, force: Array, status: Array, gone: Array
-) -> Minimum | None:
-    """Minimum that the instant before certainly goes over into, None where that is not sure.
-
-    It is sure if the structure is stable where points slip, however far they have softened on the
-    way: then no other minimum slips there alone.
-    """
-    end = gone
-    for _ in range(TRIALS):
-        slope = bounds.growth(end, end) * movable
-        bound = (bounds.at(end) - slope * (end - gone)) * movable
-        softer = band.stiffened(slope)
-        try:
-            least = Search(softer, bound, movable)(force, status * (bound > 0.0))
-            reached = gone + np.abs(least.increment)
-            dofs, segment = bounds.dofs, bounds.rules.segment
-            if np.array_equal(segment(end[dofs]), segment(reached[dofs])):
-                softest = band.stiffened(bounds.growth(gone, reached) * movable)
-                slips = movable * (least.increment != 0.0)
-                softest.solve_kept(slips, np.zeros_like(force))
-                if np.any(bound[slips > 0.0] < 0.0):
-                    return None
-                return replace(least, pull=least.pull + slope * least.increment)
-        except LinAlgError:
-            return None
-        finally:
-            band.solutions += softer.solutions
-        end, status = reached, least.status
-    return None
+    @cached_property
+    def _coarser(self) -> tuple[Search, Indices]:
+        """The same rod, all of it movable, with its points tied in pairs; and the pair of each."""
+        group = np.arange(len(self.rubs)) // 2
+        bound = summed(group, self._bound)
+        return Search(self._stiffness.tied(group), bound, np.ones_like(bound)), group

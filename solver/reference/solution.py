@@ -14,7 +14,7 @@ from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.limit_analysis import Collapse
-from solver.reference.rules import States, rules_of
+from solver.reference.rules import OF_JUMPS, States, rules_of
 
 
 class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
@@ -117,17 +117,8 @@ def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
     yield problem.positions
     yield external_force(problem)
     yield from problem.prescribed
-    yield from (
-        rules.normal,
-        rules.gap,
-        rules.partner,
-        rules.friction,
-        rules.bound,
-        rules.compliance,
-        rules.cap,
-        rules.strength,
-        *(np.array([strength.slips, strength.factors]) for strength in rules.strengths),
-    )
+    yield from (getattr(rules, name) for name in OF_JUMPS)
+    yield from (np.array([strength.slips, strength.factors]) for strength in rules.strengths)
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         matrix.sort_indices()
         yield from (matrix.indptr, matrix.indices, matrix.data)

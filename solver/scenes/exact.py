@@ -15,7 +15,6 @@ from solver.discrete.stack import Stack
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms import ExactCurve
-from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.reference.closed_forms.elastic_bodies import (
     HalfPlane,
     TwoLeaves,
@@ -24,6 +23,7 @@ from solver.reference.closed_forms.elastic_bodies import (
 )
 from solver.reference.closed_forms.masing import masing
 from solver.reference.closed_forms.pulled_bar import (
+    broken_wire,
     closed_form,
     pulled_changing_bar,
     pulled_compliant_bar,

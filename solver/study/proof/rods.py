@@ -8,8 +8,8 @@ import numpy as np
 
 from solver.discrete.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
+from solver.reference.closed_forms.masing import energy_of_cycle
 from solver.reference.closed_forms.pulled_bar import (
-    cycled_compliant_bar,
     pulled_changing_bar,
     pulled_compliant_bar,
 )
@@ -41,7 +41,12 @@ def cycled(answer: Answer) -> Iterator[Number]:
     peak, end = float(load.max()), answer.fields.displacement[-1]
     back, energy = peak**2 / (4.0 * stiffness * bound), 2.0 * peak**3 / (3.0 * stiffness * bound)
     if answer.settings.friction_law == "compliant":
-        back, energy = cycled_compliant_bar(peak, *_sprung(answer))
+        # By Masing's rule.
+        def grown(force: float) -> float:
+            return pulled_compliant_bar(force, *_sprung(answer))[0]
+
+        back = grown(peak) - 2.0 * grown(0.5 * peak)
+        energy = energy_of_cycle(peak, grown)
     loaded = int(np.argmax(load))
     unloaded = loaded + int(np.argmin(np.abs(load[loaded : loaded + len(load) // 2])))
     yield "end displacement, unloaded", "m", back, end[unloaded]

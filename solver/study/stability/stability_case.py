@@ -18,9 +18,8 @@ from solver.discrete import Problem
 from solver.latin import Ending, Solution
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.reference.condensation import NoReferenceError
-from solver.reference.distance import distance_to
+from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.residual import kkt_residual
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE

@@ -1,15 +1,93 @@
-"""Perfect interface between two substructures: one displacement, opposite forces."""
+"""Linear laws: prescribed displacements and forces, and glued cuts (solver/README.md, 2)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
 from solver.arrays import Array, Indices, as_slice
 from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, squared
+
+
+@dataclass(frozen=True)
+class _Given(Interface):
+    """What is given at rows."""
+
+    rows: Indices
+    values: Array
+
+    def during(self, instants: slice) -> Self:
+        """Law of some instants alone."""
+        return replace(self, values=self.values[:, instants])
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything moves, or pulls."""
+        return bool(self.values.any())
+
+
+@dataclass(frozen=True)
+class Dirichlet(_Given):
+    """Prescribed displacement.
+
+    Attributes
+    ----------
+    rows
+        Boundary rows, shape (n_rows,).
+    values
+        Displacements, shape (n_rows, n_instants), scaled.
+    """
+
+    def rule(self, k: Array, n_instants: int) -> Rule:
+        """W^ is the displacement that is prescribed."""
+        rows, given = as_slice(self.rows), self.values
+
+        def prescribe(_incoming: Array, displacement: Array, instants: slice) -> None:
+            displacement[rows] = given[:, instants]
+
+        return prescribe
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the displacement with that prescribed."""
+        return Gaps(displacement=squared(beyond(displacement[self.rows] - self.values, noise)))
+
+
+@dataclass(frozen=True)
+class Neumann(_Given):
+    """Prescribed force.
+
+    Attributes
+    ----------
+    rows
+        Boundary rows, shape (n_rows,).
+    values
+        Nodal forces on the body, shape (n_rows, n_instants), scaled.
+    macro
+        Macro basis of the interface, shape (n_rows, n_macro).
+    """
+
+    macro: Array
+
+    def rule(self, k: Array, n_instants: int) -> Rule:
+        """Move by F_d / k."""
+        rows = as_slice(self.rows)
+        moved = self.values / k[self.rows, None]
+
+        def push(incoming: Array, displacement: Array, instants: slice) -> None:
+            displacement[rows] = incoming[rows] + moved[:, instants]
+
+        return push
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the force with that prescribed."""
+        return Gaps(force=squared(beyond(force[self.rows] - self.values, noise)))
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Macro forces, which the load balances."""
+        yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.values))
 
 
 @dataclass(frozen=True)
@@ -32,11 +110,6 @@ class Perfect(Interface):
     def rows(self) -> Indices:  # type: ignore[override]  # others are given them
         """Rows of both sides."""
         return np.concatenate([self.first, self.second])
-
-    @property
-    def joined(self) -> tuple[Indices, Indices]:
-        """Both sides."""
-        return self.first, self.second
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
