@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg.lapack import dposv
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, in_a_row
-from solver.latin.linear_stage import Group, LinearStage
+from solver.latin.linear_stage import LinearStage
 from solver.refusal import check_range
 
 MEMORY = 15
@@ -59,9 +60,9 @@ class Anderson:
 class AndersonState:
     """What a run remembers of its states, which are in full, and the mixture of them.
 
-    The images g are kept whole; of large residuals no more than a sample is, drawn once. Residuals
-    are measured by k over boundary and time. They count for nothing along a motion of the rows,
-    (n_rows,), which the local stage chooses anew at every instant, whatever the state is.
+    The images g are kept whole; of large residuals no more than a sample is. Residuals are measured
+    by k over boundary and time. They count for nothing along a motion of the rows, (n_rows,), which
+    the local stage chooses anew at every instant, whatever the state is.
     """
 
     def __init__(
@@ -82,15 +83,20 @@ class AndersonState:
         self._blocks = blocks
         sizes = [group.target.size for group in groups]
         self._places = in_a_row(sizes)
-        self._chosen = _sample(sizes)
+        step = -(-sum(sizes) // SAMPLE)
+        self._chosen = [_every(group.target.size, group.rows.size, step) for group in groups]
         weights = [group.k[:, None, None] * problem.time_weights for group in groups]
         sampled = self._sampled(weights)
         self._samples = in_a_row([len(part) for part in sampled])
         self._root = np.sqrt(np.concatenate(sampled))
-        self._free = None
+        self._way = None
         if motion is not None:
             ways = self._sampled([motion[group.rows][:, :, None] for group in groups])
-            self._free = _Motion(groups, self._chosen, self._root * np.concatenate(ways))
+            instants = self._sampled([np.arange(float(problem.n_instants)) for _ in groups])
+            self._instants = np.concatenate(instants).astype(int)
+            self._way = self._root * np.concatenate(ways)
+            size = np.bincount(self._instants, self._way**2)
+            self._dual = self._way / np.where(size > 0.0, size, 1.0)[self._instants]
         self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
         # Memory that nothing was written to costs nothing yet.
         self._images = np.zeros((self._memory + 1, sum(sizes)))
@@ -109,20 +115,16 @@ class AndersonState:
 
     def mix(self) -> None:
         """Replace g(y) by the mixture, in place, once there is one."""
-        if self._observe() and self._count:
-            self._mix()
-
-    def _observe(self) -> bool:
-        """Read g(y); whether it is of use."""
         residual = self._residual
         self._take(residual)
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
-        if self._free:
-            self._free.leave_out(residual)
+        if self._way is not None:
+            share = np.bincount(self._instants, self._dual * residual)
+            residual -= self._way * share[self._instants]
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
-            return False
+            return
         if size > self._growth * self._smallest:
             self._forget()
         if np.isfinite(self._smallest):  # there is an image before
@@ -137,7 +139,8 @@ class AndersonState:
 
         self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
-        return True
+        if self._count:
+            self._mix()
 
     def _remember(self) -> None:
         place = self._count % self._memory
@@ -196,31 +199,6 @@ class AndersonState:
         ]
 
 
-class _Motion:
-    """A motion that residuals are blind to, weighted, at the places of a sample."""
-
-    def __init__(self, groups: list[Group], chosen: list[slice | Indices], way: Array) -> None:
-        sizes, count = [group.target.size for group in groups], groups[0].target.shape[-1]
-        instants = np.concatenate(
-            [
-                np.arange(size)[places] * count // size
-                for size, places in zip(sizes, chosen, strict=True)
-            ]
-        )
-        self._way, size = way, np.bincount(instants, way**2)
-        self._dual = way / np.where(size > 0.0, size, 1.0)[instants]
-        # In order of memory an instant is a run of places, in every part.
-        self._first = np.flatnonzero(np.diff(instants, prepend=-1))
-        self._lengths = np.diff(self._first, append=len(instants))
-        self._instants = instants[self._first]
-
-    def leave_out(self, residual: Array) -> None:
-        """Remove from a weighted residual what it has of the motion, instant by instant."""
-        runs = np.add.reduceat(self._dual * residual, self._first)
-        share = np.bincount(self._instants, runs)[self._instants]
-        residual -= self._way * np.repeat(share, self._lengths)
-
-
 def _within(place: slice, part: Array, instants: slice) -> slice:
     """Where some instants of a part stand, which itself stands at a place."""
     each = part.size // part.shape[-1]
@@ -228,17 +206,12 @@ def _within(place: slice, part: Array, instants: slice) -> slice:
     return slice(place.start + first * each, place.start + last * each)
 
 
-def _sample(sizes: list[int]) -> list[slice | Indices]:
-    """Draw one place out of every so many, the same whenever it is asked: a run repeats itself."""
-    step = -(-sum(sizes) // SAMPLE)
-    if step == 1:
-        return [slice(0, size) for size in sizes]
-    draw = np.random.default_rng(0)
-    places: list[slice | Indices] = []
-    for size in sizes:
-        first = np.arange(0, size, step)
-        places.append(np.minimum(first + draw.integers(0, step, len(first)), size - 1))
-    return places
+def _every(size: int, instant: int, wanted: int) -> slice:
+    """One place out of so many, no rows of an instant left out for ever."""
+    step = wanted
+    while math.gcd(step, instant) > 1:
+        step += 1
+    return slice(0, size, step)
 
 
 def _flat(part: Array) -> Array:

@@ -24,7 +24,7 @@ SETTLED = 0.04
 most statuses are right. If friction and pressure each had to settle, a friction that is small
 beside pressure would wait for twice the iterations (four layers: 22 instead of 8; measured)."""
 SOLVED = 1e-20
-"""LATIN indicator, a ratio of squares, that is worth a trial whatever has changed."""
+"""LATIN indicator, a ratio of squares, of a run that begins with its solution."""
 LONG = 100
 """Iterations from which on it is tried whatever has changed, at every doubling: a contact force
 that dies out changes by much of itself for ever."""
@@ -90,30 +90,24 @@ class ErrorEstimate:
         self._solver: Incremental | None = None
         self._costs: Costs | None = None
         self._costs_at = 0
-        self._has_solver = True
+        self._has_solver, self._had_its_last = True, False
         self.certificate: Certificate | None = None
         self.deadline = math.inf
         self.jumps = False
         self.collapse: Collapse | None = None
 
-    def __call__(self, iterate: Iterate, indicator: float) -> float:
-        """The estimate for the next iterate of a run, and its LATIN indicator; NaN without one."""
-        accuracy = self._accuracy
-        is_due = iterate.number >= self._next_trial
-        if self.certificate is not None:
-            error = self.certificate.distance.of_friction_force(iterate)
-            if is_due and accuracy < error and self._changes.left(iterate).worst <= accuracy:
-                # It has come to rest elsewhere: there may be several solutions.
-                self.try_step(iterate)
-                error = self.certificate.distance.of_friction_force(iterate)
-            return error
-        expected = self._changes.left(iterate)
-        ends_soon = any(left <= accuracy for left in expected)
-        is_near = self._changes.last.whole <= SETTLED or ends_soon or indicator <= SOLVED
-        if is_due and (is_near or self._is_worth_it(iterate)):
-            self.try_step(iterate, least=WAIT if ends_soon else 0.0)
+    def __call__(self, iterate: Iterate) -> float:
+        """The estimate for the next iterate of a run; NaN where there is none."""
+        worst = math.nan
         if self.certificate is None:
-            return expected.worst
+            expected = self._changes.left(iterate)
+            worst, ends_soon = expected.worst, any(left <= self._accuracy for left in expected)
+            is_due = iterate.number >= self._next_trial
+            is_near = self._changes.last.whole <= SETTLED or self._begins_there(iterate)
+            if is_due and (is_near or self._is_worth_it(iterate)):
+                self.try_step(iterate, least=WAIT if ends_soon else 0.0)
+        if self.certificate is None:
+            return worst
         return self.certificate.distance.of_friction_force(iterate)
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
@@ -134,11 +128,13 @@ class ErrorEstimate:
             return False
         return self._needs_proof or costs.afford(patience * iterate.number, least)
 
-    def is_last_chance(self, iterate: Iterate) -> bool:
-        """Whether a run without an answer would have no time for a status step later."""
-        if self.certificate is not None or math.isinf(self.deadline):
-            return False
-        return self._left() <= ROOM * self._costs_of(iterate).step
+    def try_in_time(self, iterate: Iterate) -> None:
+        """Try the status step, once, where a run without an answer has no time for it later."""
+        if self.certificate is not None or math.isinf(self.deadline) or self._had_its_last:
+            return
+        if self._left() <= ROOM * self._costs_of(iterate).step:
+            self._had_its_last = True
+            self.try_step(iterate, LAST, least=math.inf)
 
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> None:
         """Try the status step, unless it costs too much, as above."""
@@ -164,6 +160,11 @@ class ErrorEstimate:
         )
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
+
+    @staticmethod
+    def _begins_there(iterate: Iterate) -> bool:
+        """Whether a run begins with its solution, so that no change will show it."""
+        return iterate.number == 1 and iterate.indicator <= SOLVED
 
     def _is_worth_it(self, iterate: Iterate) -> bool:
         """Whether to try the step though the force is not near: it may never seem so."""
