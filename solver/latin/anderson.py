@@ -10,27 +10,23 @@ from scipy.linalg.lapack import dposv
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks, in_a_row
+from solver.latin.blocks import Blocks
 from solver.latin.linear_stage import LinearStage
 from solver.refusal import check_range
 
 MEMORY = 15
-"""Differences that are remembered at most. From 5 to 50, 1 % of the contact force takes the same
-number of iterations but for two on bar, strand, block and layers, and 1e-4 from 55 to 63 on layers,
-39 to 45 on strands (measured)."""
+"""Differences that are remembered at most; from 5 to 50 iterations hardly differ (measured)."""
 GROWTH_ON_SUPPORT = 2.0
 """Growth of the residual from which the memory is given up, in contact with a rigid support: with 1
 the rocking of a block that tilts until it lifts off takes thousands of iterations, not 50."""
 GROWTH_BETWEEN_BODIES = 1.1
-"""The same in contact between two bodies. Layers 200 times as long as thick: 1e-6 of the contact
-force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1 (measured)."""
+"""The same between bodies. Thin layers: 1e-6 takes 120 iterations, 140 with 2, 300 with 1."""
 MOST_VALUES = 50_000_000
-"""Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
-On 384 x 192 elements 1e-4 takes 38 iterations with 15 differences, 39 with 8, 41 with 5
-(measured)."""
+"""Numbers that the remembered images may hold; a larger field is remembered for fewer iterations:
+on 384 x 192 elements 1e-4 takes 38 with 15 differences, 41 with 5 (measured)."""
 SAMPLE = 300_000
 """Values of a residual that the weights of the mixture are found from; all, if it has no more. On
-384 x 192 elements 1e-4 takes 38 iterations with that and with all, 40 with 20 000 (measured)."""
+384 x 192 elements 1e-4 takes as many iterations with that as with all (measured)."""
 REGULAR = 1e-10
 """Added to the diagonal of the small normal equations, whose own diagonal is scaled to 1."""
 
@@ -81,29 +77,26 @@ class AndersonState:
             self._growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
         groups = self._groups = stage.groups
         self._blocks = blocks
-        sizes = [group.target.size for group in groups]
-        self._places = in_a_row(sizes)
-        step = -(-sum(sizes) // SAMPLE)
-        self._chosen = [_every(group.target.size, group.rows.size, step) for group in groups]
+        size = sum(group.target.size for group in groups)
+        self._steps = [_step(-(-size // SAMPLE), group.rows.size) for group in groups]
         weights = [group.k[:, None, None] * problem.time_weights for group in groups]
-        sampled = self._sampled(weights)
-        self._samples = in_a_row([len(part) for part in sampled])
-        self._root = np.sqrt(np.concatenate(sampled))
+        self._root = np.sqrt(self._sampled(weights))
         self._way = None
         if motion is not None:
-            ways = self._sampled([motion[group.rows][:, :, None] for group in groups])
-            instants = self._sampled([np.arange(float(problem.n_instants)) for _ in groups])
-            self._instants = np.concatenate(instants).astype(int)
-            self._way = self._root * np.concatenate(ways)
-            size = np.bincount(self._instants, self._way**2)
-            self._dual = self._way / np.where(size > 0.0, size, 1.0)[self._instants]
-        self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
-        # Memory that nothing was written to costs nothing yet.
-        self._images = np.zeros((self._memory + 1, sum(sizes)))
+            ways = [motion[group.rows][:, :, None] for group in groups]
+            self._way = self._root * self._sampled(ways)
+            instants = np.arange(float(problem.n_instants))
+            self._instants = self._sampled([instants for _ in groups]).astype(int)
+            squares = np.bincount(self._instants, self._way**2)
+            self._dual = self._way / np.where(squares > 0.0, squares, 1.0)[self._instants]
+        self._memory = max(1, min(memory, MOST_VALUES // size - 1))
+        # Memory that nothing was written to costs nothing yet; an instant is in one piece.
+        shapes = [(self._memory + 1, *group.target.T.shape) for group in groups]
+        self._images = [np.zeros(shape) for shape in shapes]
         self._residuals = np.zeros((self._memory, len(self._root)))
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
-        self._start, self._residual, self._residual_before = np.zeros((3, len(self._root)))
+        self._start = self._before = np.zeros(len(self._root))
         self._forget()
 
     def _forget(self) -> None:
@@ -111,12 +104,11 @@ class AndersonState:
 
     def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
-        self._take(self._start)
+        self._start = self._sampled([group.state for group in self._groups])
 
     def mix(self) -> None:
         """Replace g(y) by the mixture, in place, once there is one."""
-        residual = self._residual
-        self._take(residual)
+        residual = self._sampled([group.state for group in self._groups])
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
         if self._way is not None:
@@ -128,24 +120,23 @@ class AndersonState:
         if size > self._growth * self._smallest:
             self._forget()
         if np.isfinite(self._smallest):  # there is an image before
-            self._remember()
+            self._remember(residual)
         self._smallest = min(self._smallest, size)
-        image = self._images[self._place_of(self._count)]
+        place = self._place_of(self._count)
 
         def keep(instants: slice) -> None:
-            for group, place in zip(self._groups, self._places, strict=True):
-                part = group.state
-                image[_within(place, part, instants)] = _flat(part[..., instants])
+            for group, images in zip(self._groups, self._images, strict=True):
+                images[place, instants] = group.state.T[instants]
 
         self._blocks.each(keep)
-        self._residual, self._residual_before = self._residual_before, residual
+        self._before = residual
         if self._count:
             self._mix()
 
-    def _remember(self) -> None:
+    def _remember(self, residual: Array) -> None:
         place = self._count % self._memory
         newest = self._residuals[place]
-        np.subtract(self._residual, self._residual_before, out=newest)
+        np.subtract(residual, self._before, out=newest)
         self._count += 1
         used = min(self._count, self._memory)
         row = self._residuals[:used] @ newest
@@ -153,7 +144,7 @@ class AndersonState:
         self._products[:used, place] = row
         # The products with the residual change by those with its newest difference.
         self._wanted[:used] += row
-        self._wanted[place] = newest @ self._residual
+        self._wanted[place] = newest @ residual
 
     def _mix(self) -> None:
         used = min(self._count, self._memory)
@@ -167,10 +158,9 @@ class AndersonState:
         shares = self._shares(scale * gamma)
 
         def mix(instants: slice) -> None:
-            for group, place in zip(self._groups, self._places, strict=True):
-                part = group.state
-                images = self._images[: used + 1, _within(place, part, instants)]
-                np.matmul(shares, images, out=_flat(part[..., instants]))
+            for group, images in zip(self._groups, self._images, strict=True):
+                part = images[: used + 1, instants].reshape(used + 1, -1)
+                np.matmul(shares, part, out=group.state.T[instants].reshape(-1))
 
         self._blocks.each(mix)
 
@@ -187,33 +177,18 @@ class AndersonState:
     def _place_of(self, number: int) -> int:
         return number % (self._memory + 1)
 
-    def _take(self, out: Array) -> None:
-        for group, chosen, place in zip(self._groups, self._chosen, self._samples, strict=True):
-            out[place] = _flat(group.state)[chosen]
-
-    def _sampled(self, fields: list[Array]) -> list[Array]:
-        """Fields of the groups at the places of the sample."""
-        return [
-            _flat(np.broadcast_to(field, group.target.shape))[chosen]
-            for field, group, chosen in zip(fields, self._groups, self._chosen, strict=True)
-        ]
+    def _sampled(self, fields: list[Array]) -> Array:
+        """Fields of the groups at the places of the sample, in a row."""
+        return np.concatenate(
+            [
+                np.broadcast_to(field, group.target.shape).reshape(-1, order="F")[::step]
+                for field, group, step in zip(fields, self._groups, self._steps, strict=True)
+            ]
+        )
 
 
-def _within(place: slice, part: Array, instants: slice) -> slice:
-    """Where some instants of a part stand, which itself stands at a place."""
-    each = part.size // part.shape[-1]
-    first, last, _ = instants.indices(part.shape[-1])
-    return slice(place.start + first * each, place.start + last * each)
-
-
-def _every(size: int, instant: int, wanted: int) -> slice:
-    """One place out of so many, no rows of an instant left out for ever."""
-    step = wanted
-    while math.gcd(step, instant) > 1:
+def _step(step: int, rows: int) -> int:
+    """The next larger step that leaves out none of so many rows at all instants."""
+    while math.gcd(step, rows) > 1:
         step += 1
-    return slice(0, size, step)
-
-
-def _flat(part: Array) -> Array:
-    """The numbers of a part in a row, without a copy where it is contiguous in space."""
-    return part.reshape(-1, order="F")
+    return step

@@ -42,18 +42,14 @@ class SeparatedBasis:
     weights: Array
 
     @classmethod
-    def empty(cls, k: Array, weights: Array) -> SeparatedBasis:
-        """Basis of a zero field."""
-        return cls(np.zeros((len(k), 0), order="F"), np.zeros((0, len(weights))), k, weights)
-
-    @classmethod
     def of_field(
         cls, field: Array, k: Array, weights: Array, tolerance: float, largest: int
     ) -> SeparatedBasis:
         """Basis of a field, shape (n_boundary, n_columns), downsized."""
-        root = np.sqrt(k)
-        basis = cls(np.diag(1.0 / root), root[:, None] * field, k, weights)
+        root = np.sqrt(k)[:, None]
+        basis = cls(np.eye(len(k)), root * field, k, weights)
         basis.downsize(tolerance, largest)
+        basis.modes /= root
         return basis
 
     @property
