@@ -43,8 +43,8 @@ STILL = 1e-6
 """Share of what the largest force does to one element, below which a structure does not move."""
 
 
-def behaviour_indicator(iterate: Iterate) -> float:
-    """Check of the linear stage's fields against the interface laws alone (solver/README.md, 4).
+def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
+    """Check of W and F, (n_rows, n_instants), against the laws alone (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q
@@ -61,11 +61,6 @@ def behaviour_indicator(iterate: Iterate) -> float:
     a small friction force is held to the same standard. Zero if and only if all laws hold, up to
     the rounding of the fields.
     """
-    return behaviour_of(iterate.problem, iterate.boundary_displacement, iterate.boundary_force)
-
-
-def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Check of W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator`."""
     noise = _rounding(displacement, force)
     groups = problem.contact_groups
     behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
-from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.latin.indicators import behaviour_of, latin_indicator
 from solver.reduction.basis import Modes, Reduction
 
 CREEP = 1e-2
@@ -170,7 +170,7 @@ class Iterate:
     @cached_property
     def behaviour(self) -> float:
         """The k-free indicator (solver/README.md, 4)."""
-        return behaviour_indicator(self)
+        return behaviour_of(self.problem, self.boundary_displacement, self.boundary_force)
 
     @cached_property
     def displacement(self) -> Array:
