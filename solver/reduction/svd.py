@@ -157,6 +157,8 @@ def against_front(values: Array) -> Array:
 
 
 def _signs(modes: Array) -> Array:
+    if not modes.size:  # of a substructure that does not rub
+        return np.ones(modes.shape[1])
     size = np.abs(modes)
     largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)
     return np.where(modes[largest, np.arange(modes.shape[1])] < 0.0, -1.0, 1.0)
