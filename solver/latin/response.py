@@ -106,7 +106,8 @@ def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:
     if isinstance(stiffness, np.ndarray):
         factor = cho_factor(stiffness + np.diag(springs), check_finite=False)
         return partial(cho_solve, factor, check_finite=False)
-    solve: Callable[[Array], Array] = splu(
-        sparse.csc_array(stiffness + sparse.diags_array(springs))
-    ).solve
+    held = stiffness.copy()
+    held.setdiag(held.diagonal() + springs)
+    # Symmetric, so its rows are its columns.
+    solve: Callable[[Array], Array] = splu(held.T).solve
     return solve
