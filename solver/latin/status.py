@@ -15,6 +15,10 @@ from solver.reference.limit_analysis import Collapse
 if TYPE_CHECKING:
     from solver.latin.method import Latin
 
+BELOW_UNPROVEN = (
+    "The LATIN indicator is below its tolerance, yet the contact force is not known to be accurate "
+    "enough"
+)
 FAR = 0.1
 """Error of the contact force from which on what a status step finds is not LATIN's own."""
 LOWEST = 1e-24
@@ -140,8 +144,10 @@ def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
         lack = "The contact force of the iterates is not accurate enough"
     elif iterate.indicator > stop.tolerance and not (asks_accuracy and searches):
         lack = "The LATIN indicator is still above its tolerance"
-    elif asks_accuracy:
+    elif asks_accuracy and (searches or math.isinf(stop.tolerance)):
         lack = "The contact force is not known to be accurate enough"
+    elif asks_accuracy:
+        lack = BELOW_UNPROVEN
     of_k, of_bases = _remedies(latin)
     remedy = of_bases or f"Raise max_iterations, or {of_k}."
     is_late = iterate.number < stop.iterations
@@ -158,9 +164,8 @@ def stalled(latin: Latin, lowest: float, tolerance: float, *, agrees: bool) -> S
         advice = "The LATIN indicator is down to rounding: more iterations change nothing."
     elif lowest <= tolerance:
         advice = (
-            "The LATIN indicator is below its tolerance, yet the contact force is not known to be "
-            "accurate enough: k is far from what suits, or rigid motion so large that it hides how "
-            f"the body deforms. {of_bases or of_k.capitalize() + '.'}"
+            f"{BELOW_UNPROVEN}: k is far from what suits, or rigid motion so large that it hides "
+            f"how the body deforms. {of_bases or of_k.capitalize() + '.'}"
         )
     elif latin.relaxation > 0.9:
         advice = "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
