@@ -5,7 +5,6 @@ from itertools import islice
 import numpy as np
 
 from solver.latin import iterations
-from solver.latin.indicators import behaviour_indicator
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
@@ -17,7 +16,7 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
     settings = CATALOGUE[scene].settings.checked(values)
     problem = discretise(settings)
     for iterate in islice(iterations(problem, method_of(settings)), LOOK - 1, most, LOOK):
-        found = behaviour_indicator(iterate)
+        found = iterate.behaviour
         if found <= violation:
             return iterate
     raise AssertionError(f"the laws are violated by {found} after {iterate.number} iterations")

@@ -10,7 +10,6 @@ import pytest
 from bars import SMALL, options, relative, sample, table
 
 from solver.latin import Ending, iterations, solve
-from solver.latin.indicators import latin_indicator
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
@@ -34,9 +33,9 @@ def driven(chosen):
     for iterate in islice(
         iterations(problem, method_of(chosen)), LOOK - 1, chosen.max_iterations, LOOK
     ):
-        if latin_indicator(iterate) <= chosen.tolerance:
+        if iterate.indicator <= chosen.tolerance:
             return iterate
-    pytest.fail(f"eta is {latin_indicator(iterate)} after {iterate.number} iterations")
+    pytest.fail(f"eta is {iterate.indicator} after {iterate.number} iterations")
 
 
 def assert_reached(chosen):

@@ -9,7 +9,6 @@ import pytest
 from bars import SMALL, boundary_of, options, relative, sample, table
 
 from solver.latin import Iterate, iterations
-from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Contact, Dirichlet, Neumann
 from solver.reference.incremental import reference_of
 from solver.scenes import discretise
@@ -23,7 +22,7 @@ def test_the_rate_does_not_matter():
     assert np.array_equal(slow.outgoing, fast.outgoing)
     assert np.array_equal(slow.displacement, fast.displacement)
     assert np.array_equal(slow.friction_force, fast.friction_force)
-    assert latin_indicator(slow) == pytest.approx(latin_indicator(fast), rel=1e-12)
+    assert slow.indicator == pytest.approx(fast.indicator, rel=1e-12)
 
 
 def test_a_path_with_pauses_gives_every_iterate_again_with_pauses():
@@ -44,7 +43,7 @@ def test_scaling_load_and_pressure_scales_the_answer(factor):
     )
     assert relative(scaled.displacement, factor * plain.displacement) < 1e-12
     assert relative(scaled.friction_force, factor * plain.friction_force) < 1e-12
-    assert latin_indicator(scaled) == pytest.approx(latin_indicator(plain), rel=1e-9)
+    assert scaled.indicator == pytest.approx(plain.indicator, rel=1e-9)
 
 
 @pytest.mark.parametrize("method", ["fast", "paper"])
@@ -106,7 +105,7 @@ def test_the_latin_indicator_is_equation_2(number, multiscale):
     local = iterate.local_displacement, iterate.boundary_local_force
     distance = squared(linear[0] - local[0], linear[1] - local[1])
     expected = distance / (0.5 * (squared(*linear) + squared(*local)))
-    assert latin_indicator(iterate) == pytest.approx(expected, rel=1e-12)
+    assert iterate.indicator == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("load", ["sine", "random"])
@@ -118,19 +117,19 @@ def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(l
     problem = discretise(chosen)
     k = method_of(chosen).direction.of(problem)
     displacement, force = boundary_of(problem, reference_of(problem))
-    exact = behaviour_indicator(iterate_of(problem, k, displacement, force))
+    exact = iterate_of(problem, k, displacement, force).behaviour
     assert 0.0 <= exact < 1e-8
     random = np.random.default_rng(5)
     for kind in (Contact, Dirichlet):
         (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
         moved = displacement.copy()
         moved[law.rows] += 1e-3 * displacement.max() * random.normal(size=moved[law.rows].shape)
-        assert behaviour_indicator(iterate_of(problem, k, moved, force)) > 1e-6
+        assert iterate_of(problem, k, moved, force).behaviour > 1e-6
     for kind in (Contact, Neumann):
         (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
         pulled = force.copy()
         pulled[law.rows] *= 1.01
-        assert behaviour_indicator(iterate_of(problem, k, displacement, pulled)) > 1e-6
+        assert iterate_of(problem, k, displacement, pulled).behaviour > 1e-6
 
 
 @pytest.mark.parametrize("number", [1, 5, 40, 200])
@@ -138,7 +137,7 @@ def test_the_behaviour_indicator_sees_no_k(number):
     iterate = sample(options(**SMALL), number)
     displacement, force = iterate.boundary_displacement, iterate.boundary_force
     found = [
-        behaviour_indicator(iterate_of(iterate.problem, factor * iterate.k, displacement, force))
+        iterate_of(iterate.problem, factor * iterate.k, displacement, force).behaviour
         for factor in (1e-3, 1.0, 40.0)
     ]
     assert found[1] > 0.0
@@ -158,7 +157,7 @@ def test_the_iteration_does_not_see_the_size_of_a_pascal(young):
     assert relative(other.outgoing, plain.outgoing) < 1e-10
     assert relative(other.displacement, plain.displacement) < 1e-10
     assert relative(other.friction_force, factor * plain.friction_force) < 1e-10
-    assert latin_indicator(other) == pytest.approx(latin_indicator(plain), rel=1e-10)
+    assert other.indicator == pytest.approx(plain.indicator, rel=1e-10)
 
 
 @pytest.mark.parametrize("length", [1e-3, 1e3])

@@ -15,10 +15,7 @@ from solver.latin import iterations
 from solver.reduction.clips import Clips, clips_of, monotone
 from solver.reduction.sizes import in_pieces, of_bases
 from solver.reduction.svd import (
-    InterfaceField,
     decompose,
-    decompositions,
-    friction_spectra,
     front_decay,
 )
 from solver.reference.incremental import reference_of
@@ -28,8 +25,6 @@ from solver.scenes.method import method_of
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
 from solver.study.quantities.reduction_measures import clips_in
-
-DEGENERATE = [{"instants": 1, "load": "ramp"}, {"peak": 0.0}, {"elements": 52, "peak": 2000.0}]
 
 
 @st.composite
@@ -90,17 +85,6 @@ def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(
         left = squared_norm(field - first_modes(found, rank), space, time)
         assert np.sqrt(left) == pytest.approx(error * np.sqrt(whole), abs=1e-9 * np.sqrt(whole))
     assert np.all(np.diff(found.errors) <= 0.0)
-
-
-@pytest.mark.parametrize("changes", DEGENERATE, ids=str)
-def test_the_short_way_gives_the_singular_values_of_the_long_one(changes):
-    iterate = iterate_of(**changes)
-    for short, each in zip(
-        friction_spectra(iterate),
-        decompositions(iterate, InterfaceField.FRICTION_FORCE),
-        strict=True,
-    ):
-        np.testing.assert_allclose(short, each.values, rtol=1e-9, atol=1e-9 * each.values[0])
 
 
 def test_a_front_sampled_finely_has_the_spectrum_of_an_integration():

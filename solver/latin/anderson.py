@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg.lapack import dposv
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks, in_a_row
-from solver.latin.linear_stage import Group, LinearStage
+from solver.latin.blocks import Blocks
+from solver.latin.linear_stage import LinearStage
 from solver.refusal import check_range
 
 MEMORY = 15
-"""Differences that are remembered at most. From 5 to 50, 1 % of the contact force takes the same
-number of iterations but for two on bar, strand, block and layers, and 1e-4 from 55 to 63 on layers,
-39 to 45 on strands (measured)."""
+"""Differences that are remembered at most; from 5 to 50 iterations hardly differ (measured)."""
 GROWTH_ON_SUPPORT = 2.0
 """Growth of the residual from which the memory is given up, in contact with a rigid support: with 1
 the rocking of a block that tilts until it lifts off takes thousands of iterations, not 50."""
 GROWTH_BETWEEN_BODIES = 1.1
-"""The same in contact between two bodies. Layers 200 times as long as thick: 1e-6 of the contact
-force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1 (measured)."""
+"""The same between bodies. Thin layers: 1e-6 takes 120 iterations, 140 with 2, 300 with 1."""
 MOST_VALUES = 50_000_000
-"""Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
-On 384 x 192 elements 1e-4 takes 38 iterations with 15 differences, 39 with 8, 41 with 5
-(measured)."""
+"""Numbers that the remembered images may hold; a larger field is remembered for fewer iterations:
+on 384 x 192 elements 1e-4 takes 38 with 15 differences, 41 with 5 (measured)."""
 SAMPLE = 300_000
 """Values of a residual that the weights of the mixture are found from; all, if it has no more. On
-384 x 192 elements 1e-4 takes 38 iterations with that and with all, 40 with 20 000 (measured)."""
+384 x 192 elements 1e-4 takes as many iterations with that as with all (measured)."""
 REGULAR = 1e-10
 """Added to the diagonal of the small normal equations, whose own diagonal is scaled to 1."""
 
@@ -59,9 +56,9 @@ class Anderson:
 class AndersonState:
     """What a run remembers of its states, which are in full, and the mixture of them.
 
-    The images g are kept whole; of large residuals no more than a sample is, drawn once. Residuals
-    are measured by k over boundary and time. They count for nothing along a motion of the rows,
-    (n_rows,), which the local stage chooses anew at every instant, whatever the state is.
+    The images g are kept whole; of large residuals no more than a sample is. Residuals are measured
+    by k over boundary and time. They count for nothing along a motion of the rows, (n_rows,), which
+    the local stage chooses anew at every instant, whatever the state is.
     """
 
     def __init__(
@@ -80,24 +77,26 @@ class AndersonState:
             self._growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
         groups = self._groups = stage.groups
         self._blocks = blocks
-        sizes = [group.target.size for group in groups]
-        self._places = in_a_row(sizes)
-        self._chosen = _sample(sizes)
+        size = sum(group.target.size for group in groups)
+        self._steps = [_step(-(-size // SAMPLE), group.rows.size) for group in groups]
         weights = [group.k[:, None, None] * problem.time_weights for group in groups]
-        sampled = self._sampled(weights)
-        self._samples = in_a_row([len(part) for part in sampled])
-        self._root = np.sqrt(np.concatenate(sampled))
-        self._free = None
+        self._root = np.sqrt(self._sampled(weights))
+        self._way = None
         if motion is not None:
-            ways = self._sampled([motion[group.rows][:, :, None] for group in groups])
-            self._free = _Motion(groups, self._chosen, self._root * np.concatenate(ways))
-        self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
-        # Memory that nothing was written to costs nothing yet.
-        self._images = np.zeros((self._memory + 1, sum(sizes)))
+            ways = [motion[group.rows][:, :, None] for group in groups]
+            self._way = self._root * self._sampled(ways)
+            instants = np.arange(float(problem.n_instants))
+            self._instants = self._sampled([instants for _ in groups]).astype(int)
+            squares = np.bincount(self._instants, self._way**2)
+            self._dual = self._way / np.where(squares > 0.0, squares, 1.0)[self._instants]
+        self._memory = max(1, min(memory, MOST_VALUES // size - 1))
+        # Memory that nothing was written to costs nothing yet; an instant is in one piece.
+        shapes = [(self._memory + 1, *group.target.T.shape) for group in groups]
+        self._images = [np.zeros(shape) for shape in shapes]
         self._residuals = np.zeros((self._memory, len(self._root)))
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
-        self._start, self._residual, self._residual_before = np.zeros((3, len(self._root)))
+        self._start = self._before = np.zeros(len(self._root))
         self._forget()
 
     def _forget(self) -> None:
@@ -105,44 +104,39 @@ class AndersonState:
 
     def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
-        self._take(self._start)
+        self._start = self._sampled([group.state for group in self._groups])
 
     def mix(self) -> None:
         """Replace g(y) by the mixture, in place, once there is one."""
-        if self._observe() and self._count:
-            self._mix()
-
-    def _observe(self) -> bool:
-        """Read g(y); whether it is of use."""
-        residual = self._residual
-        self._take(residual)
+        residual = self._sampled([group.state for group in self._groups])
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
-        if self._free:
-            self._free.leave_out(residual)
+        if self._way is not None:
+            share = np.bincount(self._instants, self._dual * residual)
+            residual -= self._way * share[self._instants]
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
-            return False
+            return
         if size > self._growth * self._smallest:
             self._forget()
         if np.isfinite(self._smallest):  # there is an image before
-            self._remember()
+            self._remember(residual)
         self._smallest = min(self._smallest, size)
-        image = self._images[self._place_of(self._count)]
+        place = self._place_of(self._count)
 
         def keep(instants: slice) -> None:
-            for group, place in zip(self._groups, self._places, strict=True):
-                part = group.state
-                image[_within(place, part, instants)] = _flat(part[..., instants])
+            for group, images in zip(self._groups, self._images, strict=True):
+                images[place, instants] = group.state.T[instants]
 
         self._blocks.each(keep)
-        self._residual, self._residual_before = self._residual_before, residual
-        return True
+        self._before = residual
+        if self._count:
+            self._mix()
 
-    def _remember(self) -> None:
+    def _remember(self, residual: Array) -> None:
         place = self._count % self._memory
         newest = self._residuals[place]
-        np.subtract(self._residual, self._residual_before, out=newest)
+        np.subtract(residual, self._before, out=newest)
         self._count += 1
         used = min(self._count, self._memory)
         row = self._residuals[:used] @ newest
@@ -150,7 +144,7 @@ class AndersonState:
         self._products[:used, place] = row
         # The products with the residual change by those with its newest difference.
         self._wanted[:used] += row
-        self._wanted[place] = newest @ self._residual
+        self._wanted[place] = newest @ residual
 
     def _mix(self) -> None:
         used = min(self._count, self._memory)
@@ -164,10 +158,9 @@ class AndersonState:
         shares = self._shares(scale * gamma)
 
         def mix(instants: slice) -> None:
-            for group, place in zip(self._groups, self._places, strict=True):
-                part = group.state
-                images = self._images[: used + 1, _within(place, part, instants)]
-                np.matmul(shares, images, out=_flat(part[..., instants]))
+            for group, images in zip(self._groups, self._images, strict=True):
+                part = images[: used + 1, instants].reshape(used + 1, -1)
+                np.matmul(shares, part, out=group.state.T[instants].reshape(-1))
 
         self._blocks.each(mix)
 
@@ -184,63 +177,18 @@ class AndersonState:
     def _place_of(self, number: int) -> int:
         return number % (self._memory + 1)
 
-    def _take(self, out: Array) -> None:
-        for group, chosen, place in zip(self._groups, self._chosen, self._samples, strict=True):
-            out[place] = _flat(group.state)[chosen]
-
-    def _sampled(self, fields: list[Array]) -> list[Array]:
-        """Fields of the groups at the places of the sample."""
-        return [
-            _flat(np.broadcast_to(field, group.target.shape))[chosen]
-            for field, group, chosen in zip(fields, self._groups, self._chosen, strict=True)
-        ]
-
-
-class _Motion:
-    """A motion that residuals are blind to, weighted, at the places of a sample."""
-
-    def __init__(self, groups: list[Group], chosen: list[slice | Indices], way: Array) -> None:
-        sizes, count = [group.target.size for group in groups], groups[0].target.shape[-1]
-        instants = np.concatenate(
+    def _sampled(self, fields: list[Array]) -> Array:
+        """Fields of the groups at the places of the sample, in a row."""
+        return np.concatenate(
             [
-                np.arange(size)[places] * count // size
-                for size, places in zip(sizes, chosen, strict=True)
+                np.broadcast_to(field, group.target.shape).reshape(-1, order="F")[::step]
+                for field, group, step in zip(fields, self._groups, self._steps, strict=True)
             ]
         )
-        self._way, size = way, np.bincount(instants, way**2)
-        self._dual = way / np.where(size > 0.0, size, 1.0)[instants]
-        # In order of memory an instant is a run of places, in every part.
-        self._first = np.flatnonzero(np.diff(instants, prepend=-1))
-        self._lengths = np.diff(self._first, append=len(instants))
-        self._instants = instants[self._first]
-
-    def leave_out(self, residual: Array) -> None:
-        """Remove from a weighted residual what it has of the motion, instant by instant."""
-        runs = np.add.reduceat(self._dual * residual, self._first)
-        share = np.bincount(self._instants, runs)[self._instants]
-        residual -= self._way * np.repeat(share, self._lengths)
 
 
-def _within(place: slice, part: Array, instants: slice) -> slice:
-    """Where some instants of a part stand, which itself stands at a place."""
-    each = part.size // part.shape[-1]
-    first, last, _ = instants.indices(part.shape[-1])
-    return slice(place.start + first * each, place.start + last * each)
-
-
-def _sample(sizes: list[int]) -> list[slice | Indices]:
-    """Draw one place out of every so many, the same whenever it is asked: a run repeats itself."""
-    step = -(-sum(sizes) // SAMPLE)
-    if step == 1:
-        return [slice(0, size) for size in sizes]
-    draw = np.random.default_rng(0)
-    places: list[slice | Indices] = []
-    for size in sizes:
-        first = np.arange(0, size, step)
-        places.append(np.minimum(first + draw.integers(0, step, len(first)), size - 1))
-    return places
-
-
-def _flat(part: Array) -> Array:
-    """The numbers of a part in a row, without a copy where it is contiguous in space."""
-    return part.reshape(-1, order="F")
+def _step(step: int, rows: int) -> int:
+    """The next larger step that leaves out none of so many rows at all instants."""
+    while math.gcd(step, rows) > 1:
+        step += 1
+    return step

@@ -72,7 +72,7 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     F of every row, shape (n_rows, n_instants), scaled.
     """
     known, is_known = known_forces(problem, contact_force)
-    balance, needed = _balance(problem, displacement)
+    balance, needed = balance_of_rows(problem, displacement)
     cuts = problem.cuts
     n_cuts = sum(len(side) for side, _ in cuts)
     first = np.concatenate([np.zeros(0, dtype=np.intp), *(side for side, _ in cuts)])
@@ -103,7 +103,7 @@ def known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArray
     return force, is_known
 
 
-def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, Array]:
+def balance_of_rows(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, Array]:
     """What sums the rows of every boundary point, (n, n_rows), and the force that it needs."""
     rows, places, needed, size = [], [], [], 0
     for part in problem.substructures:

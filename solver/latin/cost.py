@@ -27,25 +27,19 @@ WAIT = 2.0
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""
 ENDS_FOR_SURE = 40
-"""The same where a step ends for sure: of rods on supports of their own it takes 5 to 30 (37 and 91
-wires near a clamp), and where friction softens 2 to 35 (blocks and faults; measured)."""
+"""The same where a step ends for sure: rods on supports of their own, and softening (2 to 35)."""
 AT_REST, SAVED = 0.02, 10
-"""Share of the jumps that move up to which statuses are right at once, as nothing slips; and the
-iterations that a step then saves, at least (thin layers: after 2 instead of 10; measured)."""
+"""Share of the jumps that move up to which nothing slips; iterations that a step then saves."""
 TRIED = 2.0
-"""Times the iterations so far that a step may cost, whatever the force does: 70 random runs take
-0.84 to 0.96 of the time with once, and 1.35 at most; 0.69 to 0.95 and 1.56 with four (measured)."""
+"""Times the iterations so far that a step may cost, whatever the force does."""
 WORTH = 0.5
-"""Share of the time of the iterations so far that a proof is worth: with all of it blocks of
-384 x 192 elements took twice as long, to prove what their estimate had said (measured)."""
+"""Share of the time of the iterations so far that a proof is worth."""
 AFFORDABLE = 40
 """Iterations that a status step may cost in any case: about as many as it saves."""
 DENSE, FACTOR, SPARSE = 1e10, 2e10, 6e9
 """Operations a second of dense products, of dense factors, and of sparse ones (measured)."""
 SHALLOW = 1.8
-"""Doublings of degrees of freedom over jumps that cost a condensation nothing; beyond one more each
-adds its whole time once, as factors fill (blocks in 32 to 512 substructures: 1.1 to 2.6;
-measured)."""
+"""Doublings of degrees of freedom over jumps, beyond which each adds a condensation (measured)."""
 SQUARE = 5e-8
 """Seconds a number of the condensed stiffness takes, all in all (measured)."""
 GATHER, READ = 8e-9, 1.5e-9
@@ -53,8 +47,7 @@ GATHER, READ = 8e-9, 1.5e-9
 MOVING = 1.0 / 3.0
 """Share of the jumps that move at an instant where contacts open or bodies bend (measured)."""
 NEXT = 2.0
-"""Interfaces that slide where a load passes from body to body: those beside what carries none. On
-strands of 3 to 20 wires and three loads it gives 1.6 to 3 times what moves (measured)."""
+"""Interfaces that slide where a load passes from body to body: those beside what carries none."""
 PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
 CALLS, OF_ITERATION = 2e-4, 5e-4
@@ -62,9 +55,7 @@ CALLS, OF_ITERATION = 2e-4, 5e-4
 BAND, BAND_CALLS = 6e-8, 3e-5
 """Seconds a number of a system with a band matrix, and those that no size makes less (measured)."""
 ITERATIONS, MORE = 30, 2.5
-"""That a run takes, and how many more with every contact between bodies but the first, where bodies
-are cut: the defaults take 4 to 25, 50 layers 81, 40 wires 7, and more than 300 where no step may
-end them. 20 layers that are not cut take 72, walls of 68 to 264 bricks 6 to 38 (measured)."""
+"""That a run takes; and more with every contact between bodies that are cut, but the first."""
 PLAIN = 5.0
 """Times as many without acceleration (measured on the bar)."""
 WATCHED = 2.0
@@ -72,8 +63,7 @@ WATCHED = 2.0
 BEGINNING = 0.05
 """Seconds for what comes before the first iteration, that no size makes less (measured)."""
 FIELDS = 25
-"""Boundary fields that a run holds at a time, besides those that the acceleration remembers: 22 on
-a block of 768 x 384 elements, 33 on a bar of 16 000 (measured)."""
+"""Boundary fields that a run holds at a time, besides those that the acceleration remembers."""
 NUMBER = 8
 """Bytes."""
 LONG, LARGE = 20.0, 1e9

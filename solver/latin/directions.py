@@ -19,15 +19,14 @@ Fields = tuple[Array, Array]
 
 LOOK = 3
 """The iteration that tells whether bodies slip on each other anywhere. In the second what will
-stick may still slip; in the third none does where none does in the end, and of 33 stacks all that
-slip at more than half a hundredth of points and instants showed it (measured)."""
+stick may still slip; of 33 stacks all that slip by more than next to nothing showed it (measured).
+"""
 SETTLED, CALM = 0.1, 25
 """The status has settled when no larger share of all points and instants than this changed, so many
 iterations on end. Sooner, 1 % is reached later; at a smaller share some loads wait past 100."""
 SLIDING = 0.3
-"""Factor on the automatic k of a point that always slips; at a point that sticks for a share of the
-instants, this to the power of the other share. Of 0.03, 0.1, 0.3 and 0.4 the one with the fewest
-iterations to 1e-6; 0.1 takes more than no update at all (measured)."""
+"""Factor on the automatic k of a point that always slips; at one that sticks for a share of the
+instants, this to the power of the other share. With 0.1 it is worse than no update (measured)."""
 TRIAL = 20
 """Iterations after which the new k must have made the k-free indicator smaller, again and again."""
 

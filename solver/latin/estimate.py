@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import ROUNDING, Array, Flags
+from solver.discrete.problem import Problem
 from solver.latin.cost import WAIT, Costs, costs_of
 from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
@@ -20,40 +21,34 @@ from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Interrupted
 
 SETTLED = 0.04
-"""Relative change of the whole contact force at which the status step is worth its first trial:
-most statuses are right. If friction and pressure each had to settle, a friction that is small
-beside pressure would wait for twice the iterations (four layers: 22 instead of 8; measured)."""
+"""Relative change of the whole contact force at which most statuses are right. If friction and
+pressure each had to settle, four layers would wait for 22 iterations instead of 8 (measured)."""
 SOLVED = 1e-20
-"""LATIN indicator, a ratio of squares, that is worth a trial whatever has changed."""
+"""LATIN indicator, a ratio of squares, of a run that begins with its solution."""
 LONG = 100
-"""Iterations from which on it is tried whatever has changed, at every doubling: a contact force
-that dies out changes by much of itself for ever."""
+"""Iterations from which on a status step is tried at every doubling, whatever has changed: a
+contact force that dies out changes by much of itself for ever."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
 ROOM = 4.0
-"""Times the seconds of a step that are left of a run's limit when its last trial begins: from
-statuses that are not right yet it takes twice as long (measured on 200 wires)."""
+"""Times the seconds of a step that are left of a run's limit when its last trial begins."""
 AGAIN = 2.0
 """Ratio of the iteration at which a failed status step is tried again."""
 LOOK_BACK = 0.7
 """A change of the contact force is that since the iterate at this share of the iterations."""
 SAFETY = 4.0
-"""On what is left, if the changes go on to fall from one such part of the iterations to the next as
-they did in the last three: by the slower of both ratios, which a power of the iterations has as
-well as a power of a number. On six bars and strands the estimate was 1 to 300 times the truth in 19
-of 20 iterates; the least was 0.2 of it (measured)."""
+"""On what is left, if the changes go on to fall by the slower of their last two ratios, which a
+power of the iterations has as well as a power of a number: of 20 iterates of bars and strands one
+had a larger error, by five times (measured)."""
 SLOWEST = 0.97
-"""Ratio at most: that of a force that converges as the iterations to the power of -0.085. Four
-wires of 320 elements come to as little as -0.07 (measured)."""
+"""Ratio at most: that of a force that converges as the iterations to the power of -0.085."""
 FEW = 10
-"""Iterations up to which changes foretell nothing. A nested start whose k does not suit the run
-makes them small at once: eight wires, 32 % wrong, change less until the sixth iteration
-(measured)."""
+"""Iterations up to which changes foretell nothing: a nested start makes them small at once."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
 RARELY = 2.0
-"""Ratio of the iterations at which it is asked anew which forces count as none: a matter of orders
-of magnitude, and dear beside a small iteration."""
+"""Ratio of the iterations at which the cost of a step, and which forces count as none, are asked
+anew: matters of orders of magnitude, and dear beside a small iteration."""
 
 
 class ErrorEstimate:
@@ -88,32 +83,28 @@ class ErrorEstimate:
         self._changes = ForceChanges()
         self._last_trial, self._next_trial = 0, 1
         self._solver: Incremental | None = None
-        self._costs: Costs | None = None
-        self._costs_at = 0
-        self._has_solver = True
+        self._costs: tuple[int, Costs] | None = None
+        self._has_solver, self._had_its_last = True, False
         self.certificate: Certificate | None = None
         self.deadline = math.inf
         self.jumps = False
         self.collapse: Collapse | None = None
 
-    def __call__(self, iterate: Iterate, indicator: float) -> float:
-        """The estimate for the next iterate of a run, and its LATIN indicator; NaN without one."""
-        accuracy = self._accuracy
-        is_due = iterate.number >= self._next_trial
-        if self.certificate is not None:
-            error = self.certificate.distance.of_friction_force(iterate)
-            if is_due and accuracy < error and self._changes.left(iterate).worst <= accuracy:
-                # It has come to rest elsewhere: there may be several solutions.
-                self.try_step(iterate)
-                error = self.certificate.distance.of_friction_force(iterate)
-            return error
-        expected = self._changes.left(iterate)
-        ends_soon = any(left <= accuracy for left in expected)
-        is_near = self._changes.last.whole <= SETTLED or ends_soon or indicator <= SOLVED
-        if is_due and (is_near or self._is_worth_it(iterate)):
-            self.try_step(iterate, least=WAIT if ends_soon else 0.0)
+    def __call__(self, iterate: Iterate) -> float:
+        """The estimate for the next iterate of a run; NaN where there is none."""
+        number, worst = iterate.number, math.nan
         if self.certificate is None:
-            return expected.worst
+            worst, whole = self._changes.left(iterate)
+            ends_soon = worst <= self._accuracy or whole <= self._accuracy
+            # A run may begin with its solution, so that no change shows it.
+            is_near = self._changes.last.whole <= SETTLED
+            is_near |= number == 1 and iterate.indicator <= SOLVED
+            is_near |= number >= max(LONG, 2 * self._last_trial)
+            is_due = number >= self._next_trial
+            if is_due and (is_near or self._costs_of(iterate).are_small(number)):
+                self.try_step(iterate, least=WAIT if ends_soon else 0.0)
+        if self.certificate is None:
+            return worst
         return self.certificate.distance.of_friction_force(iterate)
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
@@ -134,11 +125,13 @@ class ErrorEstimate:
             return False
         return self._needs_proof or costs.afford(patience * iterate.number, least)
 
-    def is_last_chance(self, iterate: Iterate) -> bool:
-        """Whether a run without an answer would have no time for a status step later."""
-        if self.certificate is not None or math.isinf(self.deadline):
-            return False
-        return self._left() <= ROOM * self._costs_of(iterate).step
+    def try_in_time(self, iterate: Iterate) -> None:
+        """Try the status step, once, where a run without an answer has no time for it later."""
+        if self.certificate is not None or math.isinf(self.deadline) or self._had_its_last:
+            return
+        if self._left() <= ROOM * self._costs_of(iterate).step:
+            self._had_its_last = True
+            self.try_step(iterate, LAST, least=math.inf)
 
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> None:
         """Try the status step, unless it costs too much, as above."""
@@ -146,29 +139,25 @@ class ErrorEstimate:
             return
         self._last_trial = iterate.number
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
-        problem, states = iterate.problem, states_of(iterate)
         systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
-            self._solver = self._solver or incremental_solver(problem)
+            self._solver = self._solver or incremental_solver(iterate.problem)
             solution, certificate = status_step(
-                self._solver, problem, states, systems, lambda: time.perf_counter() > self.deadline
+                self._solver,
+                iterate.problem,
+                states_of(iterate),
+                systems,
+                lambda: self._left() < 0.0,
             )
         except NoReferenceError:
             self._has_solver = False
             return
         except Interrupted:
             return
-        self.jumps, self.collapse = (
-            solution.jumps_at is not None and solution.is_lost,
-            solution.collapse,
-        )
+        self.jumps = solution.jumps_at is not None and solution.is_lost
+        self.collapse = solution.collapse
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
-
-    def _is_worth_it(self, iterate: Iterate) -> bool:
-        """Whether to try the step though the force is not near: it may never seem so."""
-        is_long = iterate.number >= max(LONG, 2 * self._last_trial)
-        return is_long or self._costs_of(iterate).are_small(iterate.number)
 
     def _left(self) -> float:
         """Seconds that are left of the run's limit."""
@@ -176,10 +165,9 @@ class ErrorEstimate:
 
     def _costs_of(self, iterate: Iterate) -> Costs:
         """Estimate the costs by the statuses that an iterate shows, now and then anew."""
-        if self._costs is None or iterate.number >= AGAIN * self._costs_at:
-            self._costs_at = iterate.number
-            self._costs = costs_of(iterate.problem, states_of(iterate))
-        return self._costs
+        if self._costs is None or iterate.number >= RARELY * self._costs[0]:
+            self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
+        return self._costs[1]
 
 
 class Change(NamedTuple):
@@ -190,7 +178,7 @@ class Change(NamedTuple):
 
 
 class _Past(NamedTuple):
-    """Forces on the rows that rub at an iteration, and how they had changed by then."""
+    """Forces on the rows that rub, (n_instants, n_rows), and how they had changed by then."""
 
     number: int
     force: Array
@@ -202,28 +190,35 @@ class ForceChanges:
 
     def __init__(self) -> None:
         self._past: list[_Past] = []
-        self._least = 0.0
-        self._least_next = 0.0
+        self._least, self._least_next = 0.0, 0.0
         self.last = Change()
 
     def left(self, iterate: Iterate) -> Change:
         """The relative error that is left, if changes go on to fall as they did, or NaN."""
-        force, number = _force_on_rows(iterate), iterate.number
-        before = _at(self._past, LOOK_BACK * number)
+        number, rows = iterate.number, iterate.problem.rubbing_rows
+        outgoing, incoming = iterate.outgoing.T[:, rows], iterate.incoming.T[:, rows]
+        force = np.ascontiguousarray(outgoing - incoming)
+        force *= 0.5 * iterate.k[rows]
+        before = self._at(LOOK_BACK * number)
         self.last = Change()
         if before is not None:
-            self.last = _change(iterate, force - before.force, force, self._least)
+            self.last = _change(iterate.problem, force - before.force, force, self._least)
+        earlier = before and self._at(LOOK_BACK * before.number)
         if not self._past or number >= SPACING * self._past[-1].number:
-            now = _Past(number, force, self.last)
-            self._past = [*_still_needed(self._past, number), now]
+            oldest = earlier.number if earlier else 0
+            self._past = [entry for entry in self._past if entry.number >= oldest]
+            self._past.append(_Past(number, force, self.last))
             if number >= self._least_next:
                 around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
                 blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
                 self._least, self._least_next = max(around, blurred), RARELY * number
-        earlier = before and _at(self._past, LOOK_BACK * before.number)
         if before is None or earlier is None or number <= FEW:
             return Change(*(0.0 if last == 0.0 else math.nan for last in self.last))
         return Change(*map(_left, self.last, before.change, earlier.change))
+
+    def _at(self, number: float) -> _Past | None:
+        """What was last kept up to a number of iterations."""
+        return next((entry for entry in reversed(self._past) if entry.number <= number), None)
 
 
 def _left(last: float, before: float, earlier: float) -> float:
@@ -233,31 +228,10 @@ def _left(last: float, before: float, earlier: float) -> float:
     return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
 
-def _still_needed(past: list[_Past], number: int) -> list[_Past]:
-    """The entries that later iterations look back at; of the oldest the change is enough."""
-    first = _at(past, LOOK_BACK * number)
-    if first is None:
-        return past
-    oldest = _at(past, LOOK_BACK * first.number) or past[0]
-    return [
-        entry if entry.number >= first.number else entry._replace(force=np.zeros(0))
-        for entry in past
-        if entry.number >= oldest.number
-    ]
-
-
-def _at(past: list[_Past], number: float) -> _Past | None:
-    """The last entry up to a number of iterations."""
-    return next((entry for entry in reversed(past) if entry.number <= number), None)
-
-
-def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Change:
+def _change(problem: Problem, change: Array, force: Array, least: float) -> Change:
     """A change relative to what `solver.reference.distance` divides an error by."""
-    n_instants, normal = iterate.problem.n_instants, iterate.problem.rubbing_is_normal
-    changes, squares = (
-        np.einsum("ij,ij->j", by_instant, by_instant)
-        for by_instant in (field.reshape(n_instants, -1) for field in (change, force))
-    )
+    normal = problem.rubbing_is_normal
+    changes, squares = (np.einsum("ij,ij->j", field, field) for field in (change, force))
 
     def share(kind: Flags | slice, least: float) -> float:
         size = max(math.sqrt(float(squares[kind].sum())), least)
@@ -265,11 +239,3 @@ def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Chan
 
     hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
     return Change(max(share(normal, hidden), share(~normal, hidden)), share(slice(None), least))
-
-
-def _force_on_rows(iterate: Iterate) -> Array:
-    """The forces on the rows of the bodies above that rub, in a row, scaled."""
-    rows = iterate.problem.rubbing_rows
-    difference = iterate.outgoing[rows] - iterate.incoming[rows]
-    difference *= 0.5 * iterate.k[rows, None]
-    return difference.reshape(-1, order="F")

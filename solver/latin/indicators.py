@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
 from solver.discrete.contact_groups import ContactGroup
 from solver.discrete.problem import Problem
-from solver.latin.iterate import Iterate
 from solver.laws.contact import Behaviour
 from solver.laws.interface import beyond, squared
+
+if TYPE_CHECKING:
+    from solver.latin.iterate import Iterate
 
 
 def latin_indicator(iterate: Iterate) -> float:
@@ -39,8 +43,8 @@ STILL = 1e-6
 """Share of what the largest force does to one element, below which a structure does not move."""
 
 
-def behaviour_indicator(iterate: Iterate) -> float:
-    """Check of the linear stage's fields against the interface laws alone (solver/README.md, 4).
+def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
+    """Check of W and F, (n_rows, n_instants), against the laws alone (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q
@@ -57,11 +61,6 @@ def behaviour_indicator(iterate: Iterate) -> float:
     a small friction force is held to the same standard. Zero if and only if all laws hold, up to
     the rounding of the fields.
     """
-    return behaviour_of(iterate.problem, iterate.boundary_displacement, iterate.boundary_force)
-
-
-def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Check of W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator`."""
     noise = _rounding(displacement, force)
     groups = problem.contact_groups
     behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]
@@ -130,3 +129,30 @@ def ratio(part: float, whole: float) -> float:
     if part == 0.0:
         return 0.0
     return part / whole if whole != 0.0 else float("inf")
+
+
+SHARE = 8
+"""A number that is awaited is computed again at the latest after this part of the iterations."""
+
+
+class Awaited:
+    """The next iteration at which a number that falls towards a level is worth computing.
+
+    Half way to where its last two values would have it cross the level; while it does not fall,
+    after half of the longest wait. So it is missed by little, and only if it falls suddenly.
+    """
+
+    def __init__(self) -> None:
+        self.next = 0
+        self._last = (0, math.nan)
+
+    def saw(self, iteration: int, value: float, level: float) -> None:
+        """Take in a value."""
+        before, last = self._last
+        self._last = iteration, value
+        left = 0.0
+        if level < value < last and iteration > before:
+            rate = math.log(last / value) / (iteration - before)
+            left = 0.5 * math.log(value / level) / rate
+        least = 0 if value <= level else iteration // (2 * SHARE)
+        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)

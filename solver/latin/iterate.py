@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
+from solver.latin.indicators import behaviour_of, latin_indicator
 from solver.reduction.basis import Modes, Reduction
 
 CREEP = 1e-2
@@ -162,6 +163,16 @@ class Iterate:
         return self.k[:, None] * (self.local_displacement - self.local_incoming)
 
     @cached_property
+    def indicator(self) -> float:
+        """LATIN indicator eta, a ratio of squares (paper, eq. 2)."""
+        return latin_indicator(self)
+
+    @cached_property
+    def behaviour(self) -> float:
+        """The k-free indicator (solver/README.md, 4)."""
+        return behaviour_of(self.problem, self.boundary_displacement, self.boundary_force)
+
+    @cached_property
     def displacement(self) -> Array:
         """Displacement of the linear stage, shape (n_dofs, n_instants), m; mean at cuts."""
         mean = self.problem.mean_of_rows @ self.boundary_displacement
@@ -190,12 +201,8 @@ class Iterate:
     def contact(self, name: str) -> ContactFields:
         """One interface with friction: forces of the linear stage, status of the local one."""
         status = self.status[self.problem.contact_points[name]]
-        moved = self._moved_by_rows
+        moved = self.boundary_displacement
         return contact_fields(self.problem, name, self.contact_force, moved, status)
-
-    @cached_property
-    def _moved_by_rows(self) -> Array:
-        return self.boundary_displacement
 
     @cached_property
     def status(self) -> NDArray[np.int8]:

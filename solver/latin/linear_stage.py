@@ -14,7 +14,7 @@ from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL, Blocks, at_once
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
-from solver.latin.response import Responses
+from solver.latin.response import Responses, response_of
 from solver.reduction.basis import Modes, Reduction, ReductionRecord
 
 if TYPE_CHECKING:
@@ -159,7 +159,9 @@ class Group:
         self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
-        self.response = (responses or Responses()).of(parts[0].elasticity, self.k)
+        self.response = response_of(
+            parts[0].elasticity, self.k, {} if responses is None else responses
+        )
         self.body: Array | None = None
         if any(part.body_force is not None for part in parts):
             self.body = self.field()

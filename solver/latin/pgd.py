@@ -8,7 +8,7 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -125,19 +125,13 @@ class PGDGroup(Group):
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the bases of a checkpoint, or the nearest ones to its fields, or none."""
         self.iterations = checkpoint.number if checkpoint else 0
-        places = range(self.rows.shape[1])
-        if checkpoint is None:
-            bases = [SeparatedBasis.empty(self.k, self._weights) for _ in places]
-        elif checkpoint.reduction is None:
-            self.gather(checkpoint.outgoing)
-            bases = [self._basis_of(self.target[:, place], 1) for place in places]
-        else:
+        if checkpoint is not None and checkpoint.reduction is not None:
             self.families = list(self._shown(checkpoint.reduction))
             return
-        self.families = [
-            Family([place], basis, self._incoming(basis), ReductionRecord.idle(basis.n_modes))
-            for place, basis in enumerate(bases)
-        ]
+        field = self.field()
+        if checkpoint is not None:
+            field = checkpoint.outgoing[self.rows]
+        self.families = [self._family([place], field) for place in range(self.rows.shape[1])]
 
     def outgoing(self) -> Array:
         """W + F/k, rebuilt."""
@@ -234,26 +228,25 @@ class PGDGroup(Group):
         """Join families whose fields lie in each other's modes up to the allowed share."""
         joined: list[Family] = []
         for family in self.families:
-            for other in joined:
+            for place, other in enumerate(joined):
                 apart = family.basis.outside(other.basis), other.basis.outside(family.basis)
                 if max(apart) <= self._pgd.sharing:
-                    self._join(other, family)
+                    field = self.field()
+                    for part in (other, family):
+                        part.put(field, part.basis.field())
+                    members = sorted(other.members + family.members)
+                    joined[place] = replace(self._family(members, field), record=other.record)
                     break
             else:
                 joined.append(family)
         self.families = joined
 
-    def _join(self, family: Family, other: Family) -> None:
-        target = self.field()
-        for part in (family, other):
-            part.put(target, part.basis.field())
-        family.members = sorted(family.members + other.members)
-        family.basis = self._basis_of(family.columns(target), len(family.members))
-        family.incoming_modes = self._incoming(family.basis)
-
-    def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
-        weights, pgd = np.repeat(self._weights, n_members), self._pgd
-        return SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
+    def _family(self, members: list[int], field: Array) -> Family:
+        """Some members with a basis of their part of a group field."""
+        columns = field[:, members].reshape(len(field), -1, order="F")
+        weights, pgd = np.repeat(self._weights, len(members)), self._pgd
+        basis = SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
+        return Family(members, basis, self._incoming(basis), ReductionRecord.idle(basis.n_modes))
 
     def _incoming(self, basis: SeparatedBasis) -> Array:
         incoming = np.empty(basis.modes.shape, order="F")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property, partial
+
 import numpy as np
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
@@ -20,19 +23,53 @@ BLOCK = 12_000
 whose first touch costs up to ten times the solution (measured)."""
 
 
-class DenseResponse:
-    """The boundary response of a substructure as one dense matrix."""
+class Response:
+    """The boundary response of a substructure, by a solution for all columns.
+
+    H k is that of the boundary to k y, with k as springs to rest (solver/README.md, 2).
+    """
 
     def __init__(self, elasticity: Elasticity, k: Array) -> None:
-        self._factor = _factor(elasticity, k)
-        self._trace = elasticity.trace
-        n_boundary = len(k)
-        ones = np.zeros((elasticity.stiffness.shape[0], n_boundary))
-        ones[elasticity.trace, np.arange(n_boundary)] = 1.0
-        compliance = self._factor.solve(ones)[elasticity.trace]
+        self._elasticity, self._trace, self._k = elasticity, elasticity.trace, k
+        self._solve = _solver(elasticity, k)
+        self._n_dofs = elasticity.stiffness.shape[0]
+
+    @cached_property
+    def _load(self) -> sparse.csr_array:
+        places = self._trace, np.arange(len(self._k))
+        return sparse.csr_array((self._k, places), shape=(self._n_dofs, len(self._k)))
+
+    def reflect(self, outgoing: Array, out: Array) -> None:
+        """Write 2 H k y - y for y of shape (n_boundary, n)."""
+        n_columns = max(BLOCK // self._n_dofs, 4)
+        for first in range(0, outgoing.shape[1], n_columns):
+            columns = slice(first, first + n_columns)
+            displacement = self._solve(np.asfortranarray(self._load @ outgoing[:, columns]))
+            np.multiply(displacement[self._trace], 2.0, out=out[:, columns])
+        np.subtract(out, outgoing, out=out)
+
+    def force_rows(self, rows: Indices) -> Array:
+        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        load = self._load[:, rows].toarray()
+        full = -(self._load.T @ self._solve(load)).T
+        full[np.arange(len(rows)), rows] += self._k[rows]
+        return np.asarray(full)
+
+    def of_body_force(self, force: Array) -> Array:
+        """Boundary displacement under body forces, with k as a spring to rest."""
+        return self._solve(force)[self._trace]
+
+
+class DenseResponse(Response):
+    """The boundary response of a small substructure as one dense matrix."""
+
+    def __init__(self, elasticity: Elasticity, k: Array) -> None:
+        super().__init__(elasticity, k)
+        pulled = np.zeros((self._n_dofs, len(k)))
+        pulled[self._trace, np.arange(len(k))] = 1.0
+        compliance = self._solve(pulled)[self._trace]
         self._compliance = 0.5 * (compliance + compliance.T)
-        self._k = k
-        self._reflection = 2.0 * self._compliance * k - np.eye(n_boundary)
+        self._reflection = 2.0 * self._compliance * k - np.eye(len(k))
 
     def reflect(self, outgoing: Array, out: Array) -> None:
         """Write 2 H k y - y for y of shape (n_boundary, n)."""
@@ -40,91 +77,37 @@ class DenseResponse:
 
     def force_rows(self, rows: Indices) -> Array:
         """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
-        k = self._k
-        full: Array = -k[rows, None] * self._compliance[rows] * k
-        full[np.arange(len(rows)), rows] += k[rows]
+        full: Array = -self._k[rows, None] * self._compliance[rows] * self._k
+        full[np.arange(len(rows)), rows] += self._k[rows]
         return full
 
-    def of_body_force(self, force: Array) -> Array:
-        """Boundary displacement under body forces, with k as a spring to rest."""
-        return np.asarray(self._factor.solve(force)[self._trace])
+
+Responses = dict[tuple[int, bytes], Response]
+"""Those that are known, by the identity of the elasticity, which each holds, and by k."""
 
 
-class SparseResponse:
-    """The boundary response of a large substructure, by a sparse solution for all columns."""
-
-    def __init__(self, elasticity: Elasticity, k: Array) -> None:
-        self._factor = _factor(elasticity, k)
-        self._trace = elasticity.trace
-        self._k = k
-        n_dofs, n_boundary = elasticity.stiffness.shape[0], len(k)
-        self._columns = max(BLOCK // n_dofs, 4)
-        self._load = sparse.csr_array(
-            (k, (elasticity.trace, np.arange(n_boundary))), shape=(n_dofs, n_boundary)
+def response_of(elasticity: Elasticity, k: Array, known: Responses) -> Response:
+    """Condense or factor an elasticity with a k, unless that is done."""
+    key = id(elasticity), k.tobytes()
+    if key not in known:
+        stiffness = elasticity.stiffness
+        is_dense = isinstance(stiffness, np.ndarray) or bool(
+            stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
         )
-
-    def reflect(self, outgoing: Array, out: Array) -> None:
-        """Write 2 H k y - y for y of shape (n_boundary, n)."""
-        for first in range(0, outgoing.shape[1], self._columns):
-            columns = slice(first, first + self._columns)
-            displacement = self._factor.solve(np.asfortranarray(self._load @ outgoing[:, columns]))
-            np.multiply(displacement[self._trace], 2.0, out=out[:, columns])
-        np.subtract(out, outgoing, out=out)
-
-    def force_rows(self, rows: Indices) -> Array:
-        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
-        load = self._load[:, rows].toarray()
-        full = -(self._load.T @ self._factor.solve(load)).T
-        full[np.arange(len(rows)), rows] += self._k[rows]
-        return np.asarray(full)
-
-    def of_body_force(self, force: Array) -> Array:
-        """Boundary displacement under body forces, with k as a spring to rest."""
-        return np.asarray(self._factor.solve(force)[self._trace])
+        kind = DenseResponse if is_dense or len(k) <= DENSE_UP_TO else Response
+        known[key] = kind(elasticity, k)
+    return known[key]
 
 
-class Responses:
-    """Boundary responses that are factored once, however many runs with one k need them."""
-
-    def __init__(self) -> None:
-        self._known: dict[tuple[int, bytes], DenseResponse | SparseResponse] = {}
-        self._owners: list[Elasticity] = []  # so that no other takes over its identity
-
-    def of(self, elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
-        """Condense or factor an elasticity with a k, unless that is done."""
-        key = id(elasticity), k.tobytes()
-        if key not in self._known:
-            stiffness = elasticity.stiffness
-            is_dense = isinstance(stiffness, np.ndarray) or bool(
-                stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
-            )
-            kind = DenseResponse if is_dense or len(k) <= DENSE_UP_TO else SparseResponse
-            self._known[key] = kind(elasticity, k)
-            self._owners.append(elasticity)
-        return self._known[key]
-
-
-class _Cholesky:
-    """A dense factor that solves like a sparse one."""
-
-    def __init__(self, matrix: Array) -> None:
-        self._factor = cho_factor(matrix, check_finite=False)
-
-    def solve(self, force: Array) -> Array:
-        return np.asarray(cho_solve(self._factor, force, check_finite=False))
-
-
-def _factor(elasticity: Elasticity, k: Array):  # type: ignore[no-untyped-def]  # SuperLU
+def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:
+    """The map from forces on all degrees of freedom, (n_dofs, n), to displacements."""
     stiffness = elasticity.stiffness
-    n_dofs = stiffness.shape[0]
-    springs = np.bincount(elasticity.trace, weights=k, minlength=n_dofs)
+    springs = np.bincount(elasticity.trace, weights=k, minlength=stiffness.shape[0])
     if isinstance(stiffness, np.ndarray):
-        return _Cholesky(stiffness + np.diag(springs))
-    of_entries = np.repeat(np.arange(n_dofs), np.diff(stiffness.indptr))
-    diagonal = stiffness.indices == of_entries
-    if np.count_nonzero(diagonal) < n_dofs or not stiffness.has_sorted_indices:
-        return splu(sparse.csc_array(stiffness + sparse.diags_array(springs)))
-    entries = stiffness.data.copy()
-    entries[diagonal] += springs
+        factor = cho_factor(stiffness + np.diag(springs), check_finite=False)
+        return partial(cho_solve, factor, check_finite=False)
+    held = stiffness.copy()
+    held.setdiag(held.diagonal() + springs)
     # Symmetric, so its rows are its columns.
-    return splu(sparse.csc_array((entries, stiffness.indices, stiffness.indptr)))
+    solve: Callable[[Array], Array] = splu(held.T).solve
+    return solve

@@ -18,15 +18,12 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.directions import FromStatus, SearchDirection
-from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.method import Latin
-from solver.latin.response import Responses
 from solver.latin.solve import Record, Solution, solve
 from solver.latin.start import Nested
 from solver.latin.status import Ending
 from solver.latin.status_step import StatusStep
-from solver.reduction.basis import Reduction
 from solver.reference.distance import Distance
 from solver.refusal import RefusedError
 
@@ -92,7 +89,7 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
         )
     instants = slice(0, min(1 + length, problem.n_instants))
     direction = _OfWhole(k=latin.direction.of(problem))
-    linear = replace(latin.linear, responses=Responses())
+    linear = replace(latin.linear, responses={})
     start, nested = None, latin.start
     if nested is not None:
         start = Nested(lambda: (_during(coarser, instants) for coarser in nested.problems()))
@@ -142,24 +139,11 @@ def next_slab(problem: Problem, slab: Slab, solved: Iterate, length: int) -> Sla
         name: law.mean_by_point(law.tangential.slider(moved, force)[:, -1])[law.points]
         for name, law in solved.problem.rubbing.items()
     }
-    before = slice(solved.problem.n_instants - length, None)
-    outgoing = solved.outgoing[:, before][:, : instants.stop - instants.start]
-    start = Checkpoint(
-        0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(solved, before, instants)
+    again = solved.outgoing[:, solved.problem.n_instants - length :]
+    again = np.asfortranarray(again[:, : instants.stop - instants.start])
+    return Slab(
+        instants, _during(problem, instants, ends), slab.latin, Checkpoint(0, 0.0, read_only(again))
     )
-    return Slab(instants, _during(problem, instants, ends), slab.latin, start)
-
-
-def _cut(solved: Iterate, before: slice, instants: slice) -> Reduction | None:
-    """The bases of a slab with the time functions of another."""
-    if solved.reduction is None or solved.residual is not None:
-        return None
-    size = instants.stop - instants.start
-    modes = (
-        replace(basis, time_functions=basis.time_functions[:, before][:, :size])
-        for basis in solved.reduction.modes
-    )
-    return replace(solved.reduction, modes=tuple(modes)).at_rest
 
 
 def solve_in_slabs(
@@ -190,9 +174,6 @@ def solve_in_slabs(
     """
     began = time.perf_counter()
     slab: Slab | None = first_slab(problem, latin, length)
-    if slab is not None and slab.instants.stop == problem.n_instants:
-        whole = replace(latin, finish=StatusStep())
-        return solve(problem, whole, distance=distance, watch=False, spent=spent)
     solutions: list[Solution] = []
     while slab is not None:
         method = replace(slab.latin, finish=None if solutions else StatusStep())
@@ -201,26 +182,28 @@ def solve_in_slabs(
         slab = next_slab(problem, slab, solutions[-1].iterate, length)
     missed = (solution for solution in solutions if solution.status.ending is not Ending.CONVERGED)
     status = next(missed, solutions[-1]).status
-    joined = together(problem, [solution.iterate for solution in solutions])
+    joined = _together(problem, [solution.iterate for solution in solutions])
     return Solution(joined, _records(solutions, joined, distance), status)
 
 
-def together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
+def _together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
     """Iterates of all slabs one after the other; they have no common bases."""
+    if len(parts) == 1:
+        return parts[0]
+
+    def joined(name: str) -> Array:
+        return read_only(np.concatenate([getattr(part, name) for part in parts], axis=1))
+
     return Iterate(
         number=sum(part.number for part in parts),
         seconds=sum(part.seconds for part in parts),
         problem=problem,
         k=parts[0].k,
-        outgoing=_joined([part.outgoing for part in parts]),
-        incoming=_joined([part.incoming for part in parts]),
-        local_displacement=_joined([part.local_displacement for part in parts]),
-        local_incoming=_joined([part.local_incoming for part in parts]),
+        outgoing=joined("outgoing"),
+        incoming=joined("incoming"),
+        local_displacement=joined("local_displacement"),
+        local_incoming=joined("local_incoming"),
     )
-
-
-def _joined(fields: Sequence[Array]) -> Array:
-    return read_only(np.asfortranarray(np.concatenate(fields, axis=1)))
 
 
 def _records(
@@ -235,8 +218,8 @@ def _records(
         ]
     records[-1] = replace(
         records[-1],
-        indicator=latin_indicator(whole),
-        behaviour=behaviour_indicator(whole),
+        indicator=whole.indicator,
+        behaviour=whole.behaviour,
         error_displacement=distance.of_displacement(whole) if distance else math.nan,
         error_force=distance.of_friction_force(whole) if distance else math.nan,
     )

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
 from solver.latin.blocks import one_blas_thread
-from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.method import Latin
@@ -70,22 +69,18 @@ def record(
 ) -> Record:
     """The scalars of an iterate; what the rules did not need is off the run's clock.
 
-    `watch` says whether anybody wants indicators and estimate of every iteration.
+    `watch` says whether anybody wants indicators and estimate of every iteration, not only of that
+    at which a run ends.
     """
-    indicator, behaviour = verdict.indicator, verdict.behaviour
-    estimated = verdict.estimated_error
-    if watch:
-        if math.isnan(behaviour):
-            behaviour = behaviour_indicator(iterate)
-        if math.isnan(indicator):
-            indicator = latin_indicator(iterate)
-        if math.isnan(estimated) and verdict.certificate is not None:
-            estimated = verdict.certificate.distance.of_friction_force(iterate)
+    estimated, watch = verdict.estimated_error, watch or verdict.status is not None
+    known = vars(iterate)  # that is, computed for the stop rules
+    if watch and math.isnan(estimated) and verdict.certificate is not None:
+        estimated = verdict.certificate.distance.of_friction_force(iterate)
     return Record(
         iteration=iterate.number,
         seconds=verdict.seconds,
-        indicator=indicator,
-        behaviour=behaviour,
+        indicator=iterate.indicator if watch or "indicator" in known else math.nan,
+        behaviour=iterate.behaviour if watch or "behaviour" in known else math.nan,
         estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,

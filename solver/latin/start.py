@@ -11,10 +11,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.discrete.substructure import Substructure
-from solver.latin.certified import known_forces
+from solver.latin.certified import balance_of_rows, known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
 from solver.reference.condensation import NoReferenceError
@@ -90,13 +89,9 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
         shared = spread[target.points] * target.weights[:, None]
         for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
             carried[rows] = sign * shared
-    rubs = np.zeros(fine.n_rows, dtype=bool)
-    rubs[fine.sliding[0]] = True
-    alike: dict[int, list[Substructure]] = {}
-    for part in fine.substructures:
-        alike.setdefault(id(part.elasticity), []).append(part)
-    for parts in alike.values():
-        _write_needed(parts, inside, rubs, carried)
+    balance, needed = balance_of_rows(fine, inside)
+    rest = np.setdiff1d(np.arange(fine.n_rows), fine.sliding[0])
+    carried[rest] = (balance.T @ (needed - balance @ carried))[rest]
     return np.asfortranarray(moved + carried / k[:, None])
 
 
@@ -121,24 +116,6 @@ def _points_apart(problem: Problem, law: Contact, bodies: Indices) -> Array:
     numbers = np.zeros(len(law.positions), dtype=np.intp)
     numbers[law.points] = sum(bodies[problem.row_dofs[rows]] for rows in law.tangent.sides)
     return law.positions + 2.0 * problem.scales.displacement * numbers
-
-
-def _write_needed(parts: list[Substructure], inside: Array, rubs: Flags, carried: Array) -> None:
-    """Write into `carried` the forces of cuts and ends that identical substructures need."""
-    elasticity = parts[0].elasticity
-    rows = np.stack([part.rows for part in parts], axis=1)
-    dofs = np.stack([part.dofs for part in parts], axis=1)
-    frictional = rubs[rows[:, 0]]
-    trace = elasticity.trace[~frictional]
-    shape = (len(trace), *inside[dofs].shape[1:])
-    needed = (elasticity.stiffness[trace] @ inside[dofs].reshape(len(dofs), -1)).reshape(shape)
-    for number, part in enumerate(parts):
-        if part.body_force is not None:
-            needed[:, number] -= part.body_force[trace]
-    meet = (trace[:, None] == elasticity.trace[frictional]).astype(float)
-    friction = carried[rows[frictional]]
-    needed -= (meet @ friction.reshape(len(friction), -1)).reshape(shape)
-    carried[rows[~frictional]] = needed
 
 
 def _interpolated(fine: Array, coarse: Array, values: Array) -> Array:

@@ -132,13 +132,25 @@ def with_jump(status: Status, problem: Problem, certificate: Certificate | None)
     return replace(status, advice=status.advice + message)
 
 
-def exhausted(latin: Latin, lack: str, *, is_late: bool) -> Status:
-    """Status of a run at its limit, of seconds if it is late, else of iterations.
+def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
+    """Status of a run at its limit, of iterations or seconds.
 
-    `lack` says what is not met, in a sentence without its full stop.
+    `is_proven` says whether the solution, and so the distance to it, is known.
     """
+    stop, finish = latin.stop, latin.finish
+    asks_accuracy, searches = math.isfinite(stop.accuracy), finish and not finish.at_once
+    lack = "The run has come to its limit"
+    if asks_accuracy and searches and is_proven:
+        lack = "The contact force of the iterates is not accurate enough"
+    elif iterate.indicator > stop.tolerance and not (asks_accuracy and searches):
+        lack = "The LATIN indicator is still above its tolerance"
+    elif asks_accuracy and (searches or math.isinf(stop.tolerance)):
+        lack = "The contact force is not known to be accurate enough"
+    elif asks_accuracy:
+        lack = BELOW_UNPROVEN
     of_k, of_bases = _remedies(latin)
     remedy = of_bases or f"Raise max_iterations, or {of_k}."
+    is_late = iterate.number < stop.iterations
     return Status(Ending.EXHAUSTED, f"{lack}. {_LONGER if is_late else remedy}")
 
 
@@ -150,19 +162,10 @@ def stalled(latin: Latin, lowest: float, tolerance: float, *, agrees: bool) -> S
     of_k, of_bases = _remedies(latin)
     if lowest < LOWEST and agrees:
         advice = "The LATIN indicator is down to rounding: more iterations change nothing."
-    elif lowest < LOWEST:
-        advice = (
-            "The LATIN indicator is down to rounding, yet the k-free indicator shows that the "
-            "contact laws are broken: friction is too small beside the load, or k too far from the "
-            "stiffness, for more digits. Bring friction, the load and k_scale nearer to each other."
-        )
-    elif lowest <= tolerance and of_bases:
-        advice = f"{BELOW_UNPROVEN}. {of_bases}"
     elif lowest <= tolerance:
         advice = (
-            "The LATIN indicator is below its tolerance, yet the k-free indicator shows that the "
-            "contact laws are broken: k is far from what suits, or rigid motion so large that it "
-            f"hides how the body deforms. {of_k.capitalize()}."
+            f"{BELOW_UNPROVEN}: k is far from what suits, or rigid motion so large that it hides "
+            f"how the body deforms. {of_bases or of_k.capitalize() + '.'}"
         )
     elif latin.relaxation > 0.9:
         advice = "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."

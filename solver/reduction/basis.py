@@ -42,24 +42,14 @@ class SeparatedBasis:
     weights: Array
 
     @classmethod
-    def empty(cls, k: Array, weights: Array) -> SeparatedBasis:
-        """Basis of a zero field."""
-        return cls(np.zeros((len(k), 0), order="F"), np.zeros((0, len(weights))), k, weights)
-
-    @classmethod
     def of_field(
         cls, field: Array, k: Array, weights: Array, tolerance: float, largest: int
     ) -> SeparatedBasis:
-        """Basis of a field, shape (n_boundary, n_columns), by its singular values.
-
-        What is dropped is as in `downsize`.
-        """
-        basis = cls.empty(k, weights)
+        """Basis of a field, shape (n_boundary, n_columns), downsized."""
         root = np.sqrt(k)[:, None]
-        left, values, right = np.linalg.svd(root * field * np.sqrt(weights), full_matrices=False)
-        rank = kept(values, tolerance, largest)
-        basis.modes = np.asfortranarray(left[:, :rank] / root)
-        basis.time_functions = values[:rank, None] * right[:rank] / np.sqrt(weights)
+        basis = cls(np.eye(len(k)), root * field, k, weights)
+        basis.downsize(tolerance, largest)
+        basis.modes /= root
         return basis
 
     @property
@@ -117,7 +107,8 @@ class SeparatedBasis:
             return 0.0
         root = np.sqrt(self.weights)
         turn, values, right = np.linalg.svd(self.time_functions * root, full_matrices=False)
-        rank = kept(values, tolerance, largest)
+        tails = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
+        rank = min(int(np.count_nonzero(tails > tolerance * tails[0])), largest)
         self.modes = np.asfortranarray(self.modes @ turn[:, :rank])
         self.time_functions = values[:rank, None] * right[:rank] / root
         total = float(values @ values)
@@ -130,13 +121,6 @@ class SeparatedBasis:
             return 0.0
         inside = other.coefficients(self.modes) @ self.time_functions
         return float(np.sqrt(max(1.0 - self.squared_of(inside) / whole, 0.0)))
-
-
-def kept(values: Array, tolerance: float, largest: int) -> int:
-    """Number of singular values to keep, so that the rest is below a share of all, in norm."""
-    tails = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
-    whole = tails[0] if len(tails) else 0.0
-    return min(int(np.count_nonzero(tails > tolerance * whole)), largest) if whole > 0.0 else 0
 
 
 def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:

@@ -95,8 +95,7 @@ class Clips:
     def rest(self) -> Decomposition:
         """What they leave of the field, in singular vectors."""
         left = self.given - self.field
-        places = np.arange(len(left), dtype=float)
-        return decompose(left, self.space_weights, self.time_weights, places)
+        return decompose(left, self.space_weights, self.time_weights)
 
     @cached_property
     def errors(self) -> Array:

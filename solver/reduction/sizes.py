@@ -16,7 +16,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reduction.basis import Reduction
 from solver.reduction.clips import Clips
-from solver.reduction.svd import BoundaryFields, Decomposition, singular_values
+from solver.reduction.svd import BoundaryFields, Decomposition, decompose
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ def of_clips(clips: Clips) -> Sizes:
 def in_pieces(fields: BoundaryFields) -> Sizes:
     """Keep as many singular vectors of each substructure: the best that a PGD could find there."""
     pieces, time_weights = list(_pieces(fields)), _time_weights(fields.problem)
-    values = [singular_values(field, weights, time_weights) for *_, field, weights in pieces]
+    values = [decompose(field, weights, time_weights).values for *_, field, weights in pieces]
     most = max(map(len, values))
     left, numbers = np.zeros(most + 1), np.zeros(most + 1, dtype=int)
     for (*_, field, _), singular in zip(pieces, values, strict=True):

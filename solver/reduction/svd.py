@@ -6,7 +6,6 @@ the friction rows and trapezoidal weights of the instants.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -105,9 +104,12 @@ class Decomposition:
 
 
 def decompose(
-    field: Array, space_weights: Array, time_weights: Array, positions: Array
+    field: Array, space_weights: Array, time_weights: Array, positions: Array | None = None
 ) -> Decomposition:
-    """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
+    """Decomposition of a field, (n_points, n_instants), in weighted inner products.
+
+    Without positions points are numbered.
+    """
     space_root, time_root = np.sqrt(space_weights)[:, None], np.sqrt(time_weights)
     left, values, right = np.linalg.svd(space_root * field * time_root, full_matrices=False)
     space_modes, time_modes = left / space_root, right / time_root
@@ -116,49 +118,26 @@ def decompose(
         values=values,
         space_modes=space_modes * signs,
         time_modes=time_modes * signs[:, None],
-        positions=positions,
+        positions=np.arange(float(len(field))) if positions is None else positions,
         space_weights=space_weights,
         time_weights=time_weights,
     )
 
 
-def singular_values(field: Array, space_weights: Array, time_weights: Array) -> Array:
-    """Singular values of `decompose` alone, descending, shape (n_modes,)."""
-    weighted = np.sqrt(space_weights)[:, None] * field * np.sqrt(time_weights)
-    return np.asarray(np.linalg.svd(weighted, compute_uv=False))
-
-
 def decompositions(fields: BoundaryFields, name: InterfaceField) -> list[Decomposition]:
     """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
-    return [decompose(*part) for part in _parts(fields, name)]
-
-
-def friction_spectra(fields: BoundaryFields) -> list[Array]:
-    """Singular values of the friction force in every substructure, N sqrt(s/m), as above."""
-    parts = _parts(fields, InterfaceField.FRICTION_FORCE)
-    return [singular_values(field, *weights) for field, *weights, _ in parts]
-
-
-def _parts(
-    fields: BoundaryFields, name: InterfaceField
-) -> Iterator[tuple[Array, Array, Array, Array]]:
-    """Yield a field of every substructure on its rows that rub, its weights and its positions."""
     problem, scales = fields.problem, fields.problem.scales
     sliding, weights = problem.sliding
     lengths = np.zeros(problem.n_rows)
     lengths[sliding] = weights
-    positions, time_weights = (
-        problem.positions[problem.row_dofs],
-        problem.time_weights * scales.time,
-    )
     if name is InterfaceField.FRICTION_FORCE:
         whole = fields.boundary_force * scales.force
         whole[sliding] /= weights[:, None]
     else:
         whole = fields.boundary_displacement * scales.displacement
-    for part in problem.substructures:
-        rows = part.rows[lengths[part.rows] > 0.0]
-        yield whole[rows], lengths[rows], time_weights, positions[rows]
+    positions, times = problem.positions[problem.row_dofs], problem.time_weights * scales.time
+    rubbing = (part.rows[lengths[part.rows] > 0.0] for part in problem.substructures)
+    return [decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in rubbing]
 
 
 def front_decay(count: int) -> Array:
@@ -178,6 +157,8 @@ def against_front(values: Array) -> Array:
 
 
 def _signs(modes: Array) -> Array:
+    if not modes.size:  # of a substructure that does not rub
+        return np.ones(modes.shape[1])
     size = np.abs(modes)
     largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)
     return np.where(modes[largest, np.arange(modes.shape[1])] < 0.0, -1.0, 1.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -191,5 +190,5 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     finish = finished(problem, k, certificate)
     status, residual = certified(finish, certificate), certificate.residual
     seconds = time.perf_counter() - began
-    decision = Decision(seconds, math.nan, math.nan, residual, status, certificate)
+    decision = Decision(seconds, residual, certificate=certificate)
     return Solution(finish, [record(finish, decision, None, watch=False)], status)

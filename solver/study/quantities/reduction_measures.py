@@ -58,8 +58,7 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
 
 def products_in(clips: Clips) -> Sizes:
     """Sizes of the field that clips were fitted to, as singular vectors."""
-    places = np.arange(len(clips.given), dtype=float)
-    return of_products(decompose(clips.given, clips.space_weights, clips.time_weights, places))
+    return of_products(decompose(clips.given, clips.space_weights, clips.time_weights))
 
 
 @quantity(

@@ -16,7 +16,6 @@ import numpy as np
 
 from solver.discrete import Problem
 from solver.latin import Ending, Solution
-from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
@@ -196,8 +195,8 @@ def _measured(solution: Solution) -> Outcome:
         iterations=iterate.number,
         seconds=last.seconds if last else iterate.seconds,
         estimated_error=last.estimated_error if last else math.nan,
-        indicator=latin_indicator(iterate),
-        behaviour=behaviour_indicator(iterate),
+        indicator=iterate.indicator,
+        behaviour=iterate.behaviour,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=error,
         residual=residual,
