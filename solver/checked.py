@@ -129,7 +129,10 @@ class Checked(param.Parameterized):
 
     def applies(self, name: str) -> bool:
         """Whether a setting does anything under the present values."""
-        return about(self.definitions()[name]).applies(self)
+        record = about(self.definitions()[name])
+        if record.path and not isinstance(getattr(self, record.path), str):
+            return False
+        return record.applies(self)
 
 
 def dump(settings: Checked) -> str:

@@ -47,6 +47,11 @@ class About:
         Whether it does anything, given all the settings.
     aliases
         What files and scripts may say for one of its values.
+    path
+        Setting of the path over time that reaches this value: where it is a table, that has its
+        own size, and this value does nothing.
+    places
+        What it places or scales in a picture: "right x" along a side, "body" throughout.
     """
 
     group: str
@@ -55,6 +60,8 @@ class About:
     logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
     aliases: Mapping[str, str] = field(default_factory=dict)
+    path: str = ""
+    places: tuple[str, ...] = ()
 
 
 class CurveParameter(Parameter):
@@ -62,10 +69,10 @@ class CurveParameter(Parameter):
 
     With more than two columns it is a table, whose rows stand in any order. `units` are those of
     the columns, empty for a pure number; `bounds` their ends, of integers for whole numbers, or
-    empty.
+    empty. `is_positive` is whether no value may be below zero.
     """
 
-    __slots__ = ["bounds", "columns", "presets", "units"]
+    __slots__ = ["bounds", "columns", "is_positive", "presets", "units"]
 
     def __init__(
         self,
@@ -74,6 +81,8 @@ class CurveParameter(Parameter):
         columns: Sequence[str],
         units: Sequence[str],
         bounds: Sequence[tuple[float, float]] = (),
+        *,
+        is_positive: bool = False,
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
@@ -81,6 +90,7 @@ class CurveParameter(Parameter):
         self.columns = tuple(columns)
         self.units = tuple(units)
         self.bounds = tuple(bounds)
+        self.is_positive = is_positive
 
     @property
     def abscissa(self) -> str:
@@ -144,11 +154,13 @@ def curve(
     ordinate: str,
     units: tuple[str, str],
     doc: str,
+    *,
+    is_positive: bool = False,
     **record: Any,
 ) -> CurveParameter:
-    """Path: a preset's name or a table of points."""
-    columns = abscissa, ordinate
-    return CurveParameter(default, presets, columns, units, **_common(doc, record))
+    """Path: a preset's name or a table of points, with `is_positive` of none below zero."""
+    columns, common = (abscissa, ordinate), _common(doc, record)
+    return CurveParameter(default, presets, columns, units, is_positive=is_positive, **common)
 
 
 def table(
@@ -227,7 +239,12 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
         return SettingError(name, value, allowed(definition), remedy)
 
     if isinstance(definition, CurveParameter):
-        return _checked_curve(definition, value, refuse)
+        rows = _checked_curve(definition, value, refuse)
+        if definition.is_positive and isinstance(rows, tuple) and min(row[1] for row in rows) < 0.0:
+            what, unit = definition.ordinate, definition.units[1]
+            least = f"{what}s of at least 0 {unit}".rstrip()
+            raise SettingError(name, value, least, f"raise the negative {what}")
+        return rows
     if isinstance(definition, param.Boolean):
         if not isinstance(value, bool):
             raise refuse("write true or false")

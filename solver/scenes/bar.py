@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import ClassVar
 
 import numpy as np
@@ -15,13 +15,14 @@ from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
-from solver.loads import PRESETS, interpolate
+from solver.loads import interpolate
 from solver.profiles import harmonic_means, means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.base import STIFFNESSES, SceneSettings
+from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_bar
+from solver.scenes.friction_law import STIFFNESSES
 from solver.scenes.words import acting, is_steel
 
 SECTIONS = ("uniform", "rising", "falling")
@@ -50,65 +51,60 @@ class BarSettings(SceneSettings):
         "temperature",
         "settlement",
     )
-    PEAKS: ClassVar = {**bar_ends.PEAKS, "pressure_load": "pressure"}
-    BEHIND: ClassVar = {"top y": "pressure", "body": "body_force", "bottom x": "settlement"}
     PROFILES: ClassVar = {**shared.PROFILES, **bar_ends.RISING}
 
-    load = curve(
-        "sine",
-        PRESETS,
-        "time",
-        "force",
-        ("s", "N"),
-        "Axial force at the right end over time: a preset, or points (s, N).",
-        group="Load",
-        title="Load path",
-        applies=bar_ends.is_end("right", "pulled"),
-    )
-    peak = quantity(
+    peak, load = shared.sized_path(
+        "load",
+        "force at the right end",
+        "N",
         900.0,
         (-1e15, 1e15),
         (0.0, 2400.0),
         "Largest force that the preset reaches; 1500 N is where the whole bar of Table 1 slides.",
-        group="Load",
+        "sine",
+        applies=bar_ends.is_end("right", "pulled"),
         title="Peak load",
-        unit="N",
-        applies=lambda settings: settings.right_end == "pulled" and isinstance(settings.load, str),
+        places=("right x",),
     )
-    seed = shared.seed(
-        lambda settings: any(getattr(settings, name) == "random" for name in settings.paths)
-    )
-    duration = shared.duration()
-    instants = shared.instants(101)
     right_end = bar_ends.end("right", "pulled")
     right_displacement, right_load = bar_ends.moved_end("right", "right_load", "ramp")
     right_spring = bar_ends.spring("right")
     left_end = bar_ends.end("left", "held")
     support_displacement, support_load = bar_ends.moved_end("left", "support_load", "sine")
     left_spring = bar_ends.spring("left")
-    left_force, left_load = bar_ends.given(
+    left_force, left_load = shared.sized_path(
         "left_load",
         "force at the left end",
-        "Largest axial force at the left end, positive to the right.",
         "N",
-        (1e15, 2400.0),
+        0.0,
+        (-1e15, 1e15),
+        (0.0, 2400.0),
+        "Largest axial force at the left end, positive to the right.",
         "sine",
         applies=bar_ends.is_end("left", "pulled"),
         group="Ends",
+        places=("left x",),
     )
-    body_force, body_load = bar_ends.given(
+    body_force, body_load = shared.sized_path(
         "body_load",
         "body force",
-        "Largest axial force per length inside the bar; 0 leaves it out.",
         "N/m",
-        (1e15, 3000.0),
+        0.0,
+        (-1e15, 1e15),
+        (0.0, 3000.0),
+        "Largest axial force per length inside the bar; 0 leaves it out.",
+        "ramp",
+        places=("body",),
     )
-    temperature, temperature_load = bar_ends.given(
+    temperature, temperature_load = shared.sized_path(
         "temperature_load",
         "temperature",
-        "Largest change of the temperature of the bar; 0 leaves it out.",
         "K",
-        (1e9, 60.0),
+        0.0,
+        (-1e9, 1e9),
+        (0.0, 60.0),
+        "Largest change of the temperature of the bar; 0 leaves it out.",
+        "ramp",
         title="Heating",
     )
     temperature_profile = curve(
@@ -120,7 +116,7 @@ class BarSettings(SceneSettings):
         "Factor on the temperature along the bar: a preset, or points (m, factor).",
         group="Load",
         title="Temperature along the bar",
-        applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
+        applies=lambda settings: settings.acts("temperature_load"),
     )
     expansion = quantity(
         1.2e-5,
@@ -130,16 +126,20 @@ class BarSettings(SceneSettings):
         group="Load",
         title="Thermal expansion",
         unit="1/K",
-        applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
+        applies=lambda settings: settings.acts("temperature_load"),
         logarithmic=True,
     )
-    settlement, settlement_load = bar_ends.given(
+    settlement, settlement_load = shared.sized_path(
         "settlement_load",
         "settlement",
+        "m",
+        0.0,
+        (-1e12, 1e12),
+        (0.0, 1e-3),
         "Largest displacement of the support along the bar, as of soil that settles or a slab that "
         "shrinks; 0 leaves it where it is. The ends are not on it.",
-        "m",
-        (1e12, 1e-3),
+        "ramp",
+        places=("bottom x",),
     )
     settlement_profile = curve(
         "linear",
@@ -151,11 +151,10 @@ class BarSettings(SceneSettings):
         "points (m, factor).",
         group="Load",
         title="Settlement along the bar",
-        applies=lambda settings: bar_ends.acts(settings, "settlement_load"),
+        applies=lambda settings: settings.acts("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
-    pressure = shared.pressure("the bar on its support", 10_000.0)
-    pressure_load = shared.pressure_load()
+    pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
     friction_profile = shared.friction_profile("the bar")
     pressure_profile = curve(
         "uniform",
@@ -164,6 +163,7 @@ class BarSettings(SceneSettings):
         "factor",
         ("m", ""),
         "Factor on p along the bar: a preset, or points (m, factor).",
+        is_positive=True,
         group="Contact",
         title="p along the bar",
     )
@@ -208,12 +208,9 @@ class BarSettings(SceneSettings):
         return float(self.young * self.section * mean / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse negative factors too."""
+        """Refuse what has no digits left, or no equilibrium, too."""
         self._check_section()
         super().check_together()
-        shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
-        for name in ("friction_profile", "pressure_profile"):
-            shared.refuse_negative(self, name, "factor")
         for side in bar_ends.PATHS:
             self._check_spring(f"{side}_spring")
         self._check_equilibrium()
@@ -260,10 +257,10 @@ class BarSettings(SceneSettings):
         nodes = np.linspace(0.0, self.length, self.elements + 1)
         mean, section = self._uneven_section()
         strain = settlement = None
-        if bar_ends.acts(self, "temperature_load"):
+        if self.acts("temperature_load"):
             along = means([self.points("temperature_profile")], nodes)
             strain = np.outer(self.expansion * along, self.path("temperature_load"))
-        if bar_ends.acts(self, "settlement_load"):
+        if self.acts("settlement_load"):
             along = interpolate(self.points("settlement_profile"), nodes)
             settlement = np.outer(along, self.path("settlement_load"))
         return Rods(
@@ -277,7 +274,7 @@ class BarSettings(SceneSettings):
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
-            body_force=self.path("body_load") if bar_ends.acts(self, "body_load") else None,
+            body_force=self.path("body_load") if self.acts("body_load") else None,
             strain=strain,
             settlement=settlement,
             section=section,
@@ -291,7 +288,7 @@ class BarSettings(SceneSettings):
         rests, moved = bar_ends.ends_in_words(self)
         clauses = [moved] if moved else []
         for path, words in DONE.items():
-            if bar_ends.acts(self, path):
+            if self.acts(path):
                 clauses.append(words[0].format(acting(self.path(path), *words[1:])))
         if self.pressure_load != "steady":
             clauses.append("what presses it changes")
@@ -302,17 +299,9 @@ class BarSettings(SceneSettings):
     @property
     def features(self) -> Features:
         """What it has: a loop over a displacement where an end is pulled or moved."""
-        acting = {name for name in self.paths if bar_ends.acts(self, name)}
+        acting = {name for name in self.paths if self.acts(name)}
         driven = {path for paths in bar_ends.PATHS.values() for path in paths.values()}
         return Features(loop_is_over_displacement=bool(acting & driven))
-
-    def _behind(self) -> Mapping[str, str]:
-        sides = {
-            f"{side} x": self.PEAKS[paths["force" if kind == "pulled" else "displacement"]]
-            for side, paths in bar_ends.PATHS.items()
-            if (kind := getattr(self, f"{side}_end")) != "free"
-        }
-        return {**self.BEHIND, **sides}
 
     def _bound(self, nodes: Array) -> Array:
         """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""

@@ -51,32 +51,23 @@ class FaultSettings(PlaneSettings):
 
     scene = "fault"
     LOADS: ClassVar = ("overpressure", "shear_stress")
-    PEAKS: ClassVar = {"injection_load": "overpressure"}
-    BEHIND: ClassVar = {"left x": "overpressure", "top x": "shear_stress"}
     PROFILES: ClassVar = PROFILES
     PATH = "injection_load"
     SHAPES: ClassVar = INJECTIONS
 
-    overpressure = quantity(
+    overpressure, injection_load = shared.sized_path(
+        "injection_load",
+        "pressure of the fluid",
+        "Pa",
         8e6,
         (0.0, 1e15),
         (0.0, 1e7),
         "Pressure p of the fluid where it is let in, above what was there before.",
-        group="Load",
-        title="Pressure of the fluid",
-        unit="Pa",
-        applies=lambda settings: isinstance(settings.injection_load, str),
-    )
-    injection_load = curve(
         "steady",
         INJECTIONS,
-        "time",
-        "pressure",
-        ("s", "Pa"),
-        "Pressure there over time. stopped: no more after half of the interval; what has spread "
-        "goes on. rising: from nothing. pulses: down and up again, six times. Or points (s, Pa).",
-        group="Load",
-        title="Path of the fluid",
+        path_doc="stopped: no more after half of the interval; what has spread goes on. rising: "
+        "from nothing. pulses: down and up again, six times. ",
+        places=("left x",),
     )
     shear_stress = quantity(
         3.6e6,
@@ -86,17 +77,14 @@ class FaultSettings(PlaneSettings):
         group="Load",
         title="Shear stress τ",
         unit="Pa",
+        places=("top x",),
     )
-    duration = quantity(
+    duration = redefined(
+        PlaneSettings.param["duration"],
         86400.0,
-        (1e-9, 1e12),
         (3600.0, 2.6e6),
-        "Length of the time interval. Friction does not feel the rate, but a fluid needs time: it "
-        "spreads over sqrt(4 α t).",
-        group="Load",
-        title="Duration T",
-        unit="s",
-        logarithmic=True,
+        doc="Length of the time interval. Friction does not feel the rate, but a fluid needs time: "
+        "it spreads over sqrt(4 α t).",
     )
     normal_stress = quantity(
         1e7,
@@ -115,6 +103,7 @@ class FaultSettings(PlaneSettings):
         "factor",
         ("m", ""),
         "Factor on σ along the fault: a preset, or points (m, factor).",
+        is_positive=True,
         group="Contact",
         title="σ along the fault",
     )
@@ -183,11 +172,10 @@ class FaultSettings(PlaneSettings):
         self._check_work()
         place = self._places
         pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
-        shared.refuse_negative(self, "normal_profile", "factor")
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
-            name = self.peak_or_table("injection_load")
+            name = self.size_or_table("injection_load")
             raise SettingError(
                 name,
                 getattr(self, name),

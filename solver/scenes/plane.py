@@ -35,12 +35,9 @@ class PlaneSettings(SceneSettings):
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
     MESH: ClassVar = ("elements", "elements_up")
-    STIFFNESSES: ClassVar = ("tangential_stiffness", "normal_stiffness")
     PROFILES: ClassVar = shared.PROFILES
 
-    duration = shared.duration()
-    instants = shared.instants(81)
-    seed = shared.seed(lambda settings: settings.is_random)
+    instants = redefined(SceneSettings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
     friction_profile = shared.friction_profile("the body")
     tangential_stiffness = redefined(
@@ -225,11 +222,6 @@ class PlaneSettings(SceneSettings):
         """Number of substructures in all."""
         return self.n_bodies * self.substructures * self.substructures_up
 
-    @property
-    def is_random(self) -> bool:
-        """Whether any load path is random."""
-        return any(getattr(self, name) == "random" for name in self.paths)
-
     def stack(self) -> Stack:
         """Make the bodies, free on all sides and without loads."""
         return Stack(
@@ -262,10 +254,9 @@ class PlaneSettings(SceneSettings):
             )
 
     def check_together(self) -> None:
-        """Refuse flat elements too, negative factors on mu, and matrices beyond memory."""
+        """Refuse flat elements too, and matrices beyond memory."""
         self._check_shape()
         super().check_together()
-        shared.refuse_negative(self, "friction_profile", "factor")
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)
         if 8 * self.order**3 * columns * rows * (columns + rows) > LARGEST_MATRIX:
