@@ -130,7 +130,10 @@ def contact_growth(iterate: Iterate) -> int:
 def _standing_on_an_end(settings: Settings, iterate: Iterate) -> NDArray[np.bool_]:
     """Instants at which a body that is free to turn touches its support at one end alone."""
     structure = structure_of(settings)
-    if not isinstance(structure, Stack) or structure.support is None or is_upright(structure):
-        return np.zeros(iterate.problem.n_instants, dtype=bool)
+    none = np.zeros(iterate.problem.n_instants, dtype=bool)
+    if not isinstance(structure, Stack) or structure.support is None:
+        return none
+    if len(structure.rectangles) > 1 or is_upright(structure):
+        return none
     closed = iterate.contact("support").status != OPEN
     return np.asarray((closed.sum(axis=0) == 1) & (closed[0] | closed[-1]))

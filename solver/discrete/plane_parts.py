@@ -52,10 +52,7 @@ class Trace:
         return np.add.outer(2 * nodes, self.components)
 
     def weights(self, rectangle: Rectangle) -> Array:
-        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled.
-
-        Where a contact ends inside the side, half of it belongs to the last node.
-        """
+        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled."""
         return rectangle.edge_weights(self.side)[self.span]
 
 
@@ -144,23 +141,19 @@ def _substructure(
     )
 
 
-def lined_up(
-    parts: Sequence[Part], name: str, degree: int
-) -> tuple[Indices, Array, sparse.csr_array]:
+def lined_up(parts: Sequence[Part], name: str, degree: int) -> tuple[Indices, sparse.csr_array]:
     """Traces of one name that follow each other, as one side, with a macro basis of a degree.
 
-    Rows, (n_points, n_components), the length that belongs to each point, scaled, and the macro
-    basis of one component, (n_points, n_macro).
+    Rows, (n_points, n_components), and the macro basis of one component, (n_points, n_macro).
     """
     rows = [part.rows[name] for part in parts]
-    weights = [part.traces[name].weights(part.rectangle) for part in parts]
     bases = [
         side_basis(part.rectangle, part.traces[name].side, len(part.rows[name]), degree)
         for part in parts
     ]
     # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
     macro = sparse.block_diag([sparse.coo_array(basis) for basis in bases])
-    return np.concatenate(rows), np.concatenate(weights), sparse.csr_array(macro)
+    return np.concatenate(rows), sparse.csr_array(macro)
 
 
 def rigid_motions(

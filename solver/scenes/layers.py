@@ -18,9 +18,10 @@ from solver.definitions import (
     quantity,
     redefined,
 )
-from solver.discrete.cut_stack import ends_along
+from solver.discrete.bricks import Brick
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
+from solver.discrete.stack_problem import ends_along
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import UNSEEN
@@ -236,7 +237,10 @@ class LayersSettings(PlaneSettings):
         """Make the stack; its left end is clamped; one metre thick."""
         rest, stack = np.zeros(self.n_instants), self.stack()
         factors, friction = shared.factors_of(self), stack.friction
-        stack = replace(stack, spans=self.spans)
+        if self.spans is not None:
+            up = self.elements_up
+            bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
+            stack = replace(stack, bricks=bricks)
         held, free = Given(True, rest), Given(False, rest)
         pressing = self.path("pressure_load")
         pull = self.path("pull_load")

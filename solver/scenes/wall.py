@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -10,7 +11,7 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity, redefined
 from solver.discrete.bricks import Brick, bonded, with_opening
-from solver.discrete.wall import Wall
+from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS, load_path
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
@@ -212,29 +213,20 @@ class WallSettings(PlaneSettings):
                 f"these are {self.n_substructures}: take fewer courses, or bricks of a course",
             )
 
-    def structure(self) -> Wall:
+    def structure(self) -> Stack:
         """Make the wall; one metre thick."""
-        times, size = self.times(), (self.elements, self.elements_up)
         angle = np.radians(self.path("slope_load"))
-        weight = load_path("hold", times, self.duration, self.unit_weight, 1, PRESETS, 1)
-        driven = self.path("top_load")
-        return Wall(
+        weight = load_path("hold", self.times(), self.duration, self.unit_weight, 1, PRESETS, 1)
+        driven = Given(self.top == "moved", self.path("top_load"))
+        stack = replace(
+            self.stack(),
             bricks=self._bricks,
-            element=(self.length / size[0], self.height / size[1]),
-            young=self.young,
-            poisson=self.poisson,
-            state=self.plane,
-            friction=self.friction,
-            friction_law=self.law,
-            weight=-weight * np.stack([np.sin(angle), np.cos(angle)]),
-            pressure=self.path("pressure_load"),
-            moved=driven if self.top == "moved" else None,
-            shear=driven if self.top == "pulled" else None,
-            instants=times,
-            duration=self.duration,
-            macro_degree=self.macro_degree,
+            substructures=(1, 1),
+            body_force=-weight * np.stack([np.sin(angle), np.cos(angle)]),
+            sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
             tilt=angle if np.any(angle) else None,
         )
+        return replace(stack, support=Support(np.zeros(stack.grid[0] + 1), self.friction))
 
     def sentence(self) -> str:
         """The wall in a sentence."""
