@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.definitions import Parameter, about, checked_value, unknown
+from solver.definitions import Parameter, SettingError, about, checked_value, unknown
 
 
 class Checked(param.Parameterized):
@@ -120,6 +120,10 @@ class Checked(param.Parameterized):
     def with_change(self, name: str, value: object) -> Self:
         """New settings with one changed, and those that could not stand beside it."""
         return self.replace(**{name: value})
+
+    def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
+        """Refusal of the present value of a setting: what is allowed beside others, what to do."""
+        return SettingError(name, getattr(self, name), allowed, remedy)
 
     def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of the columns of a curve under the present values."""

@@ -10,7 +10,7 @@ from app.worker.outlines import Indices, outlines_of
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate

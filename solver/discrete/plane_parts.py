@@ -9,7 +9,6 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.discrete.inside import Inside
 from solver.discrete.plane import Condensed, Rectangle, dofs_of, side_basis
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Elasticity, Substructure
@@ -177,6 +176,84 @@ def rigid_motions(
         motions.append(whole)
     together = np.concatenate(motions, axis=1)
     return together if together.size else None
+
+
+class Inside:
+    """What lies inside condensed substructures, found when somebody looks.
+
+    Made of all substructures in order, the scaled positions of all nodes, (n_nodes, 2), and the
+    degrees of freedom of the problem among those of all nodes.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates of all nodes, shape (n_nodes, 2), m.
+    elements
+        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
+        as its four quarters.
+    bodies, parts
+        Body and substructure of every element, shape (n_elements,).
+    components
+        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
+    """
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        positions: Array,
+        skeleton: Indices,
+        scales: Scales,
+        n_instants: int,
+    ) -> None:
+        length = scales.displacement
+        self._parts, self._length, self._young = parts, length, scales.force / length
+        self._size = len(skeleton), n_instants
+        self._dofs = [np.searchsorted(skeleton, part.dofs) for part in parts]
+        self.nodes: Array = positions * length
+        corners = [part.nodes.ravel()[part.rectangle.cells] for part in parts]
+        self.elements: Indices = np.concatenate(corners)
+        sizes = [len(own) for own in corners]
+        self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
+        self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
+        self.components: Indices = skeleton % 2
+
+    def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
+        """Displacement of all nodes, (n_nodes, 2, n), m, by that of the degrees of freedom, m."""
+        chosen = skeleton[:, instants] / self._length
+        whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
+        for part, dofs in zip(self._parts, self._dofs, strict=True):
+            force = None if part.force is None else part.force[:, instants]
+            whole[part.nodes.ravel()] = part.condensed.recover(chosen[dofs], force)
+        return whole * self._length
+
+    def adjoint(self, weights: Array) -> tuple[Array, Array]:
+        """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
+
+        Weights of the problem's degrees of freedom, (n_dofs,), from those of the nodes,
+        (n_nodes, 2); and what loads inside add, (n_instants,), m.
+        """
+        total, constant = np.zeros(self._size[0]), np.zeros(self._size[1])
+        # Substructures share the nodes on their cuts.
+        counts = np.bincount(np.concatenate([part.nodes.ravel() for part in self._parts]))
+        shares = weights / counts[:, None]
+        for part, dofs in zip(self._parts, self._dofs, strict=True):
+            own = shares[part.nodes.ravel()].reshape(-1, 1)
+            if own.any():
+                np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
+                if part.force is not None:
+                    still = np.zeros((len(dofs), self._size[1]))
+                    inner = part.condensed.recover(still, part.force).reshape(len(own), -1)
+                    constant += own[:, 0] @ inner
+        return total, constant * self._length
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
+
+        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
+        """
+        scaled = displacement / self._length
+        parts = [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
+        return self._young * np.concatenate(parts)
 
 
 def problem_of(

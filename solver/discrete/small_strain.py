@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.structure import Structure

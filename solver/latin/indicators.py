@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.contact_groups import ContactGroup
+from solver.discrete.contacts import ContactGroup
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.laws.contact import Behaviour

@@ -10,7 +10,7 @@ import numpy as np
 import solver.scenes.bar_ends as bar_ends
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, count, curve, quantity
+from solver.definitions import count, quantity
 from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
@@ -107,13 +107,9 @@ class BarSettings(SceneSettings):
         "ramp",
         title="Heating",
     )
-    temperature_profile = curve(
-        "uniform",
-        shared.PROFILES,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on the temperature along the bar: a preset, or points (m, factor).",
+    temperature_profile = shared.profile(
+        "the temperature",
+        "the bar",
         group="Load",
         title="Temperature along the bar",
         applies=lambda settings: settings.acts("temperature_load"),
@@ -141,32 +137,19 @@ class BarSettings(SceneSettings):
         "ramp",
         places=("bottom x",),
     )
-    settlement_profile = curve(
-        "linear",
+    settlement_profile = shared.profile(
+        "the settlement",
+        "the bar",
         ("linear", *shared.PROFILES),
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on the settlement along the bar: a preset (linear: nothing at the left end), or "
-        "points (m, factor).",
+        "a preset (linear: nothing at the left end), or points (m, factor).",
         group="Load",
         title="Settlement along the bar",
         applies=lambda settings: settings.acts("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
     pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
-    friction_profile = shared.friction_profile("the bar")
-    pressure_profile = curve(
-        "uniform",
-        shared.PROFILES,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on p along the bar: a preset, or points (m, factor).",
-        is_positive=True,
-        group="Contact",
-        title="p along the bar",
-    )
+    friction_profile = shared.profile("μ", "the bar", is_positive=True, title="μ along the bar")
+    pressure_profile = shared.profile("p", "the bar", is_positive=True, title="p along the bar")
     elements = count(
         50,
         (1, 20_000),
@@ -178,16 +161,13 @@ class BarSettings(SceneSettings):
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", "Bar")
     young = shared.young("Bar")
     section = shared.section("Area of the cross section.", "Bar")
-    section_profile = curve(
-        "uniform",
+    section_profile = shared.profile(
+        "S",
+        "the bar",
         SECTIONS,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on S along the bar: a preset, taken at the middle of every element; or points "
-        "(m, factor), where an element is as stiff as all that lies in it.",
+        "a preset, taken at the middle of every element; or points (m, factor), where an element "
+        "is as stiff as all that lies in it.",
         group="Bar",
-        title="S along the bar",
     )
 
     @classmethod
@@ -220,9 +200,8 @@ class BarSettings(SceneSettings):
         unit, value = self.young * self.section / self.length, getattr(self, name)
         low, high = (share * unit for share in STIFFNESSES)
         if self.applies(name) and not low <= value <= high:
-            raise SettingError(
+            raise self.refusal(
                 name,
-                value,
                 f"from {plain(low)} N/m to {plain(high)} N/m with such a bar",
                 "let the end be free, or held",
             )
@@ -235,16 +214,14 @@ class BarSettings(SceneSettings):
         factors = [factor for _, factor in table]
         low, high = FACTORS
         if not low <= min(factors) <= max(factors) <= high:
-            raise SettingError(
+            raise self.refusal(
                 "section_profile",
-                table,
                 f"factors above 0, from {plain(low)} to {plain(high)}",
                 "bring the factors into this range",
             )
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
-            raise SettingError(
+            raise self.refusal(
                 "section_profile",
-                table,
                 f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
                 "bring the factors nearer to each other",
             )
@@ -321,9 +298,8 @@ class BarSettings(SceneSettings):
         total = np.abs(bar_ends.total_force(self))
         worst = int(np.argmax(total - most))
         if total[worst] >= (1.0 - SLACK) * most[worst]:
-            raise SettingError(
+            raise self.refusal(
                 "left_end",
-                self.left_end,
                 f"held, or spring, where forces reach {plain(float(total[worst]))} N and friction "
                 f"carries less than {plain(float(most[worst]))} N",
                 "hold an end, lower the forces, or raise friction or pressure",

@@ -319,9 +319,8 @@ class SceneSettings(FrictionSettings):
         for part, whole in self.PARTS.items():
             value, most = getattr(self, part), getattr(self, whole)
             if value > most:
-                raise SettingError(
+                raise self.refusal(
                     part,
-                    value,
                     f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
                     f"lower {part} or raise {whole}",
                 )

@@ -10,7 +10,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, count, curve, quantity, redefined
+from solver.definitions import Pairs, choice, count, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
@@ -146,9 +146,8 @@ class BlockSettings(SideSettings):
         super().check_together()
         loss = loss_of_equilibrium(self.structure())
         if loss is not None:
-            raise SettingError(
+            raise self.refusal(
                 "top",
-                self.top,
                 "sides and loads that leave the body in equilibrium",
                 f"nothing but contact holds it, and from {plain(loss.instant)} s on {loss.reason}: "
                 f"lower that load, press more, {loss.remedy}, or hold a side",

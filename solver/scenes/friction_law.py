@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.definitions import Pairs, SettingError, about, choice, curve, quantity
+from solver.definitions import Pairs, about, choice, curve, quantity
 from solver.laws import FrictionLaw, Strength
 from solver.refusal import plain
 from solver.settings import Settings
@@ -170,9 +170,8 @@ class FrictionSettings(Settings):
         begins = len(table) > 1 and table[0] == (0.0, 1.0)
         grows = begins and np.all(np.diff(slips) >= SHORTEST_SLIP)
         if not (grows and factors.min() >= 0.0 and factors.max() <= LARGEST_FACTOR):
-            raise SettingError(
+            raise self.refusal(
                 "strength",
-                table,
                 "at least two points (slip, factor), the first (0, 1), factors from 0 to "
                 f"{plain(LARGEST_FACTOR)}, slips that grow by {plain(SHORTEST_SLIP)} m",
                 "the factor at slip 0 is 1, as the rest of the law says what friction is there",
@@ -184,9 +183,8 @@ class FrictionSettings(Settings):
             value = getattr(self, name)
             if self.applies(name) and value and not low <= value <= high:
                 unit = about(self.definitions()[name]).unit
-                raise SettingError(
+                raise self.refusal(
                     name,
-                    value,
                     f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
                     "write 0 where nothing gives way, or take away friction where nothing holds",
                 )

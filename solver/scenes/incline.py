@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import SettingError, quantity, redefined
+from solver.definitions import quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
@@ -98,9 +98,8 @@ class InclineSettings(PlaneSettings):
             return
         name = self.size_or_table("slope_load")
         angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
-        raise SettingError(
+        raise self.refusal(
             name,
-            getattr(self, name),
             "slopes on which the block stays in equilibrium",
             f"from {plain(loss.instant)} s on, at {angle:.4g}°, {loss.reason}: "
             "lower the slope, or take a longer base or a lower block",

@@ -11,7 +11,6 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.definitions import (
     Pairs,
-    SettingError,
     choice,
     count,
     curve,
@@ -214,9 +213,8 @@ class LayersSettings(PlaneSettings):
             return
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
-            raise SettingError(
+            raise self.refusal(
                 "layer_lengths",
-                self.layer_lengths,
                 "shares above 0, the largest of them 1",
                 "give each length over that of the longest layer",
             )

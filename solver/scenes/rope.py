@@ -142,12 +142,10 @@ class RopeSettings(SceneSettings):
         group="Strand",
         title="Elements per wire",
     )
-    substructures = count(
+    substructures = redefined(
+        SceneSettings.param["substructures"],
         10,
-        (1, 20_000),
-        (1, 50),
-        "Number of pieces (substructures) that a wire is cut into, all alike.",
-        group="Decomposition",
+        doc="Number of pieces (substructures) that a wire is cut into, all alike.",
         title="Substructures per wire",
     )
 
@@ -211,9 +209,8 @@ class RopeSettings(SceneSettings):
         super().check_together()
         shared.factors_of(self)
         if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
-            raise SettingError(
+            raise self.refusal(
                 "fall_off",
-                self.fall_off,
                 "a distance above 0, where there is no tension to tell it",
                 "give the fall-off, or a tension",
             )

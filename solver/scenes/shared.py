@@ -9,7 +9,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, SettingError, curve, quantity
+from solver.definitions import CurveParameter, curve, quantity
 from solver.discrete.rods import Rods
 from solver.discrete.rope import Rope
 from solver.loads import PRESETS, PRESSURES
@@ -44,18 +44,31 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
     )
 
 
-def friction_profile(body: str, presets: Iterable[str] = PROFILES) -> CurveParameter:
-    """Define how mu varies along a body."""
+def profile(
+    what: str, body: str, presets: Iterable[str] = PROFILES, doc: str = "", **others: Any
+) -> CurveParameter:
+    """Define a factor along a body; its default is the first preset.
+
+    Parameters
+    ----------
+    what, body
+        On what, and along what.
+    presets
+        By name.
+    doc
+        Of a factor that is more than a preset or points.
+    others
+        Of a curve, and entries of `About`.
+    """
+    presets, along = tuple(presets), f"along {body}"
     return curve(
-        "uniform",
+        presets[0],
         presets,
         "position",
         "factor",
         ("m", ""),
-        f"Factor on mu along {body}: a preset, or points (m, factor).",
-        is_positive=True,
-        group="Contact",
-        title=f"μ along {body}",
+        f"Factor on {what} {along}: {doc or 'a preset, or points (m, factor).'}",
+        **{"group": "Contact", "title": f"{what[:1].upper()}{what[1:]} {along}"} | others,
     )
 
 
@@ -181,9 +194,8 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
     table = getattr(settings, name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
-        raise SettingError(
+        raise settings.refusal(
             name,
-            table,
             f"{count} pairs, one for each {what}",
             f"there are {len(table)}: number each {what} from 1 to {count}",
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, quantity
+from solver.definitions import SettingError, choice, count, quantity, redefined
 from solver.discrete.cut_rods import COARSEST
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods, neighbours
@@ -92,13 +92,11 @@ class StrandSettings(SceneSettings):
         group="Strand",
         title="Elements per wire",
     )
-    substructures = count(
+    substructures = redefined(
+        SceneSettings.param["substructures"],
         6,
-        (1, 20_000),
-        (1, 50),
-        "Number of pieces (substructures) that a wire is cut into, at least two where one is "
+        doc="Number of pieces (substructures) that a wire is cut into, at least two where one is "
         "broken: all wires are cut at the break, and alike.",
-        group="Decomposition",
         title="Substructures per wire",
     )
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
@@ -108,7 +106,7 @@ class StrandSettings(SceneSettings):
     @property
     def n_substructures(self) -> int:
         """Number of substructures in all."""
-        return self.wires * max(self.substructures, 2 if self.broken else 1)
+        return int(self.wires * max(self.substructures, 2 if self.broken else 1))
 
     @property
     def features(self) -> Features:
@@ -137,9 +135,8 @@ class StrandSettings(SceneSettings):
         shared.factors_of(self)
         tension = self.path("load")
         if tension.min() < 0.0:
-            raise SettingError(
+            raise self.refusal(
                 "load",
-                self.load,
                 "tensions of at least 0 N",
                 "wires cannot be pushed: raise the negative values",
             )
@@ -227,9 +224,8 @@ class StrandSettings(SceneSettings):
                     f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
                     "wire beyond its break"
                 )
-            raise SettingError(
+            raise self.refusal(
                 name,
-                getattr(self, name),
                 allowed,
                 "pull less, raise friction or pressure, move the break to the left, or take the "
                 "grip of given displacement",

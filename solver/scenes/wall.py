@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import SettingError, choice, count, curve, quantity, redefined
+from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.bricks import Brick, bonded, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS, load_path
@@ -191,24 +191,20 @@ class WallSettings(PlaneSettings):
             value = getattr(self, name)
             if self.opening and value > most:
                 remedy = "lower it, or build a larger wall"
-                raise SettingError(name, value, f"at most {max(most, 0)}, as {beside}", remedy)
+                raise self.refusal(name, f"at most {max(most, 0)}, as {beside}", remedy)
         super().check_together()
         if (self.opening or (self.bond == "running" and self.courses > 1)) and self.elements % 2:
             remedy = "take an even number, or bond=stack"
-            raise SettingError(
-                "elements", self.elements, "an even number, as there are half bricks", remedy
-            )
+            raise self.refusal("elements", "an even number, as there are half bricks", remedy)
         if self.bricks > 1 and self.elements_up < 2:
-            raise SettingError(
+            raise self.refusal(
                 "elements_up",
-                self.elements_up,
                 "at least 2, between bricks of a course",
                 "raise it",
             )
         if self.n_substructures > MOST_BRICKS:
-            raise SettingError(
+            raise self.refusal(
                 "courses",
-                self.courses,
                 f"a wall of at most {MOST_BRICKS} bricks, of 2 GB",
                 f"these are {self.n_substructures}: take fewer courses, or bricks of a course",
             )
