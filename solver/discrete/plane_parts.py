@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.plane import Condensed, Rectangle, dofs_of, side_basis
@@ -150,9 +151,7 @@ def lined_up(parts: Sequence[Part], name: str, degree: int) -> tuple[Indices, sp
         side_basis(part.rectangle, part.traces[name].side, len(part.rows[name]), degree)
         for part in parts
     ]
-    # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
-    macro = sparse.block_diag([sparse.coo_array(basis) for basis in bases])
-    return np.concatenate(rows), sparse.csr_array(macro)
+    return np.concatenate(rows), sparse.csr_array(block_diag(*bases))
 
 
 def rigid_motions(

@@ -9,7 +9,7 @@ from typing import Literal, Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods
+from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods, resampled
 from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
@@ -210,34 +210,17 @@ class Rods:
         elements = self.elements // 2
         if elements < COARSEST:
             return None
-        nodes = np.linspace(0.0, self.length, elements + 1)
-        body_force, section = self.body_force, self.section
-        strain, settlement = self.strain, self.settlement
-        if body_force is not None and body_force.ndim == 2:
-            body_force = self._at(nodes, body_force)
-        if settlement is not None:
-            settlement = self._at(nodes, settlement)
-        if strain is not None:  # what it would lengthen the parts between the new nodes by
-            longer = np.concatenate([np.zeros_like(strain[:1]), np.cumsum(strain, axis=0)])
-            strain = np.diff(self._at(nodes, longer), axis=0) * (elements / self.elements)
-        if section is not None:  # in series what the elements have between the new nodes
-            compliance = np.concatenate([[0.0], np.cumsum(1.0 / section)])
-            soft = np.diff(np.interp(nodes, self.nodes, compliance))
-            section = np.mean(soft) / soft
+        force, settled, section = self.body_force, self.settlement, self.section
         return replace(
             self,
             elements=elements,
             substructures=1,
-            bound=self._at(nodes, self.bound),
-            body_force=body_force,
-            strain=strain,
-            settlement=settlement,
-            section=section,
+            bound=resampled(self.bound, elements),
+            body_force=force if force is None or force.ndim == 1 else resampled(force, elements),
+            strain=None if self.strain is None else _means(self.strain, elements),
+            settlement=None if settled is None else resampled(settled, elements),
+            section=None if section is None else 1.0 / _means(1.0 / section, elements),
         )
-
-    def _at(self, nodes: Array, values: Array) -> Array:
-        """Values at other nodes, linear between those of the rod."""
-        return np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, values)
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
@@ -367,6 +350,12 @@ class Rods:
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements
                 yield Hold("support", "bottom", (float(first), float(last)))
+
+
+def _means(values: Array, elements: int) -> Array:
+    """Means over equal elements of what others along one rod have, (n_elements, ...)."""
+    sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
+    return np.diff(resampled(sums, elements), axis=0) * (elements / len(values))
 
 
 def neighbours(wire: int, wires: int) -> int:

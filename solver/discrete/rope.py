@@ -19,6 +19,7 @@ from solver.discrete.cross_section import CrossSection
 from solver.discrete.cut_rods import (
     COARSEST,
     CutRods,
+    resampled,
     rod_stiffness,
     substructure_sizes,
     tributary,
@@ -119,16 +120,8 @@ class Rope:
         elements = self.elements // 2
         if elements < COARSEST:
             return None
-        fine, coarse = np.linspace(0.0, 1.0, self.elements + 1), np.linspace(0.0, 1.0, elements + 1)
-        place = np.interp(coarse, fine, np.arange(self.elements + 1.0))
-        left = np.minimum(place.astype(np.intp), self.elements - 1)
-        share = (place - left)[:, None]
         wires = [
-            replace(
-                wire,
-                curvature=(1.0 - share) * wire.curvature[left] + share * wire.curvature[left + 1],
-            )
-            for wire in self.wires
+            replace(wire, curvature=resampled(wire.curvature, elements)) for wire in self.wires
         ]
         return replace(self, wires=wires, substructures=1)
 

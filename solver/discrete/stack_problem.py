@@ -134,10 +134,12 @@ class _Cut:
         joints = joints_of([piece.rectangle for piece in self._pieces])
         joints = [one for one in joints if one.below is not None or stack.support]
         self._touched = {place for joint in joints for place in joint.sides}
-        self._joints = [one for one in joints if len(self._points(one)[0])]
+        # An upright joint of one element has no nodes but its ends.
+        self._joints = [
+            one for one in joints if order * (one.last - one.first) + 1 > sum(self._left_out(one))
+        ]
         self._outlines: dict[tuple[int, int, float], Condensed] = {}
         self._kept: dict[tuple[object, ...], Condensed] = {}
-        self._forces: dict[tuple[object, ...], Array | None] = {}
         traces = self._traces()
         self.parts = [self._part(number, own) for number, own in enumerate(traces)]
 
@@ -233,31 +235,20 @@ class _Cut:
         )
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
-        """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None; equals share."""
-        loads = {
-            (side, component): (given, self._along(self._pieces[number], side, given))
-            for side in self._outer(number)
-            for component, given in enumerate(self.stack.sides[side])
-            if not given.prescribed and not given.is_zero
-        }
-        places = ((*where, along.tobytes()) for where, (_, along) in loads.items())
-        kind = id(mesh), *places
-        if kind not in self._forces:
-            self._forces[kind] = self._nodal_force(loads, mesh)
-        return self._forces[kind]
-
-    def _nodal_force(
-        self, loads: dict[tuple[str, int], tuple[Given, Array]], mesh: Rectangle
-    ) -> Array | None:
+        """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
         stack, order = self.stack, self.stack.order
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
-        for (side, component), (given, along) in loads.items():
+        for side in self._outer(number):
             nodes = mesh.edge(side)
             step = mesh.height if side in ("left", "right") else mesh.width
             edges = np.arange(0, len(nodes) - 1, order)[:, None] + np.arange(order + 1)
-            traction = (given.mean + along * given.slope) / stack.young
-            force = step * np.matmul(edge_mass(order), traction[edges])
-            np.add.at(total[:, component], nodes[edges], force)
+            for component, given in enumerate(stack.sides[side]):
+                if given.prescribed or given.is_zero:
+                    continue
+                along = self._along(self._pieces[number], side, given)
+                traction = (given.mean + along * given.slope) / stack.young
+                force = step * np.matmul(edge_mass(order), traction[edges])
+                np.add.at(total[:, component], nodes[edges], force)
         if stack.body_force is not None:
             areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
             density = stack.body_force * stack.length / stack.young
