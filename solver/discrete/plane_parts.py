@@ -41,19 +41,14 @@ class Trace:
     last: int | None = None
     has_macro: bool = False
 
-    @property
-    def span(self) -> slice:
-        """Which of the side's nodes have rows."""
-        return slice(self.first, self.last)
-
     def dofs(self, rectangle: Rectangle) -> Indices:
         """Degrees of freedom of a rectangle under the rows, shape (n_nodes, n_components)."""
-        nodes = rectangle.edge(self.side)[self.span]
+        nodes = rectangle.edge(self.side)[self.first : self.last]
         return np.add.outer(2 * nodes, self.components)
 
     def weights(self, rectangle: Rectangle) -> Array:
         """Length of the whole side that belongs to each node, shape (n_nodes,), scaled."""
-        return rectangle.edge_weights(self.side)[self.span]
+        return rectangle.edge_weights(self.side)[self.first : self.last]
 
 
 @dataclass(eq=False)
@@ -95,12 +90,6 @@ class Part:
     def dofs(self) -> Indices:
         """What is kept, among the degrees of freedom of all nodes."""
         return dofs_of(self.nodes.ravel())[self.condensed.dofs]
-
-
-def keep(outline: Condensed, traces: Iterable[Trace]) -> Condensed:
-    """Condense a rectangle onto what traces along its sides need."""
-    edges = [trace.dofs(outline.rectangle).ravel() for trace in traces]
-    return outline.keep(np.unique(np.concatenate(edges)))
 
 
 def number_rows(parts: Iterable[Part]) -> Indices:

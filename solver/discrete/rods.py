@@ -202,25 +202,28 @@ class Rods:
         """Neighbours of the broken rod."""
         return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
 
-    def coarser(self) -> Self | None:
-        """Return the same uncut rods on half the elements; None where no front would be seen.
+    def coarser(self) -> Iterator[Self]:
+        """Yield the same uncut rods on ever fewer elements, as long as a front is seen.
 
         They must be whole: a break stands at a node.
         """
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        force, settled, section = self.body_force, self.settlement, self.section
-        return replace(
-            self,
-            elements=elements,
-            substructures=1,
-            bound=resampled(self.bound, elements),
-            body_force=force if force is None or force.ndim == 1 else resampled(force, elements),
-            strain=None if self.strain is None else _means(self.strain, elements),
-            settlement=None if settled is None else resampled(settled, elements),
-            section=None if section is None else 1.0 / _means(1.0 / section, elements),
-        )
+        rods = self
+        while (elements := rods.elements // 2) >= COARSEST:
+            force, strain = rods.body_force, rods.strain
+            settled, section = rods.settlement, rods.section
+            if force is not None and force.ndim == 2:
+                force = resampled(force, elements)
+            rods = replace(
+                rods,
+                elements=elements,
+                substructures=1,
+                bound=resampled(rods.bound, elements),
+                body_force=force,
+                strain=None if strain is None else _means(strain, elements),
+                settlement=None if settled is None else resampled(settled, elements),
+                section=None if section is None else 1.0 / _means(1.0 / section, elements),
+            )
+            yield rods
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""

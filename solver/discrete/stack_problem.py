@@ -19,7 +19,7 @@ from solver.discrete.bricks import Brick, Joint, joints_of
 from solver.discrete.cut_rods import substructure_sizes
 from solver.discrete.elements import edge_mass, elastic_matrix
 from solver.discrete.plane import Condensed, Rectangle, edge_lengths, side_basis
-from solver.discrete.plane_parts import Part, Trace, keep, lined_up, number_rows, problem_of
+from solver.discrete.plane_parts import Part, Trace, lined_up, number_rows, problem_of
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rigid_stack import rigid_rest, rigid_slide
 from solver.laws import (
@@ -222,7 +222,9 @@ class _Cut:
             )
         kind = shape, *traces.values()
         if kind not in self._kept:
-            self._kept[kind] = keep(self._outlines[shape], traces.values())
+            outline = self._outlines[shape]
+            edges = [trace.dofs(outline.rectangle).ravel() for trace in traces.values()]
+            self._kept[kind] = outline.keep(np.unique(np.concatenate(edges)))
         brick = stack.rectangles[body]
         along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(stack.order)
         return Part(

@@ -111,7 +111,6 @@ class BarSettings(SceneSettings):
         "the temperature",
         "the bar",
         group="Load",
-        title="Temperature along the bar",
         applies=lambda settings: settings.acts("temperature_load"),
     )
     expansion = quantity(
@@ -143,13 +142,12 @@ class BarSettings(SceneSettings):
         ("linear", *shared.PROFILES),
         "a preset (linear: nothing at the left end), or points (m, factor).",
         group="Load",
-        title="Settlement along the bar",
         applies=lambda settings: settings.acts("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
     pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
-    friction_profile = shared.profile("μ", "the bar", is_positive=True, title="μ along the bar")
-    pressure_profile = shared.profile("p", "the bar", is_positive=True, title="p along the bar")
+    friction_profile = shared.profile("μ", "the bar", is_positive=True)
+    pressure_profile = shared.profile("p", "the bar", is_positive=True)
     elements = count(
         50,
         (1, 20_000),
@@ -307,7 +305,7 @@ class BarSettings(SceneSettings):
 
     def coarser(self) -> Iterator[Rods]:
         """Yield the same bar, uncut, on ever coarser meshes."""
-        return shared.ever_coarser(self.structure())
+        return self.structure().coarser()
 
     def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
         """Friction along the bar and the loop of its end, where closed forms are known."""

@@ -152,9 +152,7 @@ class FaultSettings(PlaneSettings):
         unit="Pa",
         logarithmic=True,
     )
-    normal_profile = shared.profile(
-        "σ", "the fault", PROFILES, is_positive=True, title="σ along the fault"
-    )
+    normal_profile = shared.profile("σ", "the fault", PROFILES, is_positive=True)
     diffusivity = quantity(
         0.1,
         (1e-15, 1e9),
@@ -166,9 +164,7 @@ class FaultSettings(PlaneSettings):
         logarithmic=True,
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
-    friction_profile = shared.profile(
-        "μ", "the fault", PROFILES, is_positive=True, title="μ along the fault"
-    )
+    friction_profile = shared.profile("μ", "the fault", PROFILES, is_positive=True)
     length = shared.size(
         600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
     )

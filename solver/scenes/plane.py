@@ -39,7 +39,7 @@ class PlaneSettings(SceneSettings):
 
     instants = redefined(SceneSettings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
-    friction_profile = shared.profile("μ", "the body", is_positive=True, title="μ along the body")
+    friction_profile = shared.profile("μ", "the body", is_positive=True)
     tangential_stiffness = redefined(
         SceneSettings.param["tangential_stiffness"],
         0.0,

@@ -284,7 +284,7 @@ class RopeSettings(SceneSettings):
 
     def coarser(self) -> Iterator[Rope]:
         """Yield the same strand, uncut, on ever coarser meshes."""
-        return shared.ever_coarser(self.structure())
+        return self.structure().coarser()
 
     def bent_strand(self) -> BentStrand | None:
         """Closed form of a strand that is bent alike all along, under a tension that stays."""

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 import param
 
 from solver.arrays import Array
 from solver.definitions import CurveParameter, curve, quantity
-from solver.discrete.rods import Rods
-from solver.discrete.rope import Rope
 from solver.loads import PRESETS, PRESSURES
 from solver.settings import Settings
-
-S = TypeVar("S", Rods, Rope)
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -29,6 +25,14 @@ OF_PRESSURES = (
     "tightening: the other way. shaken: it falls to a fifth and comes back, six times. "
 )
 """What the presets of a pressure are."""
+BY_UNIT = {
+    "m": "displacement",
+    "K": "temperature",
+    "°": "angle",
+    "1/m": "curvature",
+    "Pa": "traction",
+}
+"""What a path without a word of its own has, by its unit; else it is a force."""
 PLANE_GROWS = ("elements", "elements_up", "substructures", "substructures_up")
 
 
@@ -60,15 +64,16 @@ def profile(
     others
         Of a curve, and entries of `About`.
     """
-    presets, along = tuple(presets), f"along {body}"
+    presets, name = tuple(presets), what.removeprefix("the ")
+    title = name if name == what else name.capitalize()
     return curve(
         presets[0],
         presets,
         "position",
         "factor",
         ("m", ""),
-        f"Factor on {what} {along}: {doc or 'a preset, or points (m, factor).'}",
-        **{"group": "Contact", "title": f"{what[:1].upper()}{what[1:]} {along}"} | others,
+        f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
+        **{"group": "Contact", "title": f"{title} along {body}"} | others,
     )
 
 
@@ -127,12 +132,12 @@ def sized_path(
     """
     record = {"group": "Load", "title": f"{what[:1].upper()}{what[1:]}"} | record
     size = quantity(default, bounds, slider, doc, unit=unit, applies=applies, path=path, **record)
-    kinds = {"m": "displacement", "K": "temperature", "°": "angle", "1/m": "curvature"}
+    named = (kind for kind in ("pressure", "tension") if kind in what)
     over_time = curve(
         preset,
         presets,
         "time",
-        "pressure" if "pressure" in what else kinds.get(unit, "force"),
+        next(named, BY_UNIT.get(unit, "force")),
         ("s", unit),
         f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
         is_positive=is_positive,
@@ -200,12 +205,6 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
             f"there are {len(table)}: number each {what} from 1 to {count}",
         )
     return np.asarray(values)
-
-
-def ever_coarser(structure: S | None) -> Iterator[S]:
-    """Yield the same structure, uncut, on ever coarser meshes, the finest first."""
-    while structure is not None and (structure := structure.coarser()) is not None:
-        yield structure
 
 
 def size(
