@@ -136,6 +136,22 @@ def test_the_order_of_the_bricks_changes_nothing():
     np.testing.assert_allclose(*sums, atol=1e-9 * np.abs(sums[0]).max())
 
 
+@pytest.mark.parametrize("cuts", [(2, 1), (3, 2)])
+def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
+    """Where cuts of one brick are not those of the next, a side has joints with several parts."""
+    whole = wall(3, 3, size=(6, 2))
+    cut = replace(whole, substructures=cuts)
+    found = []
+    for made in (whole, cut):
+        problem = made.discretise()
+        run = solve(problem, Latin())
+        assert run.is_certified
+        names = sorted(problem.rubbing)
+        sums = [run.iterate.contact(name).normal_force.sum(axis=0) for name in names]
+        found.append([made.loop(problem).force(run.iterate), *sums])
+    np.testing.assert_allclose(*found, atol=1e-6 * np.abs(found[0]).max())
+
+
 def column(shear, courses, *, friction, **law):
     """A pile of single bricks under a pressure, with a traction along its top that grows."""
     made = wall(1, courses, bond="stack", size=(8, 4), **law)

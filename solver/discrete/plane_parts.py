@@ -64,7 +64,7 @@ class Part:
     body
         Number of its body.
     traces
-        Its boundary rows, by a name that one trace of the part has.
+        Its boundary rows, by the name of a side or the joint that one trace of the part is at.
     modulus
         Young's modulus, scaled, for the search direction.
     force
@@ -76,10 +76,10 @@ class Part:
     condensed: Condensed
     nodes: Indices
     body: int
-    traces: dict[str, Trace]
+    traces: dict[Hashable, Trace]
     modulus: float = 1.0
     force: Array | None = None
-    rows: dict[str, Indices] = field(default_factory=dict)
+    rows: dict[Hashable, Indices] = field(default_factory=dict)
 
     @property
     def rectangle(self) -> Rectangle:
@@ -130,15 +130,18 @@ def _substructure(
     )
 
 
-def lined_up(parts: Sequence[Part], name: str, degree: int) -> tuple[Indices, sparse.csr_array]:
-    """Traces of one name that follow each other, as one side, with a macro basis of a degree.
+def lined_up(
+    traces: Sequence[tuple[Part, Hashable]], degree: int
+) -> tuple[Indices, sparse.csr_array]:
+    """Traces that follow each other, as one side, with a macro basis of a degree.
 
-    Rows, (n_points, n_components), and the macro basis of one component, (n_points, n_macro).
+    From parts and the name of a trace of each: rows, (n_points, n_components), and the macro basis
+    of one component, (n_points, n_macro).
     """
-    rows = [part.rows[name] for part in parts]
+    rows = [part.rows[name] for part, name in traces]
     bases = [
         side_basis(part.rectangle, part.traces[name].side, len(part.rows[name]), degree)
-        for part in parts
+        for part, name in traces
     ]
     return np.concatenate(rows), sparse.csr_array(block_diag(*bases))
 

@@ -7,7 +7,7 @@ themselves, and need no interface. Contact forces are lumped at the nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -178,18 +178,21 @@ class _Cut:
         if self._is_cut(joint) or (joint.below is None and support and support.bound is not None):
             return 0, 0
         if joint.is_upright:
-            return 1, 1
+            bodies = [self.stack.rectangles[self._pieces[one].body] for one, _ in joint.sides]
+            first = joint.first == max(brick.y for brick in bodies)
+            last = joint.last == min(brick.y + brick.rows for brick in bodies)
+            return int(first), int(last)
         first = joint.first == 0 and sides["left"].y.prescribed
         last = joint.last == self.stack.grid[0] and sides["right"].y.prescribed
         return int(first), int(last)
 
-    def _traces(self) -> Iterator[dict[str, Trace]]:
+    def _traces(self) -> Iterator[dict[Hashable, Trace]]:
         """Rows of every substructure: all at an interface, or those of prescribed components.
 
         A support of known bound has the component along it.
         """
         stack, order = self.stack, self.stack.order
-        traces: list[list[tuple[str, Trace]]] = [[] for _ in self._pieces]
+        traces: list[list[tuple[Hashable, Trace]]] = [[] for _ in self._pieces]
         for joint in self._joints:
             is_known = joint.below is None and stack.support and stack.support.bound is not None
             before, after = self._left_out(joint)
@@ -200,7 +203,7 @@ class _Cut:
                 end = None if last - after == order * size else last - after + 1
                 held = (0,) if is_known else (0, 1)
                 trace = Trace(side, held, first, end, has_macro=joint.below is not None)
-                traces[number].append((self._name(joint), trace))
+                traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             is_lowest = self._pieces[number][2:] == (0, 0)
             for side in self._outer(number):
@@ -212,7 +215,7 @@ class _Cut:
                     named.append(("spring", Trace(side, (0, 1), 0, 1)))
             yield dict(sorted(named, key=lambda each: SIDES.index(each[1].side)))
 
-    def _part(self, number: int, traces: dict[str, Trace]) -> Part:
+    def _part(self, number: int, traces: dict[Hashable, Trace]) -> Part:
         stack, (own, *_, body) = self.stack, self._pieces[number]
         shape = own.columns, own.rows, stack.modulus(body)
         if shape not in self._outlines:
@@ -277,26 +280,28 @@ class _Cut:
             if not self._is_cut(joint):
                 contacts.setdefault(self._name(joint), []).append(joint)
         for name, joints in contacts.items():
-            yield name, self._contact(name, joints)
+            yield name, self._contact(joints)
         if stack.spring is not None:
             yield "spring", self._spring(stack.spring)
         cuts = [one for one in self._joints if self._is_cut(one)]
         for joint in sorted(cuts, key=lambda one: (one.sides[1][0], not one.is_upright)):
-            name, (below, side) = self._name(joint), joint.sides[1]
-            part, other = self.parts[below], self.parts[joint.above]
-            basis = side_basis(part.rectangle, side, len(part.rows[name]), stack.macro_degree)
+            below, side = joint.sides[1]
+            part, other = self.parts[below], self.parts[joint.above].rows[joint]
+            own = part.rows[joint]
+            basis = side_basis(part.rectangle, side, len(own), stack.macro_degree)
             macro = np.asarray(np.kron(basis, np.eye(2)))
-            yield name, Perfect(part.rows[name].ravel(), other.rows[name].ravel(), macro)
+            yield self._name(joint), Perfect(own.ravel(), other.ravel(), macro)
         for side, given in stack.sides.items():
             if any(one.prescribed for one in given):
                 yield from self._prescribed(side, given)
 
-    def _contact(self, name: str, joints: Sequence[Joint]) -> Contact:
+    def _contact(self, joints: Sequence[Joint]) -> Contact:
         """Law of a body on what is below or to the left of it."""
         stack, is_upright = self.stack, joints[0].is_upright
-        rows, macro = lined_up([self.parts[one.above] for one in joints], name, stack.macro_degree)
-        under = [self.parts[one.below] for one in joints if one.below is not None]
-        lower = np.concatenate([part.rows[name] for part in under]) if under else None
+        upper = [(self.parts[one.above], one) for one in joints]
+        rows, macro = lined_up(upper, stack.macro_degree)
+        under = [(self.parts[one.below], one) for one in joints if one.below is not None]
+        lower = np.concatenate([part.rows[one] for part, one in under]) if under else None
         node, weights = map(np.concatenate, zip(*map(self._points, joints), strict=True))
         touching, points = np.unique(node, return_inverse=True)
         body, axis = self._pieces[joints[0].above].body, 1 if is_upright else 0
@@ -323,7 +328,7 @@ class _Cut:
         if across:
             softness = law.softness_across(areas, scales)
             normal = Unilateral(component=across[0], gap=gap, softness=softness)
-        below = stack.modulus(under[0].body) if under else np.inf
+        below = stack.modulus(under[0][0].body) if under else np.inf
         depth = stack.height * (stack.rectangles[body].rows / stack.elements[1])
         return Contact(
             normal=normal,
@@ -340,9 +345,9 @@ class _Cut:
         order, (before, after) = self.stack.order, self._left_out(joint)
         count, step = joint.last - joint.first, self._element[1 if joint.is_upright else 0]
         lengths = edge_lengths(order, count, step)
-        if before and joint.is_upright:
-            lengths[1] += lengths[0]
-            lengths[-2] += lengths[-1]
+        if joint.is_upright:
+            lengths[1] += before * lengths[0]
+            lengths[-2] += after * lengths[-1]
         some = slice(before, order * count + 1 - after)
         return (order * joint.first + np.arange(order * count + 1))[some], lengths[some]
 
