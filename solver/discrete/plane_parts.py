@@ -143,7 +143,9 @@ def lined_up(
         side_basis(part.rectangle, part.traces[name].side, len(part.rows[name]), degree)
         for part, name in traces
     ]
-    return np.concatenate(rows), sparse.csr_array(block_diag(*bases))
+    # Most joints of a wall have one part, and SciPy takes long for one block.
+    whole = bases[0] if len(bases) == 1 else block_diag(*bases)
+    return np.concatenate(rows), sparse.csr_array(whole)
 
 
 def rigid_motions(
