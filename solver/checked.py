@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.definitions import Parameter, about, checked_value, unknown
+from solver.definitions import Parameter, SettingError, about, checked_value, unknown
 
 
 class Checked(param.Parameterized):
@@ -121,6 +121,10 @@ class Checked(param.Parameterized):
         """New settings with one changed, and those that could not stand beside it."""
         return self.replace(**{name: value})
 
+    def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
+        """Refusal of the present value of a setting: what is allowed beside others, what to do."""
+        return SettingError(name, getattr(self, name), allowed, remedy)
+
     def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of the columns of a curve under the present values."""
         # Of the class: param copies what is read of an instance to it, and no pipe takes that.
@@ -129,7 +133,10 @@ class Checked(param.Parameterized):
 
     def applies(self, name: str) -> bool:
         """Whether a setting does anything under the present values."""
-        return about(self.definitions()[name]).applies(self)
+        record = about(self.definitions()[name])
+        if record.path and not isinstance(getattr(self, record.path), str):
+            return False
+        return record.applies(self)
 
 
 def dump(settings: Checked) -> str:

@@ -46,6 +46,11 @@ class About:
         Whether a slider over it should be logarithmic.
     applies
         Whether it does anything, given all the settings.
+    path
+        Setting of the path over time that reaches this value: where it is a table, that has its
+        own size, and this value does nothing.
+    places
+        What it places or scales in a picture: "right x" along a side, "body" throughout.
     """
 
     group: str
@@ -53,6 +58,8 @@ class About:
     unit: str = ""
     logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
+    path: str = ""
+    places: tuple[str, ...] = ()
 
 
 class CurveParameter(Parameter):
@@ -60,21 +67,25 @@ class CurveParameter(Parameter):
 
     With more than two columns it is a table, whose rows stand in any order. `units` are those of
     the columns, empty for a pure number; `bounds` their ends, of integers for whole numbers.
+    `is_positive` is whether no value may be below zero.
     """
 
-    __slots__ = ["bounds", "columns", "presets", "units"]
+    __slots__ = ["bounds", "columns", "is_positive", "presets", "units"]
 
     def __init__(
         self,
         default: str,
         presets: Iterable[str],
         columns: Mapping[str, tuple[str, tuple[float, float]]],
+        *,
+        is_positive: bool = False,
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
         self.presets = tuple(presets)
         self.columns = tuple(columns)
         self.units, self.bounds = zip(*columns.values(), strict=True)
+        self.is_positive = is_positive
 
     @property
     def abscissa(self) -> str:
@@ -138,11 +149,14 @@ def curve(
     ordinate: str,
     units: tuple[str, str],
     doc: str,
+    *,
+    is_positive: bool = False,
     **record: Any,
 ) -> CurveParameter:
-    """Path: a preset's name or a table of points."""
+    """Path: a preset's name or a table of points, with `is_positive` of none below zero."""
     columns = {name: (unit, ANY) for name, unit in zip((abscissa, ordinate), units, strict=True)}
-    return CurveParameter(default, presets, columns, **_common(doc, record))
+    common = _common(doc, record)
+    return CurveParameter(default, presets, columns, is_positive=is_positive, **common)
 
 
 def table(
@@ -217,7 +231,12 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     """
     refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(definition, CurveParameter):
-        return _checked_curve(definition, value, refuse)
+        rows = _checked_curve(definition, value, refuse)
+        if definition.is_positive and isinstance(rows, tuple) and min(row[1] for row in rows) < 0.0:
+            what, unit = definition.ordinate, definition.units[1]
+            least = f"{what}s of at least 0 {unit}".rstrip()
+            raise SettingError(name, value, least, f"raise the negative {what}")
+        return rows
     if isinstance(definition, param.Boolean):
         if not isinstance(value, bool):
             raise refuse("write true or false")

@@ -122,7 +122,7 @@ def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -
     state = PageState(default_settings("bar").replace(load=path))
     link, message = link_of(state)
     assert len(link) < LONGEST
-    assert message.endswith("Load path.")
+    assert message.endswith("Path of the force at the right end.")
     assert read(link)[0].settings.load == "sine"
     assert read(link, state.settings)[0].settings.load == path
 

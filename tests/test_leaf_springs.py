@@ -12,7 +12,6 @@ from refusals import refusal
 from solver import solve
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete.cut_stack import CutStack
 from solver.discrete.stack import Stack
 from solver.files import settings_from_command
 from solver.reference.closed_forms.elastic_bodies import TwoLeaves, cantilever, leaf_spring
@@ -118,7 +117,6 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     stack = structure_of(settings)
     assert isinstance(stack, Stack)
     assert stack.longest == 1
-    assert CutStack(stack).neighbour((4, 0, 1), "right") == "right"
     acts = {act.where: act.places for act in stack.described().acts}
     np.testing.assert_allclose(acts["top y"][:, 1], [1.0, 2 / 3, 2 / 3])
     np.testing.assert_allclose(acts["bottom y"][:, 1], [0.0, 0.0, 1 / 3])

@@ -11,11 +11,16 @@ import pytest
 from small_scenes import SMALL
 
 from solver.cli import main
-from solver.discrete.small_strain import beyond_small_strain, largest_strain
 from solver.latin import cost as costs
 from solver.latin.cost import LARGE, LONG, RunCost, run_cost
 from solver.reference.incremental import reference_of
-from solver.remarks import MOST_GROWTH, contact_growth, remarks_on
+from solver.remarks import (
+    MOST_GROWTH,
+    beyond_small_strain,
+    contact_growth,
+    largest_strain,
+    remarks_on,
+)
 from solver.scenes import CATALOGUE, discretise, structure_of
 from solver.scenes.method import method_of
 from solver.study.quantities.finished import FinishedRun, finished_run

@@ -11,7 +11,7 @@ from app.frame import DeformedGeometry, Floats, Geometry
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate

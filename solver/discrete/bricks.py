@@ -1,8 +1,4 @@
-"""Bricks on a grid of equal elements, and the joints where their sides meet.
-
-Upright joints have no pair at their ends. Three contacts would meet in a corner, of whose forces
-only sums are determined, and which of them slips would depend on how they share.
-"""
+"""Rectangles on a grid of equal elements, and the joints where their sides meet."""
 
 from __future__ import annotations
 
@@ -22,16 +18,21 @@ class Brick(NamedTuple):
     columns: int
     rows: int
 
+    def nodes(self, order: int) -> tuple[slice, slice]:
+        """Its nodes along and up, among those of a grid of elements of an order."""
+        x, y = order * self.x, order * self.y
+        return slice(x, x + order * self.columns + 1), slice(y, y + order * self.rows + 1)
+
 
 class Joint(NamedTuple):
-    """Where two bricks touch, or one its support.
+    """Where two rectangles touch, or one its support.
 
     Attributes
     ----------
     above, below
-        Numbers of the brick above, or to the right, and of the other; None is the support.
+        Numbers of the one above, or to the right, and of the other; None is the support.
     first, last
-        Nodes of the grid along it between which there are pairs, the last one too.
+        Its ends on the grid, in elements.
     is_upright
         Whether it is a joint between neighbours of a course.
     """
@@ -43,10 +44,10 @@ class Joint(NamedTuple):
     is_upright: bool = False
 
     @property
-    def name(self) -> str:
-        """Name of the interface."""
-        other = "support" if self.below is None else f"brick {self.below + 1}"
-        return f"{other} and brick {self.above + 1}"
+    def sides(self) -> list[tuple[int, str]]:
+        """Rectangles of the joint and their sides there, the one above or to the right first."""
+        above, below = ("left", "right") if self.is_upright else ("bottom", "top")
+        return [(self.above, above), *([] if self.below is None else [(self.below, below)])]
 
 
 def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> list[Brick]:
@@ -109,7 +110,7 @@ def with_opening(
 
 
 def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
-    """All joints of bricks that do not overlap: with the support, beds, and upright ones."""
+    """All joints of rectangles that do not overlap: with the support, beds, and upright ones."""
     x, y, columns, rows = np.array(bricks).T
     joints = []
     for above, brick in enumerate(bricks):
@@ -121,8 +122,8 @@ def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
             if last > first:
                 joints.append(Joint(above, int(below), first, last))
         for left in np.flatnonzero(x + columns == brick.x):
-            first = max(brick.y, int(y[left])) + 1
-            last = min(brick.y + brick.rows, int(y[left] + rows[left])) - 1
-            if last >= first:
+            first = max(brick.y, int(y[left]))
+            last = min(brick.y + brick.rows, int(y[left] + rows[left]))
+            if last > first:
                 joints.append(Joint(above, int(left), first, last, is_upright=True))
     return joints

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Scales
@@ -69,6 +70,14 @@ def substructure_sizes(elements: int, substructures: int) -> list[int]:
     """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
     size, extra = divmod(elements, substructures)
     return [size + 1] * extra + [size] * (substructures - extra)
+
+
+def resampled(values: Array, elements: int) -> Array:
+    """Values at the nodes of equal elements, linear between the nodes of others along one rod."""
+    places = np.linspace(0.0, len(values) - 1.0, elements + 1)
+    left = np.minimum(places.astype(np.intp), len(values) - 2)
+    share = (places - left).reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(values[left] + share * (values[left + 1] - values[left]))
 
 
 class CutRods:
@@ -368,5 +377,4 @@ def _macro(rubbing: list[Indices]) -> sparse.csr_array:
     """Macro basis of a contact between rods: polynomials on every piece."""
     counts = [len(nodes) for nodes in rubbing]
     bases = [np.vander(np.linspace(-1.0, 1.0, n), min(MACRO_DEGREE + 1, n)) for n in counts]
-    # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
-    return sparse.csr_array(sparse.block_diag([sparse.coo_array(basis) for basis in bases]))
+    return sparse.csr_array(block_diag(*bases))

@@ -112,10 +112,7 @@ class Rectangle:
         """Length of a side that belongs to each of its nodes, scaled."""
         upright = side in ("left", "right")
         count, step = (self.rows, self.height) if upright else (self.columns, self.width)
-        weights = np.zeros(self.order * count + 1)
-        for place, share in enumerate(shares(self.order)):
-            weights[place : place + self.order * count : self.order] += step * share
-        return weights
+        return edge_lengths(self.order, count, step)
 
     def stress(self, displacement: Array) -> Array:
         """Stresses (xx, yy, xy) at the centres of the cells, (n_cells, 3), scaled.
@@ -131,6 +128,14 @@ class Rectangle:
                 strain = strain_matrix(1, *at) if self.order == 1 else projected_strain_matrix(*at)
                 stresses[:, up, :, along] = own @ (self.elastic @ strain).T
         return stresses.reshape(-1, 3)
+
+
+def edge_lengths(order: int, count: int, step: float) -> Array:
+    """Length that belongs to each node of edges of elements in a row, of one length each."""
+    lengths = np.zeros(order * count + 1)
+    for place, share in enumerate(shares(order)):
+        lengths[place : place + order * count : order] += step * share
+    return lengths
 
 
 def dofs_of(nodes: Indices) -> Indices:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
-from solver.discrete.inside import Inside
 from solver.discrete.plane import Condensed, Rectangle, dofs_of, side_basis
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Elasticity, Substructure
@@ -41,22 +41,14 @@ class Trace:
     last: int | None = None
     has_macro: bool = False
 
-    @property
-    def span(self) -> slice:
-        """Which of the side's nodes have rows."""
-        return slice(self.first, self.last)
-
     def dofs(self, rectangle: Rectangle) -> Indices:
         """Degrees of freedom of a rectangle under the rows, shape (n_nodes, n_components)."""
-        nodes = rectangle.edge(self.side)[self.span]
+        nodes = rectangle.edge(self.side)[self.first : self.last]
         return np.add.outer(2 * nodes, self.components)
 
     def weights(self, rectangle: Rectangle) -> Array:
-        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled.
-
-        Where a contact ends inside the side, half of it belongs to the last node.
-        """
-        return rectangle.edge_weights(self.side)[self.span]
+        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled."""
+        return rectangle.edge_weights(self.side)[self.first : self.last]
 
 
 @dataclass(eq=False)
@@ -72,7 +64,7 @@ class Part:
     body
         Number of its body.
     traces
-        Its boundary rows, by a name that one trace of the part has.
+        Its boundary rows, by the name of a side or the joint that one trace of the part is at.
     modulus
         Young's modulus, scaled, for the search direction.
     force
@@ -84,10 +76,10 @@ class Part:
     condensed: Condensed
     nodes: Indices
     body: int
-    traces: dict[str, Trace]
+    traces: dict[Hashable, Trace]
     modulus: float = 1.0
     force: Array | None = None
-    rows: dict[str, Indices] = field(default_factory=dict)
+    rows: dict[Hashable, Indices] = field(default_factory=dict)
 
     @property
     def rectangle(self) -> Rectangle:
@@ -98,12 +90,6 @@ class Part:
     def dofs(self) -> Indices:
         """What is kept, among the degrees of freedom of all nodes."""
         return dofs_of(self.nodes.ravel())[self.condensed.dofs]
-
-
-def keep(outline: Condensed, traces: Iterable[Trace]) -> Condensed:
-    """Condense a rectangle onto what traces along its sides need."""
-    edges = [trace.dofs(outline.rectangle).ravel() for trace in traces]
-    return outline.keep(np.unique(np.concatenate(edges)))
 
 
 def number_rows(parts: Iterable[Part]) -> Indices:
@@ -145,22 +131,21 @@ def _substructure(
 
 
 def lined_up(
-    parts: Sequence[Part], name: str, degree: int
-) -> tuple[Indices, Array, sparse.csr_array]:
-    """Traces of one name that follow each other, as one side, with a macro basis of a degree.
+    traces: Sequence[tuple[Part, Hashable]], degree: int
+) -> tuple[Indices, sparse.csr_array]:
+    """Traces that follow each other, as one side, with a macro basis of a degree.
 
-    Rows, (n_points, n_components), the length that belongs to each point, scaled, and the macro
-    basis of one component, (n_points, n_macro).
+    From parts and the name of a trace of each: rows, (n_points, n_components), and the macro basis
+    of one component, (n_points, n_macro).
     """
-    rows = [part.rows[name] for part in parts]
-    weights = [part.traces[name].weights(part.rectangle) for part in parts]
+    rows = [part.rows[name] for part, name in traces]
     bases = [
         side_basis(part.rectangle, part.traces[name].side, len(part.rows[name]), degree)
-        for part in parts
+        for part, name in traces
     ]
-    # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
-    macro = sparse.block_diag([sparse.coo_array(basis) for basis in bases])
-    return np.concatenate(rows), np.concatenate(weights), sparse.csr_array(macro)
+    # Most joints of a wall have one part, and SciPy takes long for one block.
+    whole = bases[0] if len(bases) == 1 else block_diag(*bases)
+    return np.concatenate(rows), sparse.csr_array(whole)
 
 
 def rigid_motions(
@@ -184,6 +169,84 @@ def rigid_motions(
         motions.append(whole)
     together = np.concatenate(motions, axis=1)
     return together if together.size else None
+
+
+class Inside:
+    """What lies inside condensed substructures, found when somebody looks.
+
+    Made of all substructures in order, the scaled positions of all nodes, (n_nodes, 2), and the
+    degrees of freedom of the problem among those of all nodes.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates of all nodes, shape (n_nodes, 2), m.
+    elements
+        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
+        as its four quarters.
+    bodies, parts
+        Body and substructure of every element, shape (n_elements,).
+    components
+        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
+    """
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        positions: Array,
+        skeleton: Indices,
+        scales: Scales,
+        n_instants: int,
+    ) -> None:
+        length = scales.displacement
+        self._parts, self._length, self._young = parts, length, scales.force / length
+        self._size = len(skeleton), n_instants
+        self._dofs = [np.searchsorted(skeleton, part.dofs) for part in parts]
+        self.nodes: Array = positions * length
+        corners = [part.nodes.ravel()[part.rectangle.cells] for part in parts]
+        self.elements: Indices = np.concatenate(corners)
+        sizes = [len(own) for own in corners]
+        self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
+        self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
+        self.components: Indices = skeleton % 2
+
+    def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
+        """Displacement of all nodes, (n_nodes, 2, n), m, by that of the degrees of freedom, m."""
+        chosen = skeleton[:, instants] / self._length
+        whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
+        for part, dofs in zip(self._parts, self._dofs, strict=True):
+            force = None if part.force is None else part.force[:, instants]
+            whole[part.nodes.ravel()] = part.condensed.recover(chosen[dofs], force)
+        return whole * self._length
+
+    def adjoint(self, weights: Array) -> tuple[Array, Array]:
+        """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
+
+        Weights of the problem's degrees of freedom, (n_dofs,), from those of the nodes,
+        (n_nodes, 2); and what loads inside add, (n_instants,), m.
+        """
+        total, constant = np.zeros(self._size[0]), np.zeros(self._size[1])
+        # Substructures share the nodes on their cuts.
+        counts = np.bincount(np.concatenate([part.nodes.ravel() for part in self._parts]))
+        shares = weights / counts[:, None]
+        for part, dofs in zip(self._parts, self._dofs, strict=True):
+            own = shares[part.nodes.ravel()].reshape(-1, 1)
+            if own.any():
+                np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
+                if part.force is not None:
+                    still = np.zeros((len(dofs), self._size[1]))
+                    inner = part.condensed.recover(still, part.force).reshape(len(own), -1)
+                    constant += own[:, 0] @ inner
+        return total, constant * self._length
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
+
+        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
+        """
+        scaled = displacement / self._length
+        parts = [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
+        return self._young * np.concatenate(parts)
 
 
 def problem_of(

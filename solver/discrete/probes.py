@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
-from solver.discrete.inside import Inside
+from solver.discrete.plane_parts import Inside
 from solver.discrete.problem import Problem
 
 AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}

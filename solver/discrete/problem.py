@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
-from solver.discrete.contact_groups import ContactGroup, grouped
+from solver.discrete.contacts import ContactGroup, grouped
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
 
 if TYPE_CHECKING:
-    from solver.discrete.inside import Inside
+    from solver.discrete.plane_parts import Inside
 
 
 @dataclass(frozen=True)

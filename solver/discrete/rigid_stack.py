@@ -146,7 +146,7 @@ def rigid_rest(stack: Stack) -> Array | None:
     Displacement upwards of the lower left corner, m, and counter-clockwise rotation about it, shape
     (2, n_instants); None where a side holds the body up, or where it rests already.
     """
-    if stack.support is None or is_held_up(stack):
+    if stack.support is None or len(stack.rectangles) > 1 or is_held_up(stack):
         return None
     gap = stack.support.gap
     x = np.linspace(0.0, stack.length, len(gap))

@@ -9,7 +9,7 @@ from typing import Literal, Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods
+from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods, resampled
 from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
@@ -202,42 +202,28 @@ class Rods:
         """Neighbours of the broken rod."""
         return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
 
-    def coarser(self) -> Self | None:
-        """Return the same uncut rods on half the elements; None where no front would be seen.
+    def coarser(self) -> Iterator[Self]:
+        """Yield the same uncut rods on ever fewer elements, as long as a front is seen.
 
         They must be whole: a break stands at a node.
         """
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        nodes = np.linspace(0.0, self.length, elements + 1)
-        body_force, section = self.body_force, self.section
-        strain, settlement = self.strain, self.settlement
-        if body_force is not None and body_force.ndim == 2:
-            body_force = self._at(nodes, body_force)
-        if settlement is not None:
-            settlement = self._at(nodes, settlement)
-        if strain is not None:  # what it would lengthen the parts between the new nodes by
-            longer = np.concatenate([np.zeros_like(strain[:1]), np.cumsum(strain, axis=0)])
-            strain = np.diff(self._at(nodes, longer), axis=0) * (elements / self.elements)
-        if section is not None:  # in series what the elements have between the new nodes
-            compliance = np.concatenate([[0.0], np.cumsum(1.0 / section)])
-            soft = np.diff(np.interp(nodes, self.nodes, compliance))
-            section = np.mean(soft) / soft
-        return replace(
-            self,
-            elements=elements,
-            substructures=1,
-            bound=self._at(nodes, self.bound),
-            body_force=body_force,
-            strain=strain,
-            settlement=settlement,
-            section=section,
-        )
-
-    def _at(self, nodes: Array, values: Array) -> Array:
-        """Values at other nodes, linear between those of the rod."""
-        return np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, values)
+        rods = self
+        while (elements := rods.elements // 2) >= COARSEST:
+            force, strain = rods.body_force, rods.strain
+            settled, section = rods.settlement, rods.section
+            if force is not None and force.ndim == 2:
+                force = resampled(force, elements)
+            rods = replace(
+                rods,
+                elements=elements,
+                substructures=1,
+                bound=resampled(rods.bound, elements),
+                body_force=force,
+                strain=None if strain is None else _means(strain, elements),
+                settlement=None if settled is None else resampled(settled, elements),
+                section=None if section is None else 1.0 / _means(1.0 / section, elements),
+            )
+            yield rods
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
@@ -367,6 +353,12 @@ class Rods:
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements
                 yield Hold("support", "bottom", (float(first), float(last)))
+
+
+def _means(values: Array, elements: int) -> Array:
+    """Means over equal elements of what others along one rod have, (n_elements, ...)."""
+    sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
+    return np.diff(resampled(sums, elements), axis=0) * (elements / len(values))
 
 
 def neighbours(wire: int, wires: int) -> int:

@@ -19,6 +19,7 @@ from solver.discrete.cross_section import CrossSection
 from solver.discrete.cut_rods import (
     COARSEST,
     CutRods,
+    resampled,
     rod_stiffness,
     substructure_sizes,
     tributary,
@@ -114,23 +115,15 @@ class Rope:
         """Axial stiffness of the stiffest wire, N."""
         return max(wire.helix.stiffness for wire in self.wires)
 
-    def coarser(self) -> Self | None:
-        """Return the same uncut wires on half the elements; None where no front would be seen."""
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        fine, coarse = np.linspace(0.0, 1.0, self.elements + 1), np.linspace(0.0, 1.0, elements + 1)
-        place = np.interp(coarse, fine, np.arange(self.elements + 1.0))
-        left = np.minimum(place.astype(np.intp), self.elements - 1)
-        share = (place - left)[:, None]
-        wires = [
-            replace(
-                wire,
-                curvature=(1.0 - share) * wire.curvature[left] + share * wire.curvature[left + 1],
-            )
-            for wire in self.wires
-        ]
-        return replace(self, wires=wires, substructures=1)
+    def coarser(self) -> Iterator[Self]:
+        """Yield the same uncut wires on ever fewer elements, as long as a front is seen."""
+        rope = self
+        while (elements := rope.elements // 2) >= COARSEST:
+            wires = [
+                replace(one, curvature=resampled(one.curvature, elements)) for one in rope.wires
+            ]
+            rope = replace(rope, wires=wires, substructures=1)
+            yield rope
 
     def discretise(self) -> Problem:
         """Cut all wires alike and write the laws of their interfaces.

@@ -1,14 +1,16 @@
-"""Rectangular bodies in the plane, one on a support or several stacked on each other."""
+"""Rectangular bodies in the plane: one on a support, several on each other, a wall of bricks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, without_residue
+from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import discretise_stack
@@ -91,20 +93,23 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """Rectangular bodies of one height on each other; one metre thick.
+    """Rectangular bodies that lie on each other, or stand beside each other; one metre thick.
+
+    They are in contact wherever sides meet, and where they stand at y = 0 with the support.
 
     Attributes
     ----------
     length, height
-        Of one body, the longest, m.
+        Of one body, m.
     bodies
-        Their number.
+        Number of equal bodies on each other.
+    bricks
+        Where bodies are and how large, on the grid of the elements of one; None is `bodies` on each
+        other. What is given on the left and the right holds for those which reach farthest, and on
+        top and bottom for all that lies open there.
     elements, substructures
-        Of the longest body, along and up.
-    spans
-        Elements along every body, from the left on, of which the longest has `elements[0]`; None
-        where all are as long. What is given on the right holds for the longest, and on top and
-        bottom for all that lies open; there is no support then.
+        Of one body, along and up. Bodies on each other that all begin at the left are also cut
+        where any of them ends.
     order
         Of the elements: 1 bilinear, 2 biquadratic.
     macro_degree
@@ -154,7 +159,7 @@ class Stack:
     spring: Spring | None = None
     tilt: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
-    spans: Sequence[int] | None = None
+    bricks: Sequence[Brick] | None = None
 
     def __post_init__(self) -> None:
         """Leave free what is not given."""
@@ -162,12 +167,44 @@ class Stack:
         others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
         object.__setattr__(self, "sides", {**self.sides, **others})
 
+    @cached_property
+    def rectangles(self) -> Sequence[Brick]:
+        """Every body on the grid of elements."""
+        along, up = self.elements
+        pile = [Brick(0, number * up, along, up) for number in range(self.bodies)]
+        return pile if self.bricks is None else self.bricks
+
+    @cached_property
+    def is_pile(self) -> bool:
+        """Whether all bodies begin at the left, one on the other."""
+        return not any(brick.x for brick in self.rectangles)
+
+    @cached_property
+    def grid(self) -> tuple[int, int]:
+        """Elements of all bodies together, along and up."""
+        ends = [(brick.x + brick.columns, brick.y + brick.rows) for brick in self.rectangles]
+        return max(end for end, _ in ends), max(end for _, end in ends)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and height of all bodies together, m."""
+        (along, up), (columns, rows) = self.elements, self.grid
+        return columns / along * self.length, rows / up * self.height
+
+    @property
+    def weight(self) -> Array:
+        """Resultant of the body force, shape (2, n_instants), N."""
+        elements = sum(brick.columns * brick.rows for brick in self.rectangles)
+        area = elements / (self.elements[0] * self.elements[1]) * self.length * self.height
+        if self.body_force is None:
+            return np.zeros((2, len(self.instants)))
+        return np.asarray(self.body_force * area)
+
     @property
     def reach(self) -> Array:
         """Length of every body over that of the longest, shape (bodies,)."""
-        if self.spans is None:
-            return np.ones(self.bodies)
-        return np.asarray(self.spans) / self.elements[0]
+        columns = np.array([brick.columns for brick in self.rectangles])
+        return np.asarray(columns / columns.max())
 
     @property
     def longest(self) -> int:
@@ -191,21 +228,25 @@ class Stack:
         """Spring force on a slope, shear force on a support, or what bends the end."""
         if self.tilt is not None and self.spring is not None:
             return _spring_over_angle(self.tilt)
+        if self.support is not None and len(self.rectangles) > 1:
+            return _driven_top(self, problem)
         if self.support is not None:
             return _shear(self, problem)
-        if self.sides["right"].y.prescribed:
-            return _deflection(problem)
-        if np.any(self.sides["right"].y.mean):
-            return _deflection(problem, self.end_force)
+        bent = self.sides["right"].y
+        if bent.prescribed or np.any(bent.mean):
+            titles = "Deflection of the end", "Transverse force"
+            given = None if bent.prescribed else self.end_force
+            return _over_mean(problem, "right", 1, titles, given)
         rotation, moment = end_rotation(problem), _moment(self)
         return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""
+        length, height = self.size
         return Description(
-            bodies=self.bodies,
-            length=self.length,
-            height=self.bodies * self.height,
+            bodies=len({brick.y for brick in self.rectangles}),
+            length=length,
+            height=height,
             instants=self.instants,
             acts=tuple(self._acts()),
             holds=tuple(self._holds()),
@@ -218,19 +259,18 @@ class Stack:
                 continue
             for component, given in enumerate(side):
                 act = _given(given, name, component)
-                yield act if self.spans is None else replace(act, places=self._open(act))
-        if self.body_force is not None:
-            size = np.hypot(*self.body_force)
-            towards = self.body_force / np.where(size > 0.0, size, 1.0)
-            weight = size * self.length * (self.bodies * self.height)
-            yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), weight, "N")
+                yield replace(act, places=self._open(act)) if self.is_pile else act
+        size = np.hypot(*self.weight)
+        towards = self.weight / np.where(size > 0.0, size, 1.0)
+        yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), size, "N")
 
     def _open(self, act: Act) -> Array:
         """Places of what acts on a side, where bodies of other lengths lie open to it."""
         places, side = act.places.copy(), act.where.partition(" ")[0]
+        bodies = len(self.rectangles)
         for place in places:
             there = np.flatnonzero(self.reach >= place[0])
-            low, high = there[0] / self.bodies, (there[-1] + 1) / self.bodies
+            low, high = there[0] / bodies, (there[-1] + 1) / bodies
             ends = {"top": (high, high), "bottom": (low, low)}.get(side, (low, high))
             place[1] = ends[0] + place[1] * (ends[1] - ends[0])
         return places
@@ -288,26 +328,36 @@ def _shear(stack: Stack, problem: Problem) -> Loop:
     )
 
 
+def _driven_top(stack: Stack, problem: Problem) -> Loop:
+    """Shear force that moves the top over the displacement of the top; given, or what holds it."""
+    given, force = stack.sides["top"].x, None
+    if not given.prescribed:
+        force = np.broadcast_to(given.mean * stack.size[0], stack.instants.shape)
+    return _over_mean(problem, "top", 0, ("Displacement of the top", "Shear force"), force)
+
+
 def _shear_force(fields: LoopFields) -> Array:
     force = -fields.contact("support").tangential_force
     return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
 
 
-def _deflection(problem: Problem, given: Array | None = None) -> Loop:
-    """Transverse force at the end over its deflection; the force is given, or that which holds."""
+def _over_mean(
+    problem: Problem, side: str, component: int, titles: tuple[str, str], given: Array | None
+) -> Loop:
+    """Force on a side over its mean displacement; the force is given, or that which holds it."""
     force: Array | Callable[[LoopFields], Array]
     if given is None:
-        held = reaction(problem, "right")
+        held = reaction(problem, side)
         force = lambda fields: held(fields.displacement)  # noqa: E731
     else:
         force = given
-    end = side_mean(problem, "right", 1)
-    return Loop(("Deflection of the end", "m"), ("Transverse force", "N"), end, force)
+    across, up = titles
+    return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
 
 
 def _moment(stack: Stack) -> Array:
     """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
     given = stack.sides["right"].x
     several = stack.longest * stack.height**2
-    size = several if given.each_body else stack.bodies * several
+    size = several if given.each_body else len(stack.rectangles) * several
     return np.broadcast_to(-size / 6.0 * given.slope, stack.instants.shape)

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.contact_fields import ContactFields
+from solver.discrete.contacts import ContactFields
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.contact_groups import ContactGroup
+from solver.discrete.contacts import ContactGroup
 from solver.discrete.problem import Problem
 from solver.laws.contact import Behaviour
 from solver.laws.interface import beyond, squared

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.discrete.contact_fields import ContactFields, contact_fields
+from solver.discrete.contacts import ContactFields, contact_fields
 from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_of, latin_indicator
 from solver.reduction.basis import Modes, Reduction

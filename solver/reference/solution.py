@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.discrete.contact_fields import ContactFields, contact_fields
+from solver.discrete.contacts import ContactFields, contact_fields
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.limit_analysis import Collapse

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import ClassVar
 
 import numpy as np
@@ -10,18 +10,19 @@ import numpy as np
 import solver.scenes.bar_ends as bar_ends
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, count, curve, quantity
+from solver.definitions import count, quantity
 from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
-from solver.loads import PRESETS, interpolate
+from solver.loads import interpolate
 from solver.profiles import harmonic_means, means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.base import STIFFNESSES, SceneSettings
+from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_bar
+from solver.scenes.friction_law import STIFFNESSES
 from solver.scenes.words import acting, is_steel
 
 SECTIONS = ("uniform", "rising", "falling")
@@ -50,77 +51,67 @@ class BarSettings(SceneSettings):
         "temperature",
         "settlement",
     )
-    PEAKS: ClassVar = {**bar_ends.PEAKS, "pressure_load": "pressure"}
-    BEHIND: ClassVar = {"top y": "pressure", "body": "body_force", "bottom x": "settlement"}
     PROFILES: ClassVar = {**shared.PROFILES, **bar_ends.RISING}
 
-    load = curve(
-        "sine",
-        PRESETS,
-        "time",
-        "force",
-        ("s", "N"),
-        "Axial force at the right end over time: a preset, or points (s, N).",
-        group="Load",
-        title="Load path",
-        applies=bar_ends.is_end("right", "pulled"),
-    )
-    peak = quantity(
+    peak, load = shared.sized_path(
+        "load",
+        "force at the right end",
+        "N",
         900.0,
         (-1e15, 1e15),
         (0.0, 2400.0),
         "Largest force that the preset reaches; 1500 N is where the whole bar of Table 1 slides.",
-        group="Load",
+        "sine",
+        applies=bar_ends.is_end("right", "pulled"),
         title="Peak load",
-        unit="N",
-        applies=lambda settings: settings.right_end == "pulled" and isinstance(settings.load, str),
+        places=("right x",),
     )
-    seed = shared.seed(
-        lambda settings: any(getattr(settings, name) == "random" for name in settings.paths)
-    )
-    duration = shared.duration()
-    instants = shared.instants(101)
     right_end = bar_ends.end("right", "pulled")
     right_displacement, right_load = bar_ends.moved_end("right", "right_load", "ramp")
     right_spring = bar_ends.spring("right")
     left_end = bar_ends.end("left", "held")
     support_displacement, support_load = bar_ends.moved_end("left", "support_load", "sine")
     left_spring = bar_ends.spring("left")
-    left_force, left_load = bar_ends.given(
+    left_force, left_load = shared.sized_path(
         "left_load",
         "force at the left end",
-        "Largest axial force at the left end, positive to the right.",
         "N",
-        (1e15, 2400.0),
+        0.0,
+        (-1e15, 1e15),
+        (0.0, 2400.0),
+        "Largest axial force at the left end, positive to the right.",
         "sine",
         applies=bar_ends.is_end("left", "pulled"),
         group="Ends",
+        places=("left x",),
     )
-    body_force, body_load = bar_ends.given(
+    body_force, body_load = shared.sized_path(
         "body_load",
         "body force",
-        "Largest axial force per length inside the bar; 0 leaves it out.",
         "N/m",
-        (1e15, 3000.0),
+        0.0,
+        (-1e15, 1e15),
+        (0.0, 3000.0),
+        "Largest axial force per length inside the bar; 0 leaves it out.",
+        "ramp",
+        places=("body",),
     )
-    temperature, temperature_load = bar_ends.given(
+    temperature, temperature_load = shared.sized_path(
         "temperature_load",
         "temperature",
-        "Largest change of the temperature of the bar; 0 leaves it out.",
         "K",
-        (1e9, 60.0),
+        0.0,
+        (-1e9, 1e9),
+        (0.0, 60.0),
+        "Largest change of the temperature of the bar; 0 leaves it out.",
+        "ramp",
         title="Heating",
     )
-    temperature_profile = curve(
-        "uniform",
-        shared.PROFILES,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on the temperature along the bar: a preset, or points (m, factor).",
+    temperature_profile = shared.profile(
+        "the temperature",
+        "the bar",
         group="Load",
-        title="Temperature along the bar",
-        applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
+        applies=lambda settings: settings.acts("temperature_load"),
     )
     expansion = quantity(
         1.2e-5,
@@ -130,43 +121,33 @@ class BarSettings(SceneSettings):
         group="Load",
         title="Thermal expansion",
         unit="1/K",
-        applies=lambda settings: bar_ends.acts(settings, "temperature_load"),
+        applies=lambda settings: settings.acts("temperature_load"),
         logarithmic=True,
     )
-    settlement, settlement_load = bar_ends.given(
+    settlement, settlement_load = shared.sized_path(
         "settlement_load",
         "settlement",
+        "m",
+        0.0,
+        (-1e12, 1e12),
+        (0.0, 1e-3),
         "Largest displacement of the support along the bar, as of soil that settles or a slab that "
         "shrinks; 0 leaves it where it is. The ends are not on it.",
-        "m",
-        (1e12, 1e-3),
+        "ramp",
+        places=("bottom x",),
     )
-    settlement_profile = curve(
-        "linear",
+    settlement_profile = shared.profile(
+        "the settlement",
+        "the bar",
         ("linear", *shared.PROFILES),
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on the settlement along the bar: a preset (linear: nothing at the left end), or "
-        "points (m, factor).",
+        "a preset (linear: nothing at the left end), or points (m, factor).",
         group="Load",
-        title="Settlement along the bar",
-        applies=lambda settings: bar_ends.acts(settings, "settlement_load"),
+        applies=lambda settings: settings.acts("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
-    pressure = shared.pressure("the bar on its support", 10_000.0)
-    pressure_load = shared.pressure_load()
-    friction_profile = shared.friction_profile("the bar")
-    pressure_profile = curve(
-        "uniform",
-        shared.PROFILES,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on p along the bar: a preset, or points (m, factor).",
-        group="Contact",
-        title="p along the bar",
-    )
+    pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
+    friction_profile = shared.profile("μ", "the bar", is_positive=True)
+    pressure_profile = shared.profile("p", "the bar", is_positive=True)
     elements = count(
         50,
         (1, 20_000),
@@ -178,16 +159,13 @@ class BarSettings(SceneSettings):
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", "Bar")
     young = shared.young("Bar")
     section = shared.section("Area of the cross section.", "Bar")
-    section_profile = curve(
-        "uniform",
+    section_profile = shared.profile(
+        "S",
+        "the bar",
         SECTIONS,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on S along the bar: a preset, taken at the middle of every element; or points "
-        "(m, factor), where an element is as stiff as all that lies in it.",
+        "a preset, taken at the middle of every element; or points (m, factor), where an element "
+        "is as stiff as all that lies in it.",
         group="Bar",
-        title="S along the bar",
     )
 
     @classmethod
@@ -208,12 +186,9 @@ class BarSettings(SceneSettings):
         return float(self.young * self.section * mean / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse negative factors too."""
+        """Refuse what has no digits left, or no equilibrium, too."""
         self._check_section()
         super().check_together()
-        shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
-        for name in ("friction_profile", "pressure_profile"):
-            shared.refuse_negative(self, name, "factor")
         for side in bar_ends.PATHS:
             self._check_spring(f"{side}_spring")
         self._check_equilibrium()
@@ -223,9 +198,8 @@ class BarSettings(SceneSettings):
         unit, value = self.young * self.section / self.length, getattr(self, name)
         low, high = (share * unit for share in STIFFNESSES)
         if self.applies(name) and not low <= value <= high:
-            raise SettingError(
+            raise self.refusal(
                 name,
-                value,
                 f"from {plain(low)} N/m to {plain(high)} N/m with such a bar",
                 "let the end be free, or held",
             )
@@ -238,16 +212,14 @@ class BarSettings(SceneSettings):
         factors = [factor for _, factor in table]
         low, high = FACTORS
         if not low <= min(factors) <= max(factors) <= high:
-            raise SettingError(
+            raise self.refusal(
                 "section_profile",
-                table,
                 f"factors above 0, from {plain(low)} to {plain(high)}",
                 "bring the factors into this range",
             )
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
-            raise SettingError(
+            raise self.refusal(
                 "section_profile",
-                table,
                 f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
                 "bring the factors nearer to each other",
             )
@@ -260,10 +232,10 @@ class BarSettings(SceneSettings):
         nodes = np.linspace(0.0, self.length, self.elements + 1)
         mean, section = self._uneven_section()
         strain = settlement = None
-        if bar_ends.acts(self, "temperature_load"):
+        if self.acts("temperature_load"):
             along = means([self.points("temperature_profile")], nodes)
             strain = np.outer(self.expansion * along, self.path("temperature_load"))
-        if bar_ends.acts(self, "settlement_load"):
+        if self.acts("settlement_load"):
             along = interpolate(self.points("settlement_profile"), nodes)
             settlement = np.outer(along, self.path("settlement_load"))
         return Rods(
@@ -277,7 +249,7 @@ class BarSettings(SceneSettings):
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
-            body_force=self.path("body_load") if bar_ends.acts(self, "body_load") else None,
+            body_force=self.path("body_load") if self.acts("body_load") else None,
             strain=strain,
             settlement=settlement,
             section=section,
@@ -291,7 +263,7 @@ class BarSettings(SceneSettings):
         rests, moved = bar_ends.ends_in_words(self)
         clauses = [moved] if moved else []
         for path, words in DONE.items():
-            if bar_ends.acts(self, path):
+            if self.acts(path):
                 clauses.append(words[0].format(acting(self.path(path), *words[1:])))
         if self.pressure_load != "steady":
             clauses.append("what presses it changes")
@@ -302,17 +274,9 @@ class BarSettings(SceneSettings):
     @property
     def features(self) -> Features:
         """What it has: a loop over a displacement where an end is pulled or moved."""
-        acting = {name for name in self.paths if bar_ends.acts(self, name)}
+        acting = {name for name in self.paths if self.acts(name)}
         driven = {path for paths in bar_ends.PATHS.values() for path in paths.values()}
         return Features(loop_is_over_displacement=bool(acting & driven))
-
-    def _behind(self) -> Mapping[str, str]:
-        sides = {
-            f"{side} x": self.PEAKS[paths["force" if kind == "pulled" else "displacement"]]
-            for side, paths in bar_ends.PATHS.items()
-            if (kind := getattr(self, f"{side}_end")) != "free"
-        }
-        return {**self.BEHIND, **sides}
 
     def _bound(self, nodes: Array) -> Array:
         """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
@@ -332,9 +296,8 @@ class BarSettings(SceneSettings):
         total = np.abs(bar_ends.total_force(self))
         worst = int(np.argmax(total - most))
         if total[worst] >= (1.0 - SLACK) * most[worst]:
-            raise SettingError(
+            raise self.refusal(
                 "left_end",
-                self.left_end,
                 f"held, or spring, where forces reach {plain(float(total[worst]))} N and friction "
                 f"carries less than {plain(float(most[worst]))} N",
                 "hold an end, lower the forces, or raise friction or pressure",
@@ -342,7 +305,7 @@ class BarSettings(SceneSettings):
 
     def coarser(self) -> Iterator[Rods]:
         """Yield the same bar, uncut, on ever coarser meshes."""
-        return shared.ever_coarser(self.structure())
+        return self.structure().coarser()
 
     def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
         """Friction along the bar and the loop of its end, where closed forms are known."""

@@ -9,9 +9,9 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, choice, curve, quantity
+from solver.definitions import CurveParameter, choice, quantity
 from solver.discrete.rods import End
-from solver.loads import PRESETS
+from solver.scenes.shared import sized_path
 from solver.scenes.words import acting, listed
 
 ENDS = ("held", "spring", "pulled", "free")
@@ -21,23 +21,8 @@ PATHS = {
     "right": {"force": "load", "displacement": "right_load"},
 }
 """Settings of the paths of both ends."""
-PEAKS = {
-    "load": "peak",
-    "left_load": "left_force",
-    "support_load": "support_displacement",
-    "right_load": "right_displacement",
-    "body_load": "body_force",
-    "temperature_load": "temperature",
-    "settlement_load": "settlement",
-}
-"""Settings of the largest values that the presets of these paths reach."""
 RISING = {"linear": ((0.0, 0.0), (1.0, 1.0))}
 """A profile over shares of the length that is nothing at the left end."""
-
-
-def acts(settings: Any, path: str) -> bool:
-    """Whether a path over time has any size, of its preset or of its own."""
-    return not isinstance(getattr(settings, path), str) or settings.size_of(path) != 0.0
 
 
 def is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
@@ -72,71 +57,20 @@ def spring(side: str) -> param.Number[float]:
     )
 
 
-def given(
-    path: str,
-    what: str,
-    doc: str,
-    unit: str,
-    most: tuple[float, float],
-    preset: str = "ramp",
-    *,
-    title: str = "",
-    applies: Callable[[Any], bool] = lambda settings: True,
-    group: str = "Load",
-) -> tuple[param.Number[float], CurveParameter]:
-    """Define the largest value that a preset reaches, and the path over time.
-
-    Parameters
-    ----------
-    path
-        Name of the setting of the path.
-    what, title
-        What it is of, and what the value is called where that is another word.
-    doc
-        Of the value.
-    unit, most
-        Its unit; the largest size that is allowed, and that a slider shows.
-    preset
-        The default of the path.
-    applies, group
-        As of `About`.
-    """
-    name = f"{what[:1].upper()}{what[1:]}"
-    size = quantity(
-        0.0,
-        (-most[0], most[0]),
-        (0.0, most[1]),
-        doc,
-        group=group,
-        title=title or name,
-        unit=unit,
-        applies=lambda settings: applies(settings) and isinstance(getattr(settings, path), str),
-    )
-    over_time = curve(
-        preset,
-        PRESETS,
-        "time",
-        {"m": "displacement", "K": "temperature"}.get(unit, "force"),
-        ("s", unit),
-        f"{name} over time: a preset, or points (s, {unit}).",
-        group=group,
-        title=f"Path of the {what}",
-        applies=lambda settings: applies(settings) and acts(settings, path),
-    )
-    return size, over_time
-
-
 def moved_end(side: str, path: str, preset: str) -> tuple[param.Number[float], CurveParameter]:
     """Define how far what holds an end is moved, and its path."""
-    return given(
+    return sized_path(
         path,
         f"displacement of the {side} end",
-        f"Largest displacement of what holds the {side} end; 0 leaves it where it is.",
         "m",
-        (1e12, 1e-3),
+        0.0,
+        (-1e12, 1e12),
+        (0.0, 1e-3),
+        f"Largest displacement of what holds the {side} end; 0 leaves it where it is.",
         preset,
         applies=is_end(side, *HOLDING),
         group="Ends",
+        places=(f"{side} x",),
     )
 
 
@@ -184,6 +118,6 @@ def total_force(settings: Any) -> Array:
     for side, paths in PATHS.items():
         if getattr(settings, f"{side}_end") == "pulled":
             total = total + settings.path(paths["force"])
-    if acts(settings, "body_load"):
+    if settings.acts("body_load"):
         total = total + settings.length * settings.path("body_load")
     return total

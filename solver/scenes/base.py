@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from typing import ClassVar, Self
 
 import numpy as np
-import param
 
 from solver.arrays import Array
-from solver.definitions import Pairs, Rows, SettingError, about, choice, count, curve, quantity
+from solver.definitions import Pairs, Rows, SettingError, about, count, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.structure import LoopFields, Structure
-from solver.laws import FrictionLaw, Strength
 from solver.loads import (
     NO_KNOTS,
     PRESETS,
@@ -27,9 +25,8 @@ from solver.loads import (
     turning_knots,
 )
 from solver.reference.closed_forms import ExactCurve
-from solver.refusal import plain
 from solver.scenes.entry import Features
-from solver.settings import Settings
+from solver.scenes.friction_law import FrictionSettings
 
 LARGEST_FIELD = 25_000_000
 """Nodes times instants; a run keeps about ten fields over them."""
@@ -40,109 +37,12 @@ THINNED = 1e-3
 """Share of its range by which a path that is thinned may differ from its table."""
 POINTS = 9
 """Of a table that stands for a preset which is not linear between its corners."""
-SHORTEST_SLIP = 1e-12
-"""Between points of a strength, m."""
-LARGEST_FACTOR = 1e3
-"""Of a strength."""
-STIFFNESSES = 1e-9, 1e9
-"""Of contact, over the unit of `contact_stiffness`: softer or stiffer, no digits are left."""
 STRAIGHT = 1e-9
 """Share of its range by which rounding bends a straight part of a path."""
 
 
-class SceneSettings(Settings):
-    """Settings of a scene: those of the method, and its own."""
-
-    friction_law = choice(
-        "coulomb",
-        ["coulomb", "compliant", "slip-dependent", "general"],
-        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
-        "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
-        "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
-        "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
-        "and a cap.",
-        group="Contact",
-        title="Friction law",
-    )
-    contact_stiffness = quantity(
-        100.0,
-        (1e-3, 1e9),
-        (1.0, 1e4),
-        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
-        "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
-        "multiple of the stiffest E S over the square of the longest L.",
-        group="Contact",
-        title="Contact stiffness",
-        applies=lambda settings: settings.friction_law == "compliant",
-        logarithmic=True,
-    )
-    tangential_stiffness = quantity(
-        0.0,
-        (0.0, 1e18),
-        (1e4, 1e9),
-        "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
-        "bond, a soft layer. 0: rigid.",
-        group="Contact",
-        title="Tangential stiffness",
-        unit="N/m^2",
-        applies=lambda settings: settings.is_general,
-        logarithmic=True,
-    )
-    cohesion = quantity(
-        0.0,
-        (0.0, 1e15),
-        (0.0, 5000.0),
-        "Friction force per length of rod without any pressure, beside μ p.",
-        group="Contact",
-        title="Cohesion c",
-        unit="N/m",
-        applies=lambda settings: settings.is_general,
-    )
-    friction_cap = quantity(
-        0.0,
-        (0.0, 1e15),
-        (0.0, 5000.0),
-        "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
-        "none.",
-        group="Contact",
-        title="Friction cap",
-        unit="N/m",
-        applies=lambda settings: settings.is_general,
-    )
-    strength = curve(
-        "constant",
-        ("constant", "linear"),
-        "slip",
-        "factor",
-        ("m", ""),
-        "Factor on the largest friction force over the accumulated slip of a point. constant: 1. "
-        "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
-        "peak, softening and a residual; the last one stays.",
-        group="Contact",
-        title="Strength over slip",
-        applies=lambda settings: settings.is_general,
-    )
-
-    friction_ratio = quantity(
-        1.5,
-        (0.0, 1e3),
-        (0.5, 2.0),
-        "Last friction over the first: above 1 it hardens with slip, below it softens.",
-        group="Contact",
-        title="Last friction over first",
-        applies=lambda settings: settings.is_linear_in_slip,
-    )
-    slip_length = quantity(
-        1e-4,
-        (1e-12, 1e6),
-        (1e-6, 1e-2),
-        "Accumulated slip of a point at which its friction is the last.",
-        group="Contact",
-        title="Slip length",
-        unit="m",
-        applies=lambda settings: settings.is_linear_in_slip,
-        logarithmic=True,
-    )
+class SceneSettings(FrictionSettings):
+    """Settings of a scene: those of the method and of friction, and its own."""
 
     cycles = count(
         1,
@@ -155,8 +55,36 @@ class SceneSettings(Settings):
         applies=lambda settings: settings.is_repeatable,
     )
 
-    seed: param.Integer[int]
-    """Every scene defines it, where it shows it."""
+    duration = quantity(
+        1.0,
+        (1e-9, 1e9),
+        (0.1, 10.0),
+        "Length of the time interval. Friction does not feel the rate: only the time axis changes.",
+        group="Load",
+        title="Duration T",
+        unit="s",
+        logarithmic=True,
+    )
+    instants = count(
+        101,
+        (1, 20_001),
+        (11, 401),
+        "Number of instants at which the problem is solved, at least: points at which a path turns "
+        "or bends are instants too, and the load is linear between them.",
+        group="Load",
+        title="Instants",
+    )
+    seed = count(
+        1,
+        (0, 2**31 - 1),
+        (0, 50),
+        "Seed of random load paths: the same seed gives the same path.",
+        group="Load",
+        title="Seed",
+        applies=lambda settings: any(
+            getattr(settings, name) == "random" for name in settings.paths
+        ),
+    )
 
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
@@ -168,12 +96,6 @@ class SceneSettings(Settings):
     """Setting that says how that goes on over time."""
     SHAPES: ClassVar[Mapping[str, Preset]] = PRESETS
     """What the presets of paths over time stand for."""
-    PEAKS: ClassVar[Mapping[str, str]] = {}
-    """Setting of the largest value that the preset of each path reaches."""
-    BEHIND: ClassVar[Mapping[str, str]] = {}
-    """Settings that place or scale what acts, whether it does or not."""
-    STIFFNESSES: ClassVar[Sequence[str]] = ("tangential_stiffness",)
-    """Stiffnesses of contact; 0 is rigid."""
     PROFILES: ClassVar[Mapping[str, Pairs]] = {}
     """Presets of factors along the body, over shares of its length."""
 
@@ -181,42 +103,6 @@ class SceneSettings(Settings):
     def chief(cls) -> tuple[str, ...]:
         """Settings that a scene is about: the path and size of its load, friction, cuts, and k."""
         return (cls.PATH, "seed", *cls.LOADS, "friction", "substructures", "k_scale")
-
-    @property
-    def is_general(self) -> bool:
-        """Whether all parts of the friction law are given."""
-        return bool(self.friction_law == "general")
-
-    @property
-    def is_linear_in_slip(self) -> bool:
-        """Whether friction changes with slip by a ratio over a length."""
-        by_ratio = self.is_general and self.strength == "linear"
-        return by_ratio or bool(self.friction_law == "slip-dependent")
-
-    @property
-    def contact_unit(self) -> float:
-        """Unit of `contact_stiffness`: N/m^2 along rods, N/m^3 in the plane."""
-        raise NotImplementedError
-
-    @property
-    def law(self) -> FrictionLaw:
-        """Law of friction, beside mu."""
-        if self.friction_law == "compliant":
-            return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
-        table = self.points("strength") if self._changes_with_slip else None
-        strength = None if table is None else Strength(*zip(*table, strict=True))
-        if not self.is_general:
-            return FrictionLaw(strength=strength)
-        return FrictionLaw(
-            stiffness=self.tangential_stiffness or np.inf,
-            cohesion=self.cohesion,
-            cap=self.friction_cap or np.inf,
-            strength=strength,
-        )
-
-    @property
-    def _changes_with_slip(self) -> bool:
-        return self.is_linear_in_slip or (self.is_general and self.strength != "constant")
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""
@@ -257,23 +143,51 @@ class SceneSettings(Settings):
         """Number of nodes of all bodies."""
         raise NotImplementedError
 
+    @classmethod
+    @cache
+    def _sizes(cls) -> Mapping[str, tuple[str, ...]]:
+        """Settings of what presets of each path over time may reach."""
+        paths = {name: about(definition).path for name, definition in cls.definitions().items()}
+        return {
+            path: tuple(n for n in paths if paths[n] == path) for path in paths.values() if path
+        }
+
+    def size_setting(self, path: str) -> str | None:
+        """Setting of the largest value that a preset of a path reaches; None where that is 1."""
+        sizes, definitions = self._sizes().get(path, ()), self.definitions()
+        acting = (name for name in sizes if about(definitions[name]).applies(self))
+        return next(acting, sizes[0] if sizes else None)
+
     def size_of(self, path: str) -> float:
         """Largest value that a preset of a path over time reaches."""
-        return float(getattr(self, self.PEAKS[path]))
+        name = self.size_setting(path)
+        return 1.0 if name is None else float(getattr(self, name))
 
-    def peak_or_table(self, path: str) -> str:
-        """Name of the setting by which a path becomes smaller: of its peak, or its table."""
-        return self.PEAKS[path] if isinstance(getattr(self, path), str) else path
+    def acts(self, path: str) -> bool:
+        """Whether a path over time has any size, of its preset or of its own."""
+        return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
+
+    def size_or_table(self, path: str) -> str:
+        """Name of the setting by which a path becomes smaller: of its size, or its table."""
+        return self.size_setting(path) or path if isinstance(getattr(self, path), str) else path
+
+    def curve_units(self, name: str) -> tuple[str, ...]:
+        """Units of a curve under the present values: those of a path are as its size."""
+        units, size = super().curve_units(name), self.size_setting(name)
+        return units if size is None else (units[0], about(self.definitions()[size]).unit)
 
     def behind(self) -> Mapping[str, str]:
         """Settings that place or scale what acts on the scene, where any does.
 
-        By what they are behind: "right x" along a side, "body" throughout, "gap", "break".
+        By what they are behind: "right x" along a side, "body" throughout, "gap", "break". Of
+        several the last counts that is not 0.
         """
-        return {what: name for what, name in self._behind().items() if self.applies(name)}
-
-    def _behind(self) -> Mapping[str, str]:
-        return self.BEHIND
+        settings: dict[str, str] = {}
+        for name, definition in self.definitions().items():
+            for place in about(definition).places:
+                if self.applies(name) and (place not in settings or getattr(self, name)):
+                    settings[place] = name
+        return settings
 
     @property
     def is_repeatable(self) -> bool:
@@ -353,9 +267,8 @@ class SceneSettings(Settings):
     def points(self, name: str) -> Pairs:
         """Points of a curve setting, or those that stand for its preset."""
         own: str | Pairs = getattr(self, name)
-        if name == "strength" and (self.is_linear_in_slip or isinstance(own, str)):
-            last = self.friction_ratio if self.is_linear_in_slip else 1.0
-            return (0.0, 1.0), (self.slip_length, last)
+        if name == "strength":
+            return self.strength_points()
         if not isinstance(own, str):
             return own
         if name == "friction_factors":
@@ -399,13 +312,12 @@ class SceneSettings(Settings):
 
     def check_together(self) -> None:
         """Refuse more parts than there is to deal out, fields beyond memory, and no law at all."""
-        self._check_law()
+        super().check_together()
         for part, whole in self.PARTS.items():
             value, most = getattr(self, part), getattr(self, whole)
             if value > most:
-                raise SettingError(
+                raise self.refusal(
                     part,
-                    value,
                     f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
                     f"lower {part} or raise {whole}",
                 )
@@ -419,35 +331,6 @@ class SceneSettings(Settings):
                 if self.n_instants == self.instants
                 else "give paths with fewer points or cycles, or a coarser mesh",
             )
-
-    def _check_law(self) -> None:
-        """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
-        table = self.strength
-        if not self.is_general:
-            return
-        if not isinstance(table, str):
-            slips, factors = np.array(table).T
-            begins = len(table) > 1 and table[0] == (0.0, 1.0)
-            grows = begins and np.all(np.diff(slips) >= SHORTEST_SLIP)
-            if not (grows and factors.min() >= 0.0 and factors.max() <= LARGEST_FACTOR):
-                raise SettingError(
-                    "strength",
-                    table,
-                    "at least two points (slip, factor), the first (0, 1), factors from 0 to "
-                    f"{plain(LARGEST_FACTOR)}, slips that grow by {plain(SHORTEST_SLIP)} m",
-                    "the factor at slip 0 is 1, as the rest of the law says what friction is there",
-                )
-        low, high = (share * self.contact_unit for share in STIFFNESSES)
-        for name in self.STIFFNESSES:
-            value = getattr(self, name)
-            if self.applies(name) and value and not low <= value <= high:
-                unit = about(self.definitions()[name]).unit
-                raise SettingError(
-                    name,
-                    value,
-                    f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
-                    "write 0 where nothing gives way, or take away friction where nothing holds",
-                )
 
 
 def as_points(where: Array, values: Array) -> Pairs:

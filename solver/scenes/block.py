@@ -10,7 +10,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, count, curve, quantity, redefined
+from solver.definitions import Pairs, choice, count, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
@@ -55,6 +55,7 @@ class BlockSettings(SideSettings):
         unit="m",
         logarithmic=True,
         applies=lambda settings: settings.gap == "parabola",
+        places=("gap",),
     )
     spring = quantity(
         0.0,
@@ -120,14 +121,10 @@ class BlockSettings(SideSettings):
         has_spring = bool(self.spring) and self.applies("spring")
         return super().features._replace(has_spring=has_spring)
 
-    def _behind(self) -> Mapping[str, str]:
-        # Where both forces act, the larger stands for their sum.
+    def behind(self) -> Mapping[str, str]:
+        """Settings behind what acts; where both body forces do, the larger stands for their sum."""
         force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
-        return {**super()._behind(), "body": force, "gap": "radius"}
-
-    def size_of(self, path: str) -> float:
-        """Largest value that a preset reaches; that of the body force is a factor."""
-        return 1.0 if path == "body_load" else super().size_of(path)
+        return {**super().behind(), "body": force}
 
     def points(self, name: str) -> Pairs:
         """Points of the preset that a curve setting has at present."""
@@ -149,9 +146,8 @@ class BlockSettings(SideSettings):
         super().check_together()
         loss = loss_of_equilibrium(self.structure())
         if loss is not None:
-            raise SettingError(
+            raise self.refusal(
                 "top",
-                self.top,
                 "sides and loads that leave the body in equilibrium",
                 f"nothing but contact holds it, and from {plain(loss.instant)} s on {loss.reason}: "
                 f"lower that load, press more, {loss.remedy}, or hold a side",

@@ -202,8 +202,8 @@ def exact_layers(
             return
         if any(solution.contact(name).status.any() for name in problem.rubbing):
             return
-    beams, height = (1.0 * body.bodies, body.height) if apart else (1.0, body.bodies * body.height)
-    if body.spans is not None:
+    beams, height = (1.0 * len(body.reach), body.height) if apart else (1.0, body.size[1])
+    if np.any(body.reach < 1.0):
         graduated = _leaves(body) if apart else None
         if graduated is None:
             return
@@ -220,7 +220,7 @@ def _two_leaves(body: Stack) -> TwoLeaves | None:
     bent, given = body.sides["right"].y.mean, body.sides["top"].y
     acts = np.flatnonzero(bent)
     is_plain = body.friction_law == FrictionLaw() and np.any(body.friction) and not given.prescribed
-    if body.bodies != 2 or body.spans is not None or not is_plain or not len(acts):
+    if not np.array_equal(body.reach, [1.0, 1.0]) or not is_plain or not len(acts):
         return None
     pressure, mu = -given.mean[max(acts[0] - 1, 0) :], np.asarray(body.friction)
     if np.ptp(pressure) or np.ptp(mu) or pressure[0] <= 0.0:

@@ -7,21 +7,20 @@ it by diffusion (solver/README.md, 17).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, curve, quantity, redefined
-from solver.discrete.fault import Fault, sheared
+from solver.definitions import SettingError, quantity, redefined
+from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Support
-from solver.discrete.structure import LoopFields
+from solver.discrete.stack import Given, Side, Stack, Support
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of, interpolate
-from solver.profiles import means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
@@ -46,37 +45,85 @@ ROUND = 1e-9
 """Share of the strength that rounding adds to it or takes away."""
 
 
+@dataclass(frozen=True, eq=False)
+class Fault:
+    """A fault as a structure.
+
+    One quarter is enough: the body above the fault, to the right of its middle. Below lies its
+    image turned by half a turn, so that no pressure changes on the fault and its strength is known;
+    to the left lies the other image, which moves along as much and across the other way round. The
+    fault slips by twice what this quarter moves along it.
+
+    Attributes
+    ----------
+    body
+        The quarter, on a support of known bound.
+    stress
+        Shear stress far from the fault, Pa.
+    fluid
+        Pressure over time of a fluid that is let in at the middle, shape (n_instants,), Pa, for
+        whoever draws it: the bound is less by what it takes already.
+    """
+
+    body: Stack
+    stress: float
+    fluid: Array
+
+    def discretise(self) -> Problem:
+        """Make the discrete problem."""
+        return self.body.discretise()
+
+    def loop(self, problem: Problem) -> Loop:
+        """Friction of the quarter over how far it has moved at the middle."""
+        law = problem.rubbing["support"]
+        return Loop(
+            ("Displacement at the well", "m"),
+            ("Friction force", "N"),
+            Probe(problem.row_dofs[law.tangential.component.above[:1]], np.ones(1)),
+            lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
+        )
+
+    def described(self) -> Description:
+        """What there is, for whoever draws it."""
+        body = self.body
+        return Description(
+            bodies=1,
+            length=body.length,
+            height=body.height,
+            instants=body.instants,
+            acts=tuple(self._acts()),
+            holds=(Hold("image", "bottom"), Hold("rollers", "top")),
+        )
+
+    def _acts(self) -> Iterator[Act]:
+        along = (1.0, 0.0)
+        stress = np.full_like(self.fluid, self.stress)
+        yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, OUTWARD["top"], stress, "Pa")
+        yield Act("left x", "p", np.zeros((1, 2)), along, OUTWARD["left"], self.fluid, "Pa")
+
+
 class FaultSettings(PlaneSettings):
     """Settings of the fault; by default the fluid's pressure stays, and the front runs on."""
 
     scene = "fault"
     LOADS: ClassVar = ("overpressure", "shear_stress")
-    PEAKS: ClassVar = {"injection_load": "overpressure"}
-    BEHIND: ClassVar = {"left x": "overpressure", "top x": "shear_stress"}
     PROFILES: ClassVar = PROFILES
     PATH = "injection_load"
     SHAPES: ClassVar = INJECTIONS
 
-    overpressure = quantity(
+    overpressure, injection_load = shared.sized_path(
+        "injection_load",
+        "pressure of the fluid",
+        "Pa",
         8e6,
         (0.0, 1e15),
         (0.0, 1e7),
         "Pressure p of the fluid where it is let in, above what was there before.",
-        group="Load",
-        title="Pressure of the fluid",
-        unit="Pa",
-        applies=lambda settings: isinstance(settings.injection_load, str),
-    )
-    injection_load = curve(
         "steady",
         INJECTIONS,
-        "time",
-        "pressure",
-        ("s", "Pa"),
-        "Pressure there over time. stopped: no more after half of the interval; what has spread "
-        "goes on. rising: from nothing. pulses: down and up again, six times. Or points (s, Pa).",
-        group="Load",
-        title="Path of the fluid",
+        path_doc="stopped: no more after half of the interval; what has spread goes on. rising: "
+        "from nothing. pulses: down and up again, six times. ",
+        places=("left x",),
     )
     shear_stress = quantity(
         3.6e6,
@@ -86,17 +133,14 @@ class FaultSettings(PlaneSettings):
         group="Load",
         title="Shear stress τ",
         unit="Pa",
+        places=("top x",),
     )
-    duration = quantity(
+    duration = redefined(
+        PlaneSettings.param["duration"],
         86400.0,
-        (1e-9, 1e12),
         (3600.0, 2.6e6),
-        "Length of the time interval. Friction does not feel the rate, but a fluid needs time: it "
-        "spreads over sqrt(4 α t).",
-        group="Load",
-        title="Duration T",
-        unit="s",
-        logarithmic=True,
+        doc="Length of the time interval. Friction does not feel the rate, but a fluid needs time: "
+        "it spreads over sqrt(4 α t).",
     )
     normal_stress = quantity(
         1e7,
@@ -108,16 +152,7 @@ class FaultSettings(PlaneSettings):
         unit="Pa",
         logarithmic=True,
     )
-    normal_profile = curve(
-        "uniform",
-        PROFILES,
-        "position",
-        "factor",
-        ("m", ""),
-        "Factor on σ along the fault: a preset, or points (m, factor).",
-        group="Contact",
-        title="σ along the fault",
-    )
+    normal_profile = shared.profile("σ", "the fault", PROFILES, is_positive=True)
     diffusivity = quantity(
         0.1,
         (1e-15, 1e9),
@@ -129,7 +164,7 @@ class FaultSettings(PlaneSettings):
         logarithmic=True,
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
-    friction_profile = shared.friction_profile("the fault", PROFILES)
+    friction_profile = shared.profile("μ", "the fault", PROFILES, is_positive=True)
     length = shared.size(
         600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
     )
@@ -144,10 +179,6 @@ class FaultSettings(PlaneSettings):
         """A fault stays closed; its loop is over the fluid, which drives it."""
         return Features(jumps=self.nodes[0], loop_is_over_displacement=False)
 
-    def pressing(self, place: Array) -> Array:
-        """Normal stress before any fluid is let in, shape (n_places,), Pa."""
-        return np.asarray(self.normal_stress * interpolate(self.points("normal_profile"), place))
-
     def fluid(self, place: Array) -> Array:
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
@@ -158,15 +189,18 @@ class FaultSettings(PlaneSettings):
 
     def strength_along(self, place: Array) -> Array:
         """Largest friction per area, shape (n_places, n_instants), Pa."""
-        effective = self.pressing(place)[:, None] - self.fluid(place)
-        return np.asarray(self.friction_at(place)[:, None] * effective)
+        mu, pressed = (
+            size * interpolate(self.points(name), place)[:, None]
+            for size, name in (
+                (self.friction, "friction_profile"),
+                (self.normal_stress, "normal_profile"),
+            )
+        )
+        return np.asarray(mu * (pressed - self.fluid(place)))
 
     def pressing_at_nodes(self) -> Array:
-        """Normal stress of the nodes: of a table, its mean over the share of each."""
-        if isinstance(self.normal_profile, str):
-            return self.pressing(self._places)
-        shares = shares_of(self._places, self.order)
-        return np.asarray(self.normal_stress * means([self.normal_profile], shares))
+        """Normal stress of the nodes before any fluid is let in, shape (n_nodes,), Pa."""
+        return np.asarray(self.normal_stress * self.factor_at_nodes("normal_profile"))
 
     def strength_at_nodes(self) -> Array:
         """Largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
@@ -183,14 +217,12 @@ class FaultSettings(PlaneSettings):
         self._check_work()
         place = self._places
         pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
-        shared.refuse_negative(self, "normal_profile", "factor")
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
-            name = self.peak_or_table("injection_load")
-            raise SettingError(
+            name = self.size_or_table("injection_load")
+            raise self.refusal(
                 name,
-                getattr(self, name),
                 f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
                 "it would open the fault: lower the pressure of the fluid, or press more",
             )
@@ -207,16 +239,24 @@ class FaultSettings(PlaneSettings):
             )
 
     def structure(self) -> Fault:
-        """Make the quarter of the body; one metre thick."""
-        modulus = 0.5 * self.young / (1.0 + self.poisson)
-        stress, height = self.shear_stress, self.height
-        strength = self.strength_at_nodes()
+        """Make the quarter of the body; one metre thick.
+
+        Its top is moved as far as the stress takes, and holds it where all of the fault slips.
+        """
+        modulus, strength = 0.5 * self.young / (1.0 + self.poisson), self.strength_at_nodes()
+        none = np.zeros(self.n_instants)
+        level, free = Given(True, none), Given(False, none)
+        moved = none + self.shear_stress / modulus * self.height
         body = replace(
             self.stack(),
             support=Support(np.zeros(len(strength)), self.friction, strength),
-            sides=sheared(stress, modulus, height, self.n_instants),
+            sides={
+                "left": Side(free, level),
+                "right": Side(free, Given(False, none + self.shear_stress)),
+                "top": Side(Given(True, moved), level),
+            },
         )
-        return Fault(body, stress, self.path("injection_load"))
+        return Fault(body, self.shear_stress, self.path("injection_load"))
 
     def sentence(self) -> str:
         """The fault in a sentence."""

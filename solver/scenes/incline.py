@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import SettingError, curve, quantity, redefined
+from solver.definitions import quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
@@ -32,30 +32,21 @@ class InclineSettings(PlaneSettings):
 
     scene = "incline"
     LOADS: ClassVar = ("slope",)
-    PEAKS: ClassVar = {"slope_load": "slope"}
-    BEHIND: ClassVar = {"body": "weight"}
     PATH = "slope_load"
     SHAPES: ClassVar = PULLS
 
-    slope = quantity(
+    slope, slope_load = shared.sized_path(
+        "slope_load",
+        "slope",
+        "°",
         40.0,
         (0.0, 89.0),
         (0.0, 60.0),
         "Largest angle of the slope. Up to tan θ = μ the block sticks; unless tan(θ/2) > μ, "
         "the spring cannot pull it back.",
-        group="Load",
-        title="Slope θ",
-        unit="°",
-    )
-    slope_load = curve(
         "triangle",
         PULLS,
-        "time",
-        "angle",
-        ("s", "°"),
-        "Angle of the slope over time: a preset between 0 and the largest, or points (s, °).",
-        group="Load",
-        title="Path of the slope",
+        title="Slope θ",
     )
     weight = quantity(
         1000.0,
@@ -65,6 +56,7 @@ class InclineSettings(PlaneSettings):
         group="Load",
         title="Weight W",
         unit="N",
+        places=("body",),
     )
     slack = quantity(
         2e-4,
@@ -104,11 +96,10 @@ class InclineSettings(PlaneSettings):
         loss = loss_of_equilibrium(self.structure())
         if loss is None:
             return
-        name = self.peak_or_table("slope_load")
+        name = self.size_or_table("slope_load")
         angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
-        raise SettingError(
+        raise self.refusal(
             name,
-            getattr(self, name),
             "slopes on which the block stays in equilibrium",
             f"from {plain(loss.instant)} s on, at {angle:.4g}°, {loss.reason}: "
             "lower the slope, or take a longer base or a lower block",

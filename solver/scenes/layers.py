@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Array
 from solver.definitions import (
     Pairs,
-    SettingError,
     choice,
     count,
     curve,
     quantity,
     redefined,
 )
-from solver.discrete.cut_stack import ends_along
+from solver.discrete.bricks import Brick
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
+from solver.discrete.stack_problem import ends_along
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import UNSEEN
@@ -37,49 +36,30 @@ class LayersSettings(PlaneSettings):
 
     scene = "layers"
     LOADS: ClassVar = ("deflection", "moment", "force")
-    PEAKS: ClassVar = {"pressure_load": "pressure", "pull_load": "pull"}
     PATH = "bend_load"
     across = "thickness"
 
-    pressure = quantity(
+    pressure, pressure_load = shared.sized_path(
+        "pressure_load",
+        "pressure",
+        "Pa",
         2e6,
         (0.0, 1e15),
         (0.0, 2e7),
         "Pressure on the top and the bottom of the stack.",
-        group="Load",
-        title="Pressure",
-        unit="Pa",
-        applies=lambda settings: isinstance(settings.pressure_load, str),
-    )
-    pressure_load = curve(
         "hold",
-        PRESETS,
-        "time",
-        "pressure",
-        ("s", "Pa"),
-        "Pressure over time: a preset, or points (s, Pa).",
-        group="Load",
-        title="Path of the pressure",
+        places=("top y", "bottom y"),
     )
-    pull = quantity(
+    pull, pull_load = shared.sized_path(
+        "pull_load",
+        "pull",
+        "Pa",
         0.0,
         (-1e15, 1e15),
         (-1e8, 1e8),
         "Largest axial traction on the right end.",
-        group="Load",
-        title="Pull",
-        unit="Pa",
-        applies=lambda settings: isinstance(settings.pull_load, str),
-    )
-    pull_load = curve(
         "hold",
-        PRESETS,
-        "time",
-        "traction",
-        ("s", "Pa"),
-        "Pull over time: a preset, or points (s, Pa).",
-        group="Load",
-        title="Path of the pull",
+        places=("right x",),
     )
     bending = choice(
         "deflection",
@@ -98,7 +78,9 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Deflection",
         unit="m",
-        applies=lambda settings: settings.bends_by("deflection"),
+        applies=lambda settings: settings.bending == "deflection",
+        path="bend_load",
+        places=("right y",),
     )
     moment = quantity(
         1e3,
@@ -108,7 +90,9 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Moment",
         unit="N·m/m",
-        applies=lambda settings: settings.bends_by("moment"),
+        applies=lambda settings: settings.bending == "moment",
+        path="bend_load",
+        places=("right x",),
     )
     force = quantity(
         1e3,
@@ -118,7 +102,9 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Force at the end",
         unit="N/m",
-        applies=lambda settings: settings.bends_by("force"),
+        applies=lambda settings: settings.bending == "force",
+        path="bend_load",
+        places=("right y",),
     )
     bend_load = curve(
         "delayed",
@@ -216,23 +202,19 @@ class LayersSettings(PlaneSettings):
         is_over_displacement = self.bending != "moment"
         return super().features._replace(loop_is_over_displacement=is_over_displacement)
 
-    def _factors(self) -> Array | None:
-        return shared.factors_of(self, self.n_interfaces)
-
     def check_together(self) -> None:
         """Refuse lengths and factors on mu that are not one for each layer or interface, too."""
         self._check_lengths()
         super().check_together()
-        self._factors()
+        shared.factors_of(self)
 
     def _check_lengths(self) -> None:
         if isinstance(self.layer_lengths, str):
             return
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
-            raise SettingError(
+            raise self.refusal(
                 "layer_lengths",
-                self.layer_lengths,
                 "shares above 0, the largest of them 1",
                 "give each length over that of the longest layer",
             )
@@ -249,33 +231,14 @@ class LayersSettings(PlaneSettings):
                     "the length from where they should; more elements come nearer"
                 )
 
-    def bends_by(self, kind: str) -> bool:
-        """Whether the end is bent so, as far as a preset and not a table says."""
-        return self.bending == kind and isinstance(self.bend_load, str)
-
-    def _behind(self) -> Mapping[str, str]:
-        end = "moment" if self.bending == "moment" and self.moment else "pull"
-        across = "force" if self.bending == "force" else "deflection"
-        own = {"right x": end, "right y": across}
-        return {"top y": "pressure", "bottom y": "pressure", **own}
-
-    def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of a curve under the present values."""
-        if name != "bend_load":
-            return super().curve_units(name)
-        return "s", {"deflection": "m", "moment": "N·m/m", "force": "N/m"}[self.bending]
-
-    def size_of(self, path: str) -> float:
-        """Largest value that a preset of a path over time reaches."""
-        if path == "bend_load":
-            return float(getattr(self, self.bending))
-        return super().size_of(path)
-
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""
         rest, stack = np.zeros(self.n_instants), self.stack()
-        factors, friction = self._factors(), stack.friction
-        stack = replace(stack, spans=self.spans)
+        factors, friction = shared.factors_of(self), stack.friction
+        if self.spans is not None:
+            up = self.elements_up
+            bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
+            stack = replace(stack, bricks=bricks)
         held, free = Given(True, rest), Given(False, rest)
         pressing = self.path("pressure_load")
         pull = self.path("pull_load")

@@ -11,7 +11,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, quantity, redefined
+from solver.definitions import choice, count, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.laws import FrictionLaw
 from solver.loads import interpolate
@@ -35,14 +35,11 @@ class PlaneSettings(SceneSettings):
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
     MESH: ClassVar = ("elements", "elements_up")
-    STIFFNESSES: ClassVar = ("tangential_stiffness", "normal_stiffness")
     PROFILES: ClassVar = shared.PROFILES
 
-    duration = shared.duration()
-    instants = shared.instants(81)
-    seed = shared.seed(lambda settings: settings.is_random)
+    instants = redefined(SceneSettings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
-    friction_profile = shared.friction_profile("the body")
+    friction_profile = shared.profile("μ", "the body", is_positive=True)
     tangential_stiffness = redefined(
         SceneSettings.param["tangential_stiffness"],
         0.0,
@@ -176,18 +173,18 @@ class PlaneSettings(SceneSettings):
         """Whether anything rubs."""
         return bool(self.friction or self.law.cohesion)
 
-    def friction_at(self, places: Array) -> Array:
-        """The coefficient mu at places along a body, shape (n_places,)."""
-        return np.asarray(self.friction * interpolate(self.points("friction_profile"), places))
+    def factor_at_nodes(self, profile: str) -> Array:
+        """Factor of a profile at the nodes along a body; of a table, its mean over their shares."""
+        places, table = np.linspace(0.0, self.length, self.nodes[0]), getattr(self, profile)
+        if isinstance(table, str):
+            return interpolate(self.points(profile), places)
+        return means([table], shares_of(places, self.order))
 
     def friction_at_nodes(self) -> float | Array:
-        """The coefficient mu of the nodes along a body; of a table, its mean over their shares."""
+        """The coefficient mu of the nodes along a body."""
         if self.friction_profile == "uniform":
             return self.friction
-        places, table = np.linspace(0.0, self.length, self.nodes[0]), self.friction_profile
-        if isinstance(table, str):
-            return self.friction_at(places)
-        return np.asarray(self.friction * means([table], shares_of(places, self.order)))
+        return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
 
     @property
     def k_factors(self) -> tuple[float, float]:
@@ -225,11 +222,6 @@ class PlaneSettings(SceneSettings):
         """Number of substructures in all."""
         return self.n_bodies * self.substructures * self.substructures_up
 
-    @property
-    def is_random(self) -> bool:
-        """Whether any load path is random."""
-        return any(getattr(self, name) == "random" for name in self.paths)
-
     def stack(self) -> Stack:
         """Make the bodies, free on all sides and without loads."""
         return Stack(
@@ -254,24 +246,21 @@ class PlaneSettings(SceneSettings):
         height: float = getattr(self, self.across)
         ratio = self.length * self.elements_up / (height * self.elements)
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:
-            raise SettingError(
+            raise self.refusal(
                 self.across,
-                height,
                 f"elements of which no side is more than {plain(FLATTEST)} times the other",
                 f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
             )
 
     def check_together(self) -> None:
-        """Refuse flat elements too, negative factors on mu, and matrices beyond memory."""
+        """Refuse flat elements too, and matrices beyond memory."""
         self._check_shape()
         super().check_together()
-        shared.refuse_negative(self, "friction_profile", "factor")
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)
         if 8 * self.order**3 * columns * rows * (columns + rows) > LARGEST_MATRIX:
-            raise SettingError(
+            raise self.refusal(
                 "substructures",
-                self.substructures,
                 f"parts smaller than {columns} by {rows} elements",
                 "give more substructures along or up, or fewer elements",
             )

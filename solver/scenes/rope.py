@@ -10,14 +10,14 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Rows, SettingError, choice, count, curve, quantity, table
+from solver.definitions import Rows, SettingError, choice, count, quantity, redefined, table
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.helical_wire import HelicalWire, RopeWire
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
-from solver.loads import PRESETS, PRESSURES
+from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.refusal import plain
@@ -39,8 +39,6 @@ class RopeSettings(SceneSettings):
 
     scene = "rope"
     LOADS: ClassVar = ("curvature",)
-    PEAKS: ClassVar = {"load": "curvature", "tension_load": "tension"}
-    BEHIND: ClassVar = {"right y": "curvature", "right x": "tension"}
 
     construction = table(
         "mooring",
@@ -68,54 +66,37 @@ class RopeSettings(SceneSettings):
         title="Layers",
         applies=lambda settings: settings.construction == "mooring",
     )
-    load = curve(
-        "cycle",
-        PRESETS,
-        "time",
+    curvature, load = shared.sized_path(
+        "load",
         "curvature",
-        ("s", "1/m"),
-        "Curvature over time, uniform or at the clamp: a preset, or points (s, 1/m).",
-        group="Load",
-        title="Curvature path",
-    )
-    curvature = quantity(
+        "1/m",
         0.1,
         (-1e3, 1e3),
         (0.0, 0.5),
-        "Largest curvature that the preset reaches: 1 over the radius to which the strand is bent. "
-        "Sections stay plane, so each wire is stretched and pressed as it goes round.",
-        group="Load",
+        "Largest curvature that the preset reaches, uniform or at the clamp: 1 over the radius to "
+        "which the strand is bent. Sections stay plane, so each wire is stretched and pressed as "
+        "it goes round.",
+        "cycle",
         title="Peak curvature",
-        unit="1/m",
-        applies=lambda settings: isinstance(settings.load, str),
+        places=("right y",),
     )
-    tension = quantity(
+    tension, tension_load = shared.sized_path(
+        "tension_load",
+        "tension",
+        "N",
         250e3,
         (0.0, 1e12),
         (0.0, 1e6),
         "Tension of the strand, by which wires press on what is below them. About a quarter of "
         "what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, 30 kN conductor. It is "
         "bent without untwisting, and what friction adds to a wire's tension presses no harder.",
-        group="Load",
-        title="Tension",
-        unit="N",
-        applies=lambda settings: isinstance(settings.tension_load, str),
-    )
-    tension_load = curve(
         "steady",
         PRESSURES,
-        "time",
-        "tension",
-        ("s", "N"),
-        "Tension over time. loosening: it stays for a quarter of the interval, and falls to a "
-        "fifth. tightening: the other way. shaken: it falls to a fifth and comes back, six times. "
-        "Or points (s, N).",
-        group="Load",
-        title="Tension over time",
+        path_doc=shared.OF_PRESSURES,
+        is_positive=True,
+        places=("right x",),
     )
-    seed = shared.seed(lambda settings: settings.load == "random")
-    duration = shared.duration()
-    instants = shared.instants(61)
+    instants = redefined(SceneSettings.param["instants"], 61)
     bending = choice(
         "clamp",
         ["uniform", "clamp"],
@@ -161,12 +142,10 @@ class RopeSettings(SceneSettings):
         group="Strand",
         title="Elements per wire",
     )
-    substructures = count(
+    substructures = redefined(
+        SceneSettings.param["substructures"],
         10,
-        (1, 20_000),
-        (1, 50),
-        "Number of pieces (substructures) that a wire is cut into, all alike.",
-        group="Decomposition",
+        doc="Number of pieces (substructures) that a wire is cut into, all alike.",
         title="Substructures per wire",
     )
 
@@ -208,9 +187,6 @@ class RopeSettings(SceneSettings):
         """Number of interfaces between layers, and of the first with the core."""
         return len(self.section.layers)
 
-    def _factors(self) -> Array | None:
-        return shared.factors_of(self, self.n_interfaces)
-
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all wires."""
@@ -229,14 +205,12 @@ class RopeSettings(SceneSettings):
         return float(max(helix.stiffness for helix in helices) / longest**2)
 
     def check_together(self) -> None:
-        """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
+        """Refuse a curvature that no fall-off is known of."""
         super().check_together()
-        shared.refuse_negative(self, "tension_load", "tension", " N")
-        self._factors()
+        shared.factors_of(self)
         if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
-            raise SettingError(
+            raise self.refusal(
                 "fall_off",
-                self.fall_off,
                 "a distance above 0, where there is no tension to tell it",
                 "give the fall-off, or a tension",
             )
@@ -255,7 +229,7 @@ class RopeSettings(SceneSettings):
         there is.
         """
         curvature, tension = self.path("load"), self.path("tension_load")
-        bounds = self.section.friction_bounds(tension, self.friction, self._factors())
+        bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
         if self.tension_load == "steady":
             bounds = bounds[:, :1]
         wires = [
@@ -310,13 +284,13 @@ class RopeSettings(SceneSettings):
 
     def coarser(self) -> Iterator[Rope]:
         """Yield the same strand, uncut, on ever coarser meshes."""
-        return shared.ever_coarser(self.structure())
+        return self.structure().coarser()
 
     def bent_strand(self) -> BentStrand | None:
         """Closed form of a strand that is bent alike all along, under a tension that stays."""
         tension = self.path("tension_load")
         is_known = not self.is_clamped and self.law == FrictionLaw()
-        factors = self._factors()
+        factors = shared.factors_of(self)
         rubs = self.friction and (factors is None or factors.all())
         if not is_known or np.ptp(tension) or not tension[0] or not rubs:
             return None

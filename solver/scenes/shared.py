@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, SettingError, count, curve, quantity
-from solver.discrete.rods import Rods
-from solver.discrete.rope import Rope
-from solver.loads import PRESSURES
+from solver.definitions import CurveParameter, curve, quantity
+from solver.loads import PRESETS, PRESSURES
 from solver.settings import Settings
-
-S = TypeVar("S", Rods, Rope)
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -24,47 +20,20 @@ PROFILES = {
     "gap": ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
 }
 """Factors along a body, over shares of its length."""
+OF_PRESSURES = (
+    "loosening: it stays for a quarter of the interval, and falls to a fifth, as of a bolt. "
+    "tightening: the other way. shaken: it falls to a fifth and comes back, six times. "
+)
+"""What the presets of a pressure are."""
+BY_UNIT = {
+    "m": "displacement",
+    "K": "temperature",
+    "°": "angle",
+    "1/m": "curvature",
+    "Pa": "traction",
+}
+"""What a path without a word of its own has, by its unit; else it is a force."""
 PLANE_GROWS = ("elements", "elements_up", "substructures", "substructures_up")
-
-
-def seed(applies: Callable[[Any], bool]) -> param.Integer[int]:
-    """Define the seed of random load paths."""
-    return count(
-        1,
-        (0, 2**31 - 1),
-        (0, 50),
-        "Seed of random load paths: the same seed gives the same path.",
-        group="Load",
-        title="Seed",
-        applies=applies,
-    )
-
-
-def duration() -> param.Number[float]:
-    """Define the length of the time interval."""
-    return quantity(
-        1.0,
-        (1e-9, 1e9),
-        (0.1, 10.0),
-        "Length of the time interval. Friction does not feel the rate: only the time axis changes.",
-        group="Load",
-        title="Duration T",
-        unit="s",
-        logarithmic=True,
-    )
-
-
-def instants(default: int) -> param.Integer[int]:
-    """Define the number of instants."""
-    return count(
-        default,
-        (1, 20_001),
-        (11, 401),
-        "Number of instants at which the problem is solved, at least: points at which a path turns "
-        "or bends are instants too, and the load is linear between them.",
-        group="Load",
-        title="Instants",
-    )
 
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
@@ -79,17 +48,32 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
     )
 
 
-def friction_profile(body: str, presets: Iterable[str] = PROFILES) -> CurveParameter:
-    """Define how mu varies along a body."""
+def profile(
+    what: str, body: str, presets: Iterable[str] = PROFILES, doc: str = "", **others: Any
+) -> CurveParameter:
+    """Define a factor along a body; its default is the first preset.
+
+    Parameters
+    ----------
+    what, body
+        On what, and along what.
+    presets
+        By name.
+    doc
+        Of a factor that is more than a preset or points.
+    others
+        Of a curve, and entries of `About`.
+    """
+    presets, name = tuple(presets), what.removeprefix("the ")
+    title = name if name == what else name.capitalize()
     return curve(
-        "uniform",
+        presets[0],
         presets,
         "position",
         "factor",
         ("m", ""),
-        f"Factor on mu along {body}: a preset, or points (m, factor).",
-        group="Contact",
-        title=f"μ along {body}",
+        f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
+        **{"group": "Contact", "title": f"{title} along {body}"} | others,
     )
 
 
@@ -103,75 +87,98 @@ def friction_factors(which: str) -> CurveParameter:
         ("", ""),
         f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
         "each, numbered from 1 on.",
+        is_positive=True,
         group="Contact",
         title="μ of each interface",
     )
 
 
-def pressure(which: str, slider: float) -> param.Number[float]:
-    """Define the pressure of rods, per length, up to that value on its slider."""
-    return quantity(
+def sized_path(
+    path: str,
+    what: str,
+    unit: str,
+    default: float,
+    bounds: tuple[float, float],
+    slider: tuple[float, float],
+    doc: str,
+    preset: str,
+    presets: Iterable[str] = PRESETS,
+    *,
+    path_doc: str = "",
+    applies: Callable[[Any], bool] = lambda settings: True,
+    is_positive: bool = False,
+    **record: Any,
+) -> tuple[param.Number[float], CurveParameter]:
+    """Define the largest value that presets of a path over time reach, and the path.
+
+    Where that value is 0 by default, there is no path as long as it is.
+
+    Parameters
+    ----------
+    path
+        Name of the setting of the path.
+    what, unit
+        What it is a path of, and its unit.
+    default, bounds, slider, doc
+        Of the value.
+    preset, presets
+        The default of the path, and all that there are.
+    path_doc
+        What there is to say of the path beside that it is one.
+    applies, is_positive
+        Of the value and the path; whether no value is below zero.
+    record
+        Entries of `About`.
+    """
+    record = {"group": "Load", "title": f"{what[:1].upper()}{what[1:]}"} | record
+    size = quantity(default, bounds, slider, doc, unit=unit, applies=applies, path=path, **record)
+    named = (kind for kind in ("pressure", "tension") if kind in what)
+    over_time = curve(
+        preset,
+        presets,
+        "time",
+        next(named, BY_UNIT.get(unit, "force")),
+        ("s", unit),
+        f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
+        is_positive=is_positive,
+        group=record["group"],
+        title=f"Path of the {what}",
+        applies=lambda settings: applies(settings) and bool(default or settings.acts(path)),
+    )
+    return size, over_time
+
+
+def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParameter]:
+    """Define the pressure of rods, per length, up to that value on its slider, and its path."""
+    return sized_path(
+        "pressure_load",
+        "pressure",
+        "N/m",
         5000.0,
         (0.0, 1e15),
         (0.0, slider),
         f"Pressure p of {which}, per length.",
-        group="Contact",
-        title="Pressure p",
-        unit="N/m",
-        applies=lambda settings: isinstance(settings.pressure_load, str),
-    )
-
-
-def pressure_load() -> CurveParameter:
-    """Define how that pressure goes on over time."""
-    return curve(
         "steady",
         PRESSURES,
-        "time",
-        "pressure",
-        ("s", "N/m"),
-        "Pressure over time. loosening: it stays for a quarter of the interval, and falls to a "
-        "fifth, as of a bolt. tightening: the other way. shaken: it falls to a fifth and comes "
-        "back, six times. Or points (s, N/m).",
+        path_doc=OF_PRESSURES,
+        is_positive=True,
         group="Contact",
-        title="p over time",
+        title="Pressure p",
+        places=("top y",),
     )
 
 
-def refuse_negative(settings: Settings, name: str, what: str, unit: str = "") -> None:
-    """Refuse a table with values below zero.
-
-    Parameters
-    ----------
-    settings, name
-        Whose, and which of its curves.
-    what, unit
-        A value in words, and a blank and its unit.
+def factors_of(settings: Any) -> Array | None:
+    """Factor on mu of each interface, shape (n_interfaces,); None where mu is the same.
 
     Raises
     ------
     SettingError
-        For a table that goes below zero.
+        For a table that lacks an interface, or has others.
     """
-    table = getattr(settings, name)
-    if not isinstance(table, str) and min(value for _, value in table) < 0.0:
-        allowed = f"{what}s of at least 0{unit}"
-        raise SettingError(name, table, allowed, f"raise the negative {what}")
-
-
-def factors_of(settings: Settings, count: int) -> Array | None:
-    """Factor on mu of so many interfaces, shape (count,); None where mu is the same.
-
-    Raises
-    ------
-    SettingError
-        For a table that lacks an interface, or has others, and for factors below zero.
-    """
-    name = "friction_factors"
-    if isinstance(getattr(settings, name), str):
+    if isinstance(settings.friction_factors, str):
         return None
-    refuse_negative(settings, name, "factor")
-    return of_each(settings, name, count, "interface")
+    return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
@@ -192,19 +199,12 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
     table = getattr(settings, name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
-        raise SettingError(
+        raise settings.refusal(
             name,
-            table,
             f"{count} pairs, one for each {what}",
             f"there are {len(table)}: number each {what} from 1 to {count}",
         )
     return np.asarray(values)
-
-
-def ever_coarser(structure: S | None) -> Iterator[S]:
-    """Yield the same structure, uncut, on ever coarser meshes, the finest first."""
-    while structure is not None and (structure := structure.coarser()) is not None:
-        yield structure
 
 
 def size(

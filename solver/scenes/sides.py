@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
@@ -32,13 +32,12 @@ def _is_given(side: str) -> Callable[..., bool]:
     return lambda settings: getattr(settings, side) not in AT_REST
 
 
-def _has_size(side: str, component: str, prescribed: bool) -> Callable[..., bool]:
-    """Make the test whether that value is of this kind, and follows a preset of some size."""
+def _is_prescribed(side: str, component: str, prescribed: bool) -> Callable[..., bool]:
+    """Make the test whether that value is given, and is of this kind."""
 
     def applies(settings: PlaneSettings) -> bool:
-        kind, path = getattr(settings, side), getattr(settings, f"{side}_{component}_load")
-        own = PRESCRIBED[kind][COMPONENTS.index(component)]
-        return kind not in AT_REST and own == prescribed and isinstance(path, str)
+        kind = getattr(settings, side)
+        return kind not in AT_REST and PRESCRIBED[kind][COMPONENTS.index(component)] == prescribed
 
     return applies
 
@@ -47,28 +46,30 @@ def _settings_of(side: str, component: str) -> dict[str, Parameter]:
     """Settings of what is given: how large it is, how it varies along the side, and over time."""
     along = "x" if side == "top" else "y"
     towards = "outward" if component == "normal" else f"along {along}"
+    axis = along if component == "tangential" else "yx"["xy".index(along)]
     name, group = f"{side}_{component}", side.capitalize()
     title, given = f"{group} {component}", _is_given(side)
+    size = {"group": group, "path": f"{name}_load", "places": (f"{side} {axis}",)}
     return {
         f"{name}_traction": quantity(
             0.0,
             (-1e15, 1e15),
             (-2e8, 2e8),
             f"Mean {component} traction on the {side} side, positive {towards}.",
-            group=group,
             title=f"{title} traction",
             unit="Pa",
-            applies=_has_size(side, component, prescribed=False),
+            applies=_is_prescribed(side, component, False),
+            **size,
         ),
         f"{name}_displacement": quantity(
             0.0,
             (-1e12, 1e12),
             (-1e-4, 1e-4),
             f"Mean {component} displacement of the {side} side, positive {towards}.",
-            group=group,
             title=f"{title} displacement",
             unit="m",
-            applies=_has_size(side, component, prescribed=True),
+            applies=_is_prescribed(side, component, True),
+            **size,
         ),
         f"{name}_slope": quantity(
             0.0,
@@ -97,21 +98,8 @@ def _settings_of(side: str, component: str) -> dict[str, Parameter]:
 class SideSettings(PlaneSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
-    def _behind(self) -> Mapping[str, str]:
-        axes = {side: "yx" if side == "top" else "xy" for side in LOADED_SIDES}
-        return {
-            f"{side} {axis}": self._size(side, component)
-            for side in LOADED_SIDES
-            for component, axis in zip(COMPONENTS, axes[side], strict=True)
-        }
-
     def _prescribes(self, side: str, component: str) -> bool:
         return PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
-
-    def _size(self, side: str, component: str) -> str:
-        """Name of the setting that says how large a component is along a side."""
-        kind = "displacement" if self._prescribes(side, component) else "traction"
-        return f"{side}_{component}_{kind}"
 
     def side(self, side: str) -> Side:
         """What is given along a side, for x and y."""
@@ -127,18 +115,6 @@ class SideSettings(PlaneSettings):
         sign = OUTWARD[side] if component == "normal" else 1.0
         mean = sign * self.path(f"{side}_{component}_load")
         return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
-
-    def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of a curve under the present values: those of a side are as it is given."""
-        side, _, component = name.removesuffix("_load").partition("_")
-        if side not in LOADED_SIDES:
-            return super().curve_units(name)
-        return "s", "m" if self._prescribes(side, component) else "Pa"
-
-    def size_of(self, path: str) -> float:
-        """Largest value that a preset of a path over time reaches."""
-        side, component, _ = path.split("_")
-        return float(getattr(self, self._size(side, component)))
 
 
 def _define(side: str) -> None:

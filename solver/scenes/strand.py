@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, curve, quantity
+from solver.definitions import SettingError, choice, count, quantity, redefined
 from solver.discrete.cut_rods import COARSEST
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods, neighbours
@@ -31,30 +31,21 @@ class StrandSettings(SceneSettings):
 
     scene = "strand"
     LOADS: ClassVar = ("peak",)
-    PEAKS: ClassVar = {"load": "peak", "pressure_load": "pressure"}
-    BEHIND: ClassVar = {"right x": "peak", "top y": "pressure", "break": "break_position"}
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
     SHAPES: ClassVar = PULLS
 
-    load = curve(
-        "cycle",
-        PULLS,
-        "time",
-        "force",
-        ("s", "N"),
-        "Tension of a wire over time: a preset between 0 and the peak, or points (s, N).",
-        group="Load",
-        title="Tension path",
-    )
-    peak = quantity(
+    peak, load = shared.sized_path(
+        "load",
+        "tension",
+        "N",
         600.0,
         (0.0, 1e15),
         (0.0, 1500.0),
         "Largest tension of a wire that the preset reaches.",
-        group="Load",
+        "cycle",
+        PULLS,
         title="Peak tension",
-        unit="N",
-        applies=lambda settings: isinstance(settings.load, str),
+        places=("right x",),
     )
     grip = choice(
         "force",
@@ -64,13 +55,9 @@ class StrandSettings(SceneSettings):
         group="Load",
         title="Grip",
     )
-    seed = shared.seed(lambda settings: settings.load == "random")
-    duration = shared.duration()
-    instants = shared.instants(101)
     friction = shared.friction("mu between neighbouring wires")
     friction_factors = shared.friction_factors("between two wires, from the first on")
-    pressure = shared.pressure("neighbouring wires on each other", 20_000.0)
-    pressure_load = shared.pressure_load()
+    pressure, pressure_load = shared.pressure("neighbouring wires on each other", 20_000.0)
     wires = count(
         3,
         (2, 200),
@@ -94,6 +81,7 @@ class StrandSettings(SceneSettings):
         "Where the wire is broken, as a share of the length; at the nearest node between the ends.",
         group="Strand",
         title="Position of the break",
+        places=("break",),
         applies=lambda settings: settings.broken > 0,
     )
     elements = count(
@@ -104,13 +92,11 @@ class StrandSettings(SceneSettings):
         group="Strand",
         title="Elements per wire",
     )
-    substructures = count(
+    substructures = redefined(
+        SceneSettings.param["substructures"],
         6,
-        (1, 20_000),
-        (1, 50),
-        "Number of pieces (substructures) that a wire is cut into, at least two where one is "
+        doc="Number of pieces (substructures) that a wire is cut into, at least two where one is "
         "broken: all wires are cut at the break, and alike.",
-        group="Decomposition",
         title="Substructures per wire",
     )
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
@@ -120,7 +106,7 @@ class StrandSettings(SceneSettings):
     @property
     def n_substructures(self) -> int:
         """Number of substructures in all."""
-        return self.wires * max(self.substructures, 2 if self.broken else 1)
+        return int(self.wires * max(self.substructures, 2 if self.broken else 1))
 
     @property
     def features(self) -> Features:
@@ -132,9 +118,6 @@ class StrandSettings(SceneSettings):
     def n_interfaces(self) -> int:
         """Number of interfaces between the wires."""
         return self.wires - 1
-
-    def _factors(self) -> Array | None:
-        return shared.factors_of(self, self.n_interfaces)
 
     @property
     def n_nodes(self) -> int:
@@ -149,13 +132,11 @@ class StrandSettings(SceneSettings):
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
-        shared.refuse_negative(self, "pressure_load", "pressure", " N/m")
-        self._factors()
+        shared.factors_of(self)
         tension = self.path("load")
         if tension.min() < 0.0:
-            raise SettingError(
+            raise self.refusal(
                 "load",
-                self.load,
                 "tensions of at least 0 N",
                 "wires cannot be pushed: raise the negative values",
             )
@@ -184,7 +165,7 @@ class StrandSettings(SceneSettings):
             duration=self.duration,
             pressure=self.path("pressure_load"),
             wires=self.wires,
-            factors=self._factors(),
+            factors=shared.factors_of(self),
             broken=(self.broken, self._break_node()) if self.broken else None,
             friction_law=self.law,
         )
@@ -226,7 +207,7 @@ class StrandSettings(SceneSettings):
         if self.grip != "force" or not self.broken:
             return
         share = 1.0 - self._break_node() / self.elements
-        sides, factors = neighbours(self.broken, self.wires), self._factors()
+        sides, factors = neighbours(self.broken, self.wires), shared.factors_of(self)
         beside = [1.0] * sides
         if factors is not None:
             beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
@@ -236,16 +217,15 @@ class StrandSettings(SceneSettings):
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
         if largest > capacity or largest == capacity > 0.0:
-            name = self.peak_or_table("load")
+            name = self.size_or_table("load")
             allowed = "no tension where no friction can hold the broken wire beyond its break"
             if capacity > 0.0:
                 allowed = (
                     f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
                     "wire beyond its break"
                 )
-            raise SettingError(
+            raise self.refusal(
                 name,
-                getattr(self, name),
                 allowed,
                 "pull less, raise friction or pressure, move the break to the left, or take the "
                 "grip of given displacement",

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import SettingError, choice, count, curve, quantity, redefined
+from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.bricks import Brick, bonded, with_opening
-from solver.discrete.wall import Wall
+from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS
 from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
@@ -28,7 +28,6 @@ class WallSettings(PlaneSettings):
     LOADS: ClassVar = ("displacement", "traction")
     PATH = "top_load"
     PARTS: ClassVar = {}
-    PEAKS: ClassVar = {"pressure_load": "pressure", "slope_load": "slope"}
 
     bricks = count(12, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
     courses = count(6, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
@@ -59,25 +58,16 @@ class WallSettings(PlaneSettings):
     )
     length = shared.size(0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", "Body")
     height = shared.size(0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", "Body")
-    pressure = quantity(
+    pressure, pressure_load = shared.sized_path(
+        "pressure_load",
+        "pressure",
+        "Pa",
         1e6,
         (0.0, 1e15),
         (0.0, 3e6),
         "Pressure on the highest course.",
-        group="Load",
-        title="Pressure",
-        unit="Pa",
-        applies=lambda settings: isinstance(settings.pressure_load, str),
-    )
-    pressure_load = curve(
         "hold",
-        PRESETS,
-        "time",
-        "pressure",
-        ("s", "Pa"),
-        "Pressure over time: a preset, or points (s, Pa).",
-        group="Load",
-        title="Path of the pressure",
+        places=("top y",),
     )
     top = choice(
         "moved",
@@ -95,7 +85,9 @@ class WallSettings(PlaneSettings):
         group="Load",
         title="Displacement",
         unit="m",
-        applies=lambda settings: settings.is_driven_by("moved"),
+        applies=lambda settings: settings.top == "moved",
+        path="top_load",
+        places=("top x",),
     )
     traction = quantity(
         2e5,
@@ -105,7 +97,9 @@ class WallSettings(PlaneSettings):
         group="Load",
         title="Traction",
         unit="Pa",
-        applies=lambda settings: settings.is_driven_by("pulled"),
+        applies=lambda settings: settings.top == "pulled",
+        path="top_load",
+        places=("top x",),
     )
     top_load = curve(
         "delayed",
@@ -117,25 +111,15 @@ class WallSettings(PlaneSettings):
         group="Load",
         title="Path of the top",
     )
-    slope = quantity(
+    slope, slope_load = shared.sized_path(
+        "slope_load",
+        "slope of the ground",
+        "°",
         0.0,
         (-89.0, 89.0),
         (-45.0, 45.0),
         "Largest angle by which the ground is tilted, the right end upwards.",
-        group="Load",
-        title="Slope of the ground",
-        unit="°",
-        applies=lambda settings: isinstance(settings.slope_load, str),
-    )
-    slope_load = curve(
         "delayed",
-        PRESETS,
-        "time",
-        "angle",
-        ("s", "°"),
-        "Angle over time: a preset, or points (s, °).",
-        group="Load",
-        title="Path of the slope",
     )
     unit_weight = quantity(
         2e4,
@@ -145,6 +129,7 @@ class WallSettings(PlaneSettings):
         group="Load",
         title="Unit weight",
         unit="N/m^3",
+        places=("body",),
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
     plane = redefined(PlaneSettings.param["plane"], "stress")
@@ -169,10 +154,6 @@ class WallSettings(PlaneSettings):
     def chief(cls) -> tuple[str, ...]:
         """Settings that the scene is about; its substructures are the bricks."""
         return (cls.PATH, *cls.LOADS, "pressure", "friction", "bricks", "courses", "multiscale")
-
-    def is_driven_by(self, kind: str) -> bool:
-        """Whether the top is driven so, as far as a preset and not a table says."""
-        return self.top == kind and isinstance(self.top_load, str)
 
     @property
     def n_substructures(self) -> int:
@@ -201,22 +182,6 @@ class WallSettings(PlaneSettings):
         jumps = 2 * self.courses * (beds + heads)
         return super().features._replace(jumps=jumps, bricks=self.n_substructures)
 
-    def _behind(self) -> Mapping[str, str]:
-        driven = "displacement" if self.top == "moved" else "traction"
-        return {"top x": driven, "top y": "pressure", "body": "unit_weight"}
-
-    def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of a curve under the present values."""
-        if name != "top_load":
-            return super().curve_units(name)
-        return "s", "m" if self.top == "moved" else "Pa"
-
-    def size_of(self, path: str) -> float:
-        """Largest value that a preset of a path over time reaches."""
-        if path == "top_load":
-            return float(self.displacement if self.top == "moved" else self.traction)
-        return super().size_of(path)
-
     def check_together(self) -> None:
         """Refuse halves that no element fits, joints without a pair, and too many bricks."""
         for name, most, beside in (
@@ -226,51 +191,39 @@ class WallSettings(PlaneSettings):
             value = getattr(self, name)
             if self.opening and value > most:
                 remedy = "lower it, or build a larger wall"
-                raise SettingError(name, value, f"at most {max(most, 0)}, as {beside}", remedy)
+                raise self.refusal(name, f"at most {max(most, 0)}, as {beside}", remedy)
         super().check_together()
         if (self.opening or (self.bond == "running" and self.courses > 1)) and self.elements % 2:
             remedy = "take an even number, or bond=stack"
-            raise SettingError(
-                "elements", self.elements, "an even number, as there are half bricks", remedy
-            )
+            raise self.refusal("elements", "an even number, as there are half bricks", remedy)
         if self.bricks > 1 and self.elements_up < 2:
-            raise SettingError(
+            raise self.refusal(
                 "elements_up",
-                self.elements_up,
                 "at least 2, between bricks of a course",
                 "raise it",
             )
         if self.n_substructures > MOST_BRICKS:
-            raise SettingError(
+            raise self.refusal(
                 "courses",
-                self.courses,
                 f"a wall of at most {MOST_BRICKS} bricks, of 2 GB",
                 f"these are {self.n_substructures}: take fewer courses, or bricks of a course",
             )
 
-    def structure(self) -> Wall:
+    def structure(self) -> Stack:
         """Make the wall; one metre thick."""
-        times, size = self.times(), (self.elements, self.elements_up)
         angle = np.radians(self.path("slope_load"))
-        weight = self.unit_weight * PRESETS["hold"].value(times / self.duration, 1)
-        driven = self.path("top_load")
-        return Wall(
+        hold = PRESETS["hold"].value(self.times() / self.duration, 1)
+        weight = self.unit_weight * hold
+        driven = Given(self.top == "moved", self.path("top_load"))
+        stack = replace(
+            self.stack(),
             bricks=self._bricks,
-            element=(self.length / size[0], self.height / size[1]),
-            young=self.young,
-            poisson=self.poisson,
-            state=self.plane,
-            friction=self.friction,
-            friction_law=self.law,
-            weight=-weight * np.stack([np.sin(angle), np.cos(angle)]),
-            pressure=self.path("pressure_load"),
-            moved=driven if self.top == "moved" else None,
-            shear=driven if self.top == "pulled" else None,
-            instants=times,
-            duration=self.duration,
-            macro_degree=self.macro_degree,
+            substructures=(1, 1),
+            body_force=-weight * np.stack([np.sin(angle), np.cos(angle)]),
+            sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
             tilt=angle if np.any(angle) else None,
         )
+        return replace(stack, support=Support(np.zeros(stack.grid[0] + 1), self.friction))
 
     def sentence(self) -> str:
         """The wall in a sentence."""

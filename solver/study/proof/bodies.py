@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.contact_groups import NO_SLIP
+from solver.discrete.contacts import NO_SLIP
 from solver.reference.closed_forms.elastic_bodies import (
     HalfPlane,
     TwoLeaves,

@@ -13,7 +13,6 @@ from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce, reaction
 from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
-from solver.discrete.wall import Wall
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.scenes import features_of, kind_of, law_of, structure_of
@@ -108,10 +107,8 @@ def holding_sides(settings: Settings) -> Collection[str]:
     if kind_of(settings) == "rod":
         return "left", "right"
     structure = structure_of(settings)
-    if isinstance(structure, Stack):
-        sides = structure.sides.items()
-        return [side for side, given in sides if any(each.prescribed for each in given)]
-    return ["top"] if isinstance(structure, Wall) and structure.moved is not None else []
+    sides = structure.sides.items() if isinstance(structure, Stack) else ()
+    return [side for side, given in sides if any(each.prescribed for each in given)]
 
 
 left_force, right_force, top_force, bottom_force = map(

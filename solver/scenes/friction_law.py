@@ -1,0 +1,190 @@
+"""Settings of the law of friction, which all scenes have."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.definitions import Pairs, about, choice, curve, quantity
+from solver.laws import FrictionLaw, Strength
+from solver.refusal import plain
+from solver.settings import Settings
+
+SHORTEST_SLIP = 1e-12
+"""Between points of a strength, m."""
+LARGEST_FACTOR = 1e3
+"""Of a strength."""
+STIFFNESSES = 1e-9, 1e9
+"""Of contact, over the unit of `contact_stiffness`: softer or stiffer, no digits are left."""
+
+
+class FrictionSettings(Settings):
+    """Settings of the law of friction, beside the coefficient."""
+
+    friction_law = choice(
+        "coulomb",
+        ["coulomb", "compliant", "slip-dependent", "general"],
+        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
+        "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
+        "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
+        "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
+        "and a cap.",
+        group="Contact",
+        title="Friction law",
+    )
+    contact_stiffness = quantity(
+        100.0,
+        (1e-3, 1e9),
+        (1.0, 1e4),
+        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
+        "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
+        "multiple of the stiffest E S over the square of the longest L.",
+        group="Contact",
+        title="Contact stiffness",
+        applies=lambda settings: settings.friction_law == "compliant",
+        logarithmic=True,
+    )
+    tangential_stiffness = quantity(
+        0.0,
+        (0.0, 1e18),
+        (1e4, 1e9),
+        "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
+        "bond, a soft layer. 0: rigid.",
+        group="Contact",
+        title="Tangential stiffness",
+        unit="N/m^2",
+        applies=lambda settings: settings.is_general,
+        logarithmic=True,
+    )
+    cohesion = quantity(
+        0.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Friction force per length of rod without any pressure, beside μ p.",
+        group="Contact",
+        title="Cohesion c",
+        unit="N/m",
+        applies=lambda settings: settings.is_general,
+    )
+    friction_cap = quantity(
+        0.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
+        "none.",
+        group="Contact",
+        title="Friction cap",
+        unit="N/m",
+        applies=lambda settings: settings.is_general,
+    )
+    strength = curve(
+        "constant",
+        ("constant", "linear"),
+        "slip",
+        "factor",
+        ("m", ""),
+        "Factor on the largest friction force over the accumulated slip of a point. constant: 1. "
+        "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
+        "peak, softening and a residual; the last one stays.",
+        group="Contact",
+        title="Strength over slip",
+        applies=lambda settings: settings.is_general,
+    )
+
+    friction_ratio = quantity(
+        1.5,
+        (0.0, 1e3),
+        (0.5, 2.0),
+        "Last friction over the first: above 1 it hardens with slip, below it softens.",
+        group="Contact",
+        title="Last friction over first",
+        applies=lambda settings: settings.is_linear_in_slip,
+    )
+    slip_length = quantity(
+        1e-4,
+        (1e-12, 1e6),
+        (1e-6, 1e-2),
+        "Accumulated slip of a point at which its friction is the last.",
+        group="Contact",
+        title="Slip length",
+        unit="m",
+        applies=lambda settings: settings.is_linear_in_slip,
+        logarithmic=True,
+    )
+
+    @property
+    def is_general(self) -> bool:
+        """Whether all parts of the friction law are given."""
+        return bool(self.friction_law == "general")
+
+    @property
+    def is_linear_in_slip(self) -> bool:
+        """Whether friction changes with slip by a ratio over a length."""
+        by_ratio = self.is_general and self.strength == "linear"
+        return by_ratio or bool(self.friction_law == "slip-dependent")
+
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`: N/m^2 along rods, N/m^3 in the plane."""
+        raise NotImplementedError
+
+    @property
+    def law(self) -> FrictionLaw:
+        """Law of friction, beside mu."""
+        if self.friction_law == "compliant":
+            return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
+        table = self.strength_points() if self._changes_with_slip else None
+        strength = None if table is None else Strength(*zip(*table, strict=True))
+        if not self.is_general:
+            return FrictionLaw(strength=strength)
+        return FrictionLaw(
+            stiffness=self.tangential_stiffness or np.inf,
+            cohesion=self.cohesion,
+            cap=self.friction_cap or np.inf,
+            strength=strength,
+        )
+
+    @property
+    def _changes_with_slip(self) -> bool:
+        return self.is_linear_in_slip or (self.is_general and self.strength != "constant")
+
+    def strength_points(self) -> Pairs:
+        """Points of the strength over the slip, or those that stand for its preset."""
+        table: str | Pairs = self.strength
+        if not (self.is_linear_in_slip or isinstance(table, str)):
+            return table
+        last = self.friction_ratio if self.is_linear_in_slip else 1.0
+        return (0.0, 1.0), (self.slip_length, last)
+
+    def check_together(self) -> None:
+        """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
+        super().check_together()
+        if self.is_general:
+            self._check_strength()
+            self._check_stiffness()
+
+    def _check_strength(self) -> None:
+        table = self.strength
+        if isinstance(table, str):
+            return
+        slips, factors = np.array(table).T
+        begins = len(table) > 1 and table[0] == (0.0, 1.0)
+        grows = begins and np.all(np.diff(slips) >= SHORTEST_SLIP)
+        if not (grows and factors.min() >= 0.0 and factors.max() <= LARGEST_FACTOR):
+            raise self.refusal(
+                "strength",
+                "at least two points (slip, factor), the first (0, 1), factors from 0 to "
+                f"{plain(LARGEST_FACTOR)}, slips that grow by {plain(SHORTEST_SLIP)} m",
+                "the factor at slip 0 is 1, as the rest of the law says what friction is there",
+            )
+
+    def _check_stiffness(self) -> None:
+        low, high = (share * self.contact_unit for share in STIFFNESSES)
+        for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
+            value = getattr(self, name)
+            if self.applies(name) and value and not low <= value <= high:
+                unit = about(self.definitions()[name]).unit
+                raise self.refusal(
+                    name,
+                    f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
+                    "write 0 where nothing gives way, or take away friction where nothing holds",
+                )
