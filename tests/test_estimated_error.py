@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.files import settings_from_command
 from solver.latin import (
     Ending,
     Solution,
@@ -230,11 +229,6 @@ def test_a_search_that_gives_up_says_how_far_it_was_and_what_to_try() -> None:
     wrong = float(f"{100 * solution.records[-2].error_force:.2g}")
     assert f"{wrong:g} %" in solution.status.advice
     assert "Raise max_iterations" in solution.status.advice
-
-
-@pytest.mark.parametrize("said", ["at-once", "at once", "status"])
-def test_files_and_commands_may_say_at_once_as_they_did(said: str) -> None:
-    assert settings_from_command("bar", [f"finish={said}"])[0].finish == "at-once"
 
 
 SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}

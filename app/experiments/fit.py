@@ -51,7 +51,9 @@ class FitTab(CommandTab):
         self._pipe = hv.streams.Pipe(data=None)
         self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
         super().__init__(state, "Fit", {}, opener.view, self.chosen)
-        self.view.extend([self._keys, self._chart])
+        # Of its own visibility the chart would tell Bokeh's figure, which knows no such thing.
+        self._drawn = pn.Column(self._keys, self._chart, visible=False)
+        self.view.append(self._drawn)
         self.buttons.insert(1, self.use_button)
         self.chosen.param.watch(lambda event: self.show(), "value")
         self.show()
@@ -108,7 +110,7 @@ class FitTab(CommandTab):
     def _draw(self) -> None:
         """Draw the measured loop, the run of the page, and the nearest so far, until the report."""
         chart = self._panel() if self.job is not None or not self.written else None
-        self._chart.visible, self._keys.visible = chart is not None, chart is not None
+        self._drawn.visible = chart is not None
         if chart is None:
             return
         self._keys.object = keys([chart])

@@ -9,7 +9,7 @@ they repeat. Where they cycle, following the solution down from large pressure f
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -18,6 +18,7 @@ import numpy as np
 from solver.arrays import ROUNDING, Array, Indices, at_instant
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
+from solver.reference.proximal import Solved, approach
 from solver.reference.response import Response
 from solver.reference.rules import HELD, Increment, Rules, Sides, Starts, States, states_at
 from solver.reference.unloading import unload
@@ -139,7 +140,7 @@ class Newton:
         self._starts.took(self.response.solutions - done, from_guess=from_guess)
         return step
 
-    def _solved(self, sides: Sides, instant: int) -> tuple[States, Increment] | None:
+    def _solved(self, sides: Sides, instant: int) -> Solved | None:
         """Find the states of the jumps and the step, or None."""
         guesses = [self._states]
         if self._guesses is not None:
@@ -150,29 +151,41 @@ class Newton:
             guesses.append(self._at_rest[:, instant])
         solved = self._from_any(guesses, sides)
         if solved is None and not self._is_lost and self._may_hold(instant):
-            solved = self._unloaded(self._rules, sides)
+            solved = self._approached(sides) or self._unloaded(self._rules, sides)
         self._is_lost = self._is_lost or solved is None
         return solved
 
-    def _from_any(self, guesses: list[States], sides: Sides) -> tuple[States, Increment] | None:
+    def _from_any(self, guesses: Iterable[States], sides: Sides) -> Solved | None:
         """Find states and step from the first guess that leads to them, or None."""
         solutions = (self._iterate(states, sides) for states in guesses)
         return next((solved for solved in solutions if solved is not None), None)
 
-    def _unloaded(self, rules: Rules, sides: Sides) -> tuple[States, Increment] | None:
+    def _approached(self, sides: Sides) -> Solved | None:
+        """Find states and step while springs hold bodies that are loose, or None."""
+        if not self._condensed.gauge.size:
+            return None
+        steps = approach(self._condensed, self._rules, self._states, sides, self._seek)
+        return self._from_any(steps, sides)
+
+    def _unloaded(self, rules: Rules, sides: Sides) -> Solved | None:
         """Find states and step from large pressure on, or None."""
         states = unload(self.response, rules, sides)
         return None if states is None else self._iterate(states, sides)
 
-    def _iterate(self, states: States, sides: Sides) -> tuple[States, Increment] | None:
+    def _iterate(self, states: States, sides: Sides) -> Solved | None:
         """Seek the states from a guess, or None where they cycle."""
+        return self._seek(self.response, states, sides)
+
+    def _seek(self, response: Response, states: States, sides: Sides) -> Solved | None:
         seen = set()
         for _ in range(NEWTON_LIMIT):
-            step = self.response(states, sides)
+            step = response(states, sides)
+            # Those with springs count, too.
+            self.response.solutions += response is not self.response
             corrected = self._corrected(states, step, sides)
             if np.array_equal(corrected, states):
                 slack, _ = self._rounding(states, step)
-                balanced = self.response.unbalanced <= max(CONVERGED * self._largest, slack)
+                balanced = response.unbalanced <= max(CONVERGED * self._largest, slack)
                 return (states, step) if balanced else None
             seen.add(states.tobytes())
             states = corrected

@@ -7,7 +7,10 @@ motions a. Their equations say what free jumps carry, what held ones come to, an
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from scipy import sparse
 from scipy.linalg import lapack
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
@@ -20,6 +23,15 @@ SINGULAR = 1e-12
 """Pivot, as a share of the largest, below which a system is singular."""
 FEW = 4
 """Rows of S at most, one in so many, that are gathered sooner than all of S is read."""
+
+
+class Sprung(NamedTuple):
+    """What is asked of a structure: of one that springs hold, where no motion is rigid."""
+
+    stiffness: Array
+    gauge: Array
+    base: Indices
+    ties: sparse.csr_array
 
 
 class Response:
@@ -42,7 +54,7 @@ class Response:
         Whether the last one left a motion free; then its smallest solution is given.
     """
 
-    def __init__(self, condensed: Condensation, rules: Rules) -> None:
+    def __init__(self, condensed: Condensation | Sprung, rules: Rules) -> None:
         self._stiffness, self._gauge = condensed.stiffness, condensed.gauge
         self._partner, self.friction = rules.partner, rules.friction
         self._growth = np.zeros_like(rules.friction)

@@ -1,0 +1,81 @@
+"""The states of one instant where contact alone holds bodies: springs hold them on the way.
+
+Newton's method cycles from afar where bodies hang loose, as they may go anywhere. With springs at
+all jumps that are relaxed where the last solution came to, none is loose: that is the proximal
+point method (Rockafellar, SIAM J. Control Optim. 14, 1976). Its steps are short, and where they
+come to rest the springs carry nothing. They are softened from step to step, until the states hold
+without them. On walls of bricks that are moved so far that joints open this finds a solution at
+every instant at which Newton's method alone finds none (solver/README.md, 6).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.reference.condensation import Condensation
+from solver.reference.response import Response, Sprung
+from solver.reference.rules import Increment, Rules, Sides, States
+
+FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
+"""Springs, as shares of the stiffness of each jump alone."""
+SOFTER, STIFFER = 0.5, 10.0
+"""Factors on them after a step, and where Newton's method cycles in spite of them."""
+STEPS = 60
+"""Steps at most; up to 20 are seen where there is a solution."""
+MOST_JUMPS = 4000
+"""Jumps up to which it is tried: it keeps two more matrices of their size."""
+
+Solved = tuple[States, Increment]
+
+
+def approach(
+    condensed: Condensation,
+    rules: Rules,
+    states: States,
+    sides: Sides,
+    seek: Callable[[Response, States, Sides], Solved | None],
+) -> Iterator[States]:
+    """States of an instant that have come to rest, each nearer to those without springs.
+
+    Parameters
+    ----------
+    condensed, rules
+        The structure.
+    states
+        Those of the instant before, shape (n,).
+    sides
+        Of the instant, one column.
+    seek
+        Newton's method from some states, None where it cycles.
+    """
+    if len(condensed.stiffness) > MOST_JUMPS:
+        return
+    alone, share = np.diagonal(condensed.stiffness), FIRST
+    rigid = _without_motions(condensed)
+    moved = np.zeros_like(sides.load)
+    for _ in range(STEPS):
+        springs = share * alone[:, None]
+        held = rigid + np.diagflat(springs)
+        sprung = Sprung(held, condensed.gauge[:, :0], condensed.base, condensed.ties)
+        pulled = replace(sides, load=sides.load + springs * moved)
+        solved = seek(Response(sprung, rules), states, pulled)
+        if solved is not None:
+            before, states, moved = states, solved[0], solved[1].strained
+            share = max(SOFTER * share, SOFTEST)
+            if np.array_equal(states, before):
+                yield states
+        elif share < STIFFEST:
+            share *= STIFFER
+        else:
+            return
+
+
+def _without_motions(condensed: Condensation) -> Array:
+    """S, which rigid motions cost nothing: without what keeps them apart, s Q Q'."""
+    gauge = condensed.gauge
+    kept = gauge.T @ condensed.stiffness @ gauge
+    return np.asarray(condensed.stiffness - gauge @ kept @ gauge.T)
