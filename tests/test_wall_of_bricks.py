@@ -11,7 +11,7 @@ from solver.definitions import SettingError
 from solver.discrete.bricks import bonded, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.latin import Ending, Latin, iterations, solve
-from solver.laws import FrictionLaw, Strength
+from solver.laws import OPEN, FrictionLaw, Strength
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
@@ -196,6 +196,16 @@ def test_limit_analysis_finds_the_shear_that_no_contact_force_balances(law, limi
     assert np.abs(collapse.mechanism).max() == pytest.approx(1.0)
     safe = column(0.99 * limit * 1e6, 1, friction=0.3, friction_law=law)
     assert collapse_of(safe.discretise()) is None
+
+
+@pytest.mark.parametrize("moved", [2e-4, 1e-3])
+def test_bricks_that_hang_loose_have_an_equilibrium_at_every_instant(moved):
+    problem = wall(3, 4, moved=moved).discretise()
+    reference = reference_of(problem)
+    assert reference.converged.all()
+    assert kkt_residual(reference, problem) < 1e-11
+    is_open = reference.status == OPEN
+    assert is_open.mean() > 0.1
 
 
 def test_the_number_of_iterations_does_not_grow_with_the_bricks():
