@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.discrete.bricks import bonded, with_opening
+from solver.discrete.bricks import bonded, grouped, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.latin import Ending, Latin, iterations, solve
 from solver.laws import OPEN, FrictionLaw, Strength
@@ -206,6 +206,22 @@ def test_bricks_that_hang_loose_have_an_equilibrium_at_every_instant(moved):
     assert kkt_residual(reference, problem) < 1e-11
     is_open = reference.status == OPEN
     assert is_open.mean() > 0.1
+
+
+def test_groups_lead_from_a_whole_coarse_problem_to_none():
+    whole = wall(moved=3e-5)
+    count = len(whole.rectangles)
+    reference = distance_to(reference_of(whole.discretise()), whole.discretise())
+    needed = {}
+    for number in (1, 4, count):
+        groups = grouped(whole.rectangles, (4, 2), number)
+        assert np.bincount(groups).min() >= 1
+        problem = replace(whole, groups=groups).discretise()
+        for iterate in iterations(problem, Latin()):
+            if reference.of_friction_force(iterate) < 0.01:
+                break
+        needed[number] = iterate.number
+    assert needed[count] < needed[4] < needed[1]
 
 
 def test_the_number_of_iterations_does_not_grow_with_the_bricks():

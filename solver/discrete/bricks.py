@@ -7,6 +7,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from solver.arrays import Indices
+
 Bond = Literal["running", "stack"]
 
 
@@ -107,6 +109,27 @@ def with_opening(
         if end > last:
             found.append(brick._replace(x=last, columns=end - last))
     return sorted(found, key=lambda brick: (brick.y, brick.x))
+
+
+def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indices:
+    """Group of each brick, of a number of groups: the largest is halved where it is longest.
+
+    Parameters
+    ----------
+    bricks, size
+        All of them, and elements of one along and up.
+    count
+        Of the groups; as many as there are bricks at most.
+    """
+    x, y, columns, rows = np.array(bricks).T
+    centres = np.stack([(x + 0.5 * columns) / size[0], (y + 0.5 * rows) / size[1]])
+    groups = np.zeros(len(bricks), dtype=np.intp)
+    for number in range(1, min(count, len(bricks))):
+        members = np.flatnonzero(groups == np.bincount(groups).argmax())
+        longest = int(np.ptp(centres[:, members], axis=1).argmax())
+        order = np.lexsort((centres[1 - longest, members], centres[longest, members]))
+        groups[members[order[len(order) // 2 :]]] = number
+    return groups
 
 
 def joints_of(bricks: Sequence[Brick]) -> list[Joint]:

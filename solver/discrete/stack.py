@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, without_residue
+from solver.arrays import Array, Indices, without_residue
 from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
@@ -107,6 +107,9 @@ class Stack:
         Where bodies are and how large, on the grid of the elements of one; None is `bodies` on each
         other. What is given on the left and the right holds for those which reach farthest, and on
         top and bottom for all that lies open there.
+    groups
+        Number of the group of each body, shape (bodies,), or None: bodies of one group pass no
+        macro forces to each other.
     elements, substructures
         Of one body, along and up. Bodies on each other that all begin at the left are also cut
         where any of them ends.
@@ -160,6 +163,7 @@ class Stack:
     tilt: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
     bricks: Sequence[Brick] | None = None
+    groups: Indices | None = None
 
     def __post_init__(self) -> None:
         """Leave free what is not given."""

@@ -156,6 +156,14 @@ class _Cut:
         above, below = self._pieces[joint.above], joint.below
         return below is not None and self._pieces[below].body == above.body
 
+    def _has_macro(self, joint: Joint) -> bool:
+        """Whether macro forces are to balance on a joint: not within a group of bodies."""
+        groups = self.stack.groups
+        if joint.below is None or groups is None or self._is_cut(joint):
+            return joint.below is not None
+        above, below = (self._pieces[number].body for number, _ in joint.sides)
+        return bool(groups[above] != groups[below])
+
     def _name(self, joint: Joint) -> str:
         above = self._pieces[joint.above]
         below = None if joint.below is None else self._pieces[joint.below]
@@ -202,7 +210,7 @@ class _Cut:
                 first, last = order * (joint.first - start) + before, order * (joint.last - start)
                 end = None if last - after == order * size else last - after + 1
                 held = (0,) if is_known else (0, 1)
-                trace = Trace(side, held, first, end, has_macro=joint.below is not None)
+                trace = Trace(side, held, first, end, has_macro=self._has_macro(joint))
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             is_lowest = self._pieces[number][2:] == (0, 0)
@@ -337,7 +345,7 @@ class _Cut:
             positions=touching * (size / stack.order),
             weights=areas,
             around=Bodies(moduli=(stack.modulus(body), below), depth=depth),
-            macro=macro if under else None,
+            macro=macro if self._has_macro(joints[0]) else None,
         )
 
     def _points(self, joint: Joint) -> tuple[Indices, Array]:

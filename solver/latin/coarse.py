@@ -37,7 +37,10 @@ class CoarseProblem:
         self._members = []
         seen, systems = [], []
         constant = load.astype(float)
+        carries = np.diff(basis.indptr) > 0
         for group in groups:
+            if not carries[group.rows].any():
+                continue
             rows, local, assembly = _local_basis(basis, group.rows)
             forces = local.T @ group.response.force_rows(rows)
             seen.append(assembly)

@@ -9,8 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Indices
 from solver.definitions import choice, count, curve, quantity, redefined
-from solver.discrete.bricks import Brick, bonded, with_opening
+from solver.discrete.bricks import Brick, bonded, grouped, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS
 from solver.scenes.entry import Emblem, Entry, Features
@@ -143,6 +144,16 @@ class WallSettings(PlaneSettings):
     substructures_up = redefined(
         PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
     )
+    brick_groups = count(
+        MOST_BRICKS,
+        (1, MOST_BRICKS),
+        (1, 80),
+        "Groups of bricks between which macro forces are in balance; within a group none are. With "
+        "as many as there are bricks the coarse problem is whole, with one there is none.",
+        group="Decomposition",
+        title="Groups of bricks",
+        applies=lambda settings: settings.multiscale,
+    )
     friction_profile = redefined(
         PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
     )
@@ -168,6 +179,17 @@ class WallSettings(PlaneSettings):
             return bricks
         first = (self.bricks - self.opening) // 2
         return with_opening(bricks, size, (first, first + self.opening), self.opening_height)
+
+    @property
+    def _groups(self) -> Indices | None:
+        if self.brick_groups >= self.n_substructures:
+            return None
+        return grouped(self._bricks, (self.elements, self.elements_up), self.brick_groups)
+
+    @property
+    def ends(self) -> dict[str, int]:
+        """Largest numbers of parts: each brick may be a group."""
+        return super().ends | {"brick_groups": self.n_substructures}
 
     @property
     def n_bodies(self) -> int:
@@ -218,6 +240,7 @@ class WallSettings(PlaneSettings):
         stack = replace(
             self.stack(),
             bricks=self._bricks,
+            groups=self._groups,
             substructures=(1, 1),
             body_force=-weight * np.stack([np.sin(angle), np.cos(angle)]),
             sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
