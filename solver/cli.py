@@ -131,7 +131,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(chosen: argparse.Namespace) -> int:
     limit = math.inf if chosen.limit is None else chosen.limit
-    if not 0.0 < limit <= math.inf:
+    if chosen.limit is not None and not 0.0 < limit < math.inf:
         raise SettingError("--limit", limit, "seconds above 0", "give more, or leave it out")
     asked = [reading(name.strip()) for name in chosen.of.split(",") if name.strip()]
     place = "a file in an existing folder that can be written"
