@@ -43,7 +43,7 @@ from app.units import Unit, unit_for
 from app.views.colors import CUT, KEYS, STATUS
 from solver.settings import Settings
 
-TOOLS = "pan,box_zoom,wheel_zoom,reset,save,fullscreen"
+TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 TEXT = "12px"
 """Size of text in plots, of which the theme takes shares."""
 LONGEST = 16
