@@ -251,7 +251,9 @@ class ClassMember(param.Parameterized):
             values |= {name: getattr(leader, name) for name in SHARED}
         # Watchers of what is as it was have nothing to do.
         changed = {name: value for name, value in values.items() if value != getattr(state, name)}
-        state.param.update(**changed)
+        # A picture is sent at once: without the hold it would overtake figures that come with it.
+        with pn.io.hold():
+            state.param.update(**changed)
         self.message = self._sentence(room)
         if room.is_alone and not room.is_over:
             self._document.add_timeout_callback(self._take, int(1000 * KEPT) + 1000)
