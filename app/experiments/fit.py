@@ -52,7 +52,7 @@ class FitTab(CommandTab):
         self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
         super().__init__(state, "Fit", {}, opener.view, self.chosen)
         # Of its own visibility the chart would tell Bokeh's figure, which knows no such thing.
-        self._drawn = pn.Column(self._keys, self._chart, visible=False)
+        self._drawn = pn.Column(self._keys, self._chart, visible=False, sizing_mode="stretch_width")
         self.view.append(self._drawn)
         self.buttons.insert(1, self.use_button)
         self.chosen.param.watch(lambda event: self.show(), "value")
