@@ -121,14 +121,9 @@ def renamed(table: Table, heads: str) -> Table:
 
 
 def paths_of(settings: Settings) -> dict[str, CurveParameter]:
-    """Paths over time that do something."""
-    return {
-        name: definition
-        for name, definition in settings.definitions().items()
-        if isinstance(definition, CurveParameter)
-        and definition.abscissa == "time"
-        and settings.applies(name)
-    }
+    """Definitions of the paths over time that do something, by name."""
+    definitions = settings.definitions()
+    return {name: definitions[name] for name in settings.paths}
 
 
 def path_of(table: Table, settings: Settings) -> str:

@@ -9,8 +9,9 @@ from bokeh.models import BasicTicker, LinearColorMapper, Range1d
 
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
+from app.views.axis import extent, whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.view import ExtraView, color_bar, extent, hover, whole
+from app.views.view import ExtraView, color_bar, hover
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
 from solver.scenes import kind_of

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, InterfaceFields, Run, Selection
+from app.views.axis import extent
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
-from app.views.view import View, extent, hover, joined, key_of
+from app.views.view import View, hover, joined, key_of
 from solver.scenes import kind_of
 
 ROOM, MOST = 1.15, 2.0

@@ -8,8 +8,9 @@ import numpy as np
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
 from app.frame import Floats, Frame, Selection
+from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import View, extent, hover, key_of, rounded_up, whole
+from app.views.view import View, hover, key_of
 from app.worker.references import has_reference
 
 LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15

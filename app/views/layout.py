@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.frame import Geometry
-from app.views.view import rounded_up
+from app.views.axis import rounded_up
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 

@@ -10,6 +10,7 @@ from bokeh.models import Range1d
 
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
+from app.views.axis import extent, whole
 from app.views.colors import (
     BESIDE,
     ERROR,
@@ -21,7 +22,7 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
-from app.views.view import ExtraView, View, end_of, extent, hover, key_of, whole
+from app.views.view import ExtraView, View, end_of, hover, key_of
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
 from solver.study.quantities.cycles import cycles_in

@@ -11,8 +11,9 @@ from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
+from app.views.axis import extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.view import ExtraView, color_bar, end_of, extent, hover, joined, key_of
+from app.views.view import ExtraView, color_bar, end_of, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
 

@@ -14,10 +14,11 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import number, unit_for
+from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, KEYS, UNSEEN
 from app.views.layout import layout_of
 from app.views.picture import Handle, Picture
-from app.views.view import View, bare, color_bar, rounded_up
+from app.views.view import View, bare, color_bar
 from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, Selection
+from app.views.axis import extent
 from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE, UNSEEN
-from app.views.view import View, extent
+from app.views.view import View
 from solver.laws import FrictionLaw
 from solver.scenes import features_of, law_of
 

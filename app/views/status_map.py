@@ -8,8 +8,9 @@ import numpy as np
 from bokeh.events import Tap
 
 from app.frame import Floats, Frame, Selection
+from app.views.axis import extent
 from app.views.colors import CUT, ERROR, EXACT, KEYS
-from app.views.view import View, extent, hover, joined
+from app.views.view import View, hover, joined
 
 
 class StatusMap(View):

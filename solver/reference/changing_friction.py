@@ -97,7 +97,7 @@ class NewtonWithChangingFriction(Newton):
         rules, force = self._rules, self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
         bound = self._bound(max(instant - 1, 0))
-        return Sides(-self.response.on_base(force)[:, None], bound, held[:, None])
+        return Sides(-self.system.on_base(force)[:, None], bound, held[:, None])
 
     def _follow(self, at: Reached, sides: Sides, guesses: list[States]) -> Reached | None:
         """Go on to a larger share of the load, None where this may lead to another branch."""
@@ -136,7 +136,7 @@ class NewtonWithChangingFriction(Newton):
     def _slid(self, factor: Array, sides: Sides, guesses: list[States]) -> Reached | None:
         """Solve with a given factor on friction, (n, 1), whatever slips; None without solution."""
         rules = replace(self._rules, friction=self._rules.friction * factor[:, 0])
-        self.response.set_friction(rules.friction, np.zeros_like(rules.friction))
+        self.system.set_friction(rules.friction, np.zeros_like(rules.friction))
         given = replace(sides, bound=sides.bound * factor)
         solved = self._from_any(guesses, given) or self._unloaded(rules, given)
         return None if solved is None else Reached(*solved, self._slip_of(solved[1], sides))
@@ -158,7 +158,7 @@ class NewtonWithChangingFriction(Newton):
                 return None
             pieces.append(piece)
             tangent = self._linearised(slip, force, sides)
-            step = self.response(states, tangent)
+            step = self.system(states, tangent)
             corrected = self._corrected(states, step, tangent)
             moved, force = self._slip_of(step, sides), step.force[:, 0]
             if np.array_equal(corrected, states) and self._obeys(states, moved, force, sides):
@@ -172,7 +172,7 @@ class NewtonWithChangingFriction(Newton):
         grows = rules.growth(self._gone + slip) * most
         factor = rules.factor(self._gone + slip)
         is_capped = self._carried(force, sides) > rules.cap
-        self.response.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
+        self.system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
         bound = np.where(is_capped, rules.cap, sides.bound[:, 0]) * factor - grows * slip
         return replace(sides, bound=bound[:, None])
 
@@ -187,7 +187,7 @@ class NewtonWithChangingFriction(Newton):
 
     def _obeys(self, states: States, slip: Array, force: Array, sides: Sides) -> bool:
         """Whether friction is what slip has left, not only by its tangent."""
-        if self.response.unbalanced > CONVERGED * self._largest:
+        if self.system.unbalanced > CONVERGED * self._largest:
             return False
         slips = np.abs(states) == 1
         factor = self._rules.factor((self._gone + np.abs(slip))[:, None])[:, 0]

@@ -103,11 +103,11 @@ class IncrementalContact:
         for instant in range(problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and newton.response.solutions >= most:
+            if most is not None and newton.system.solutions >= most:
                 break
             for field, values in zip(done, newton(instant), strict=True):
                 field[:, instant] = values
-            ambiguous[instant] = newton.response.turned
+            ambiguous[instant] = newton.system.turned
             reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
@@ -115,7 +115,7 @@ class IncrementalContact:
         return replace(
             solution,
             ambiguous=ambiguous & solution.converged,
-            steps=newton.response.solutions,
+            steps=newton.system.solutions,
             jumps_at=newton.jumps_at,
             collapse=self._collapse,
             is_lost=bool(np.any(reached & ~solution.converged)),

@@ -1,10 +1,10 @@
 """One instant of frictional contact after the other, each from the states of the one before.
 
 A semismooth Newton method seeks the states of the jumps: solve the linear system of the states
-(`solver.reference.response`, the bound of friction coupled to the normal force), and correct the
-states by what it shows (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). Exact once
-they repeat. Where they cycle, following the solution down from large pressure finds them for sure
-(`solver.reference.unloading`).
+(`solver.reference.linear_system`, the bound of friction coupled to the normal force), and correct
+the states by what it shows (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). Exact
+once they repeat. Where they cycle, springs lead loose bodies home (`solver.reference.proximal`), or
+following the solution down from large pressure finds it (`solver.reference.unloading`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ import numpy as np
 from solver.arrays import ROUNDING, Array, Indices, at_instant
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
+from solver.reference.linear_system import LinearSystem
 from solver.reference.proximal import Solved, approach
-from solver.reference.response import Response
 from solver.reference.rules import HELD, Increment, Rules, Sides, Starts, States, states_at
 from solver.reference.unloading import unload
 
@@ -66,7 +66,7 @@ class Newton:
         guesses: States | None,
         may_hold: Callable[[int], bool],
     ) -> None:
-        self.response = Response(condensed, rules)
+        self.system = LinearSystem(condensed, rules)
         self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules
         self._opening, self._force = rules.gap.copy(), np.zeros_like(rules.gap)
@@ -99,7 +99,7 @@ class Newton:
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._strained, self._motion
             return Marched(*map(np.zeros_like, still))
-        load = condensed.load[:, instant] - self._load - self.response.on_base(self._force)
+        load = condensed.load[:, instant] - self._load - self.system.on_base(self._force)
         before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         held = before - np.where(rules.normal, self._opening, 0.0)
         sides = Sides(load[:, None], self._bound(instant), held[:, None])
@@ -120,13 +120,13 @@ class Newton:
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
         condensed, stresses = self._condensed, self._condensed.stresses
-        done, from_guess = self.response.solutions, self._starts.from_guess
+        done, from_guess = self.system.solutions, self._starts.from_guess
         for _ in range(PASSES):
             solved = self._solved(sides, instant)
             if solved is None:
                 # All contacts stay where they are.
                 held = sides.held + (self._rules.normal * self._opening)[:, None]
-                return self.response(np.full_like(self._states, HELD), replace(sides, held=held))
+                return self.system(np.full_like(self._states, HELD), replace(sides, held=held))
             self._states, step = solved
             if not stresses.size:
                 break
@@ -137,7 +137,7 @@ class Newton:
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._largest:
                 break
             sides = replace(sides, load=sides.load - pull[:, None])
-        self._starts.took(self.response.solutions - done, from_guess=from_guess)
+        self._starts.took(self.system.solutions - done, from_guess=from_guess)
         return step
 
     def _solved(self, sides: Sides, instant: int) -> Solved | None:
@@ -169,23 +169,23 @@ class Newton:
 
     def _unloaded(self, rules: Rules, sides: Sides) -> Solved | None:
         """Find states and step from large pressure on, or None."""
-        states = unload(self.response, rules, sides)
+        states = unload(self.system, rules, sides)
         return None if states is None else self._iterate(states, sides)
 
     def _iterate(self, states: States, sides: Sides) -> Solved | None:
         """Seek the states from a guess, or None where they cycle."""
-        return self._seek(self.response, states, sides)
+        return self._seek(self.system, states, sides)
 
-    def _seek(self, response: Response, states: States, sides: Sides) -> Solved | None:
+    def _seek(self, system: LinearSystem, states: States, sides: Sides) -> Solved | None:
         seen = set()
         for _ in range(NEWTON_LIMIT):
-            step = response(states, sides)
+            step = system(states, sides)
             # Those with springs count, too.
-            self.response.solutions += response is not self.response
+            self.system.solutions += system is not self.system
             corrected = self._corrected(states, step, sides)
             if np.array_equal(corrected, states):
                 slack, _ = self._rounding(states, step)
-                balanced = response.unbalanced <= max(CONVERGED * self._largest, slack)
+                balanced = system.unbalanced <= max(CONVERGED * self._largest, slack)
                 return (states, step) if balanced else None
             seen.add(states.tobytes())
             states = corrected
@@ -198,21 +198,21 @@ class Newton:
 
         A held jump is the deformation less the rigid motion: rounding of that makes forces at all.
         """
-        inside = self.response.inside(self._strained + step.strained[:, 0])
+        inside = self.system.inside(self._strained + step.strained[:, 0])
         slack = ROUNDING * (inside + self._largest)
-        blur = self.response.blur(step.motion)
+        blur = self.system.blur(step.motion)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
         return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
 
     def _corrected(self, states: States, step: Increment, sides: Sides) -> States:
         """States that jump and force call for; what is up to rounding calls for none."""
-        rules, response, force = self._rules, self.response, step.force[:, 0]
-        moved = (response.unit * (step.jump - sides.held))[:, 0]
+        rules, system, force = self._rules, self.system, step.force[:, 0]
+        moved = (system.unit * (step.jump - sides.held))[:, 0]
         slack, blur = self._rounding(states, step)
         held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
         carries = np.where(held, force[rules.partner], -moved[rules.partner])
-        most = sides.bound[:, 0] + np.maximum(response.friction * carries, 0.0) + slack * held
+        most = sides.bound[:, 0] + np.maximum(system.friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
         corrected = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
         corrected = np.where(np.abs(states) == 1, states * (states * moved >= -blur), corrected)

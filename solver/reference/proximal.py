@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.reference.condensation import Condensation
-from solver.reference.response import Response, Sprung
+from solver.reference.linear_system import LinearSystem, Sprung
 from solver.reference.rules import Increment, Rules, Sides, States
 
 FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
@@ -37,7 +37,7 @@ def approach(
     rules: Rules,
     states: States,
     sides: Sides,
-    seek: Callable[[Response, States, Sides], Solved | None],
+    seek: Callable[[LinearSystem, States, Sides], Solved | None],
 ) -> Iterator[States]:
     """States of an instant that have come to rest, each nearer to those without springs.
 
@@ -62,7 +62,7 @@ def approach(
         held = rigid + np.diagflat(springs)
         sprung = Sprung(held, condensed.gauge[:, :0], condensed.base, condensed.ties)
         pulled = replace(sides, load=sides.load + springs * moved)
-        solved = seek(Response(sprung, rules), states, pulled)
+        solved = seek(LinearSystem(sprung, rules), states, pulled)
         if solved is not None:
             before, states, moved = states, solved[0], solved[1].strained
             share = max(SOFTER * share, SOFTEST)

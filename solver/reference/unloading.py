@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws import OPEN
-from solver.reference.response import Response
+from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import HELD, Rules, Sides, States
 
 CHANGES = 30
@@ -29,9 +29,9 @@ FLAT = 1e-12
 """Slope, as a share of the largest, that is none."""
 
 
-def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
+def unload(system: LinearSystem, rules: Rules, sides: Sides) -> States | None:
     """States that solve an instant, of one column, or None where the walk goes off to infinity."""
-    walk = _PathFollower(response, rules, sides)
+    walk = _PathFollower(system, rules, sides)
     size = len(rules.gap)
     for _ in range(int(CHANGES * size * min(1.0, (FEW / size) ** 2))):
         if walk.step():
@@ -44,14 +44,14 @@ def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
 class _PathFollower:
     """Where the walk is: states, lambda (`_level`), and whether it goes up or down."""
 
-    def __init__(self, response: Response, rules: Rules, sides: Sides) -> None:
-        self._response, self._rules = response, rules
+    def __init__(self, system: LinearSystem, rules: Rules, sides: Sides) -> None:
+        self._system, self._rules = system, rules
         # An even d would let contacts of a symmetric structure change together, and the walk lose
         # its way; multiples of the golden ratio spread it, alike in every run.
         size = len(rules.gap)
         spread = 1.0 + np.arange(1, size + 1) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
         raised = ~rules.normal & rules.bounded
-        pressed = response.on_base(np.where(rules.normal, -spread, 0.0))
+        pressed = system.on_base(np.where(rules.normal, -spread, 0.0))
         self._sides = Sides(
             np.column_stack([sides.load, pressed]),
             np.column_stack([sides.bound, np.where(raised, spread, 0.0)]),
@@ -64,12 +64,12 @@ class _PathFollower:
 
     def step(self) -> bool:
         """Go on to the next change of state; tell whether lambda = 0 comes before it."""
-        jump, force, *_ = self._response(self.states, self._sides)
+        jump, force, *_ = self._system(self.states, self._sides)
         room, slope = self._room(jump, force)
         slope[np.abs(slope) <= FLAT * np.abs(slope).max(initial=0.0)] = 0.0
         if self._changed is not None:
             self._way = float(np.sign(slope[self._changed]))
-        self.lost = self._response.singular or self._way == 0.0
+        self.lost = self._system.singular or self._way == 0.0
         if self.lost:
             return False
         ending = slope * self._way < 0.0
@@ -92,7 +92,7 @@ class _PathFollower:
         rules, states = self._rules, self.states
         room = np.full((2, len(states), 2), np.inf)
         room[1] = 0.0
-        moved = (self._response.unit * (jump - self._sides.held)).T
+        moved = (self._system.unit * (jump - self._sides.held)).T
         bound = self._sides.bound.T + rules.friction * force[rules.partner].T
         held, opened = rules.normal & (states == HELD), rules.normal & (states == OPEN)
         stuck, slips = ~rules.normal & (states == HELD), np.abs(states) == 1

@@ -34,7 +34,7 @@ class Sprung(NamedTuple):
     ties: sparse.csr_array
 
 
-class Response:
+class LinearSystem:
     """The linear system of given states; the last factorisation is kept.
 
     Attributes
