@@ -305,7 +305,7 @@ def _given(given: Given, side: str, component: int) -> Act:
         values = np.stack([given.mean - given.slope, given.mean + given.slope])
         return Act(where, symbol, np.stack([first, last]), towards, away, values, unit)
     several = is_normal and not given.prescribed
-    share = np.array([0.15, 0.5, 0.85] if several else [0.7 if is_normal else 0.3])
+    share = np.array([0.15, 0.5, 0.85] if several else [0.7 if is_normal else 0.15])
     places = first + share[:, None] * (last - first)
     return Act(where, symbol, places, towards, away, given.mean, unit)
 
