@@ -16,7 +16,7 @@ from app.views.catalogue import CARDS
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
-from app.widgets import wrapped
+from app.widgets import looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = "2.6vh"
@@ -25,17 +25,6 @@ LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
 PRESENTED = 2
 """Plots that a projector has room for beside the scene."""
-SMALL_TABS = {
-    "&.MuiTabs-root, & .MuiTabs-root": {"minHeight": "26px"},
-    "& .MuiTab-root": {
-        "minHeight": "26px",
-        "minWidth": 0,
-        "padding": "2px 10px",
-        "textTransform": "none",
-        "fontSize": "13px",
-    },
-    "& .MuiTabs-scrollButtons": {"width": "20px"},
-}
 
 
 class Live:
@@ -142,7 +131,8 @@ class Card:
         self.seen: View | None = None
         self._offered: list[View] = []
         self._panes: dict[View, pn.pane.Bokeh] = {}
-        self.tabs = pmui.TabMenu(items=[], margin=0, sx=SMALL_TABS, sizing_mode="stretch_width")
+        look = {"margin": 0, "sizing_mode": "stretch_width", **looks("small-tabs")}
+        self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
         self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
 

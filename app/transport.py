@@ -77,7 +77,7 @@ class Transport:
             size="small",
             width=110,
             margin=(0, 8),
-            sx={"& .MuiFormLabel-root": {"fontSize": "12px"}},
+            **looks("small-label"),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
         return [self._way, pace, self._iteration]
