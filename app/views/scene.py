@@ -65,7 +65,7 @@ class Scene(View):
         look = {"size": 11, "fill_color": "white", "line_width": 2.5}
         self.add("marks", "Scatter", "x y line_color", **look)
         self.add(
-            "words", "Text", "x y text text_align text_color", text_font_size="14px",
+            "words", "Text", "x y text text_align text_color",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         self.mark(KEYS | {"note": UNSEEN})
