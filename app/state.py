@@ -91,7 +91,7 @@ class History:
 
 def default_settings(scene: str) -> Settings:
     """Settings with which a page begins a scene."""
-    return CATALOGUE[scene].settings.checked(SEARCH)
+    return CATALOGUE[scene].checked(SEARCH)
 
 
 class PageState(param.Parameterized):

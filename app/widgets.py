@@ -11,7 +11,7 @@ from urllib.parse import quote
 import panel as pn
 import panel_material_ui as pmui
 
-from solver.scenes.entry import Emblem
+from solver.settings import Icon
 
 SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(encoding="utf-8")
 
@@ -60,7 +60,7 @@ def download(label: str, filename: str, make: Callable[[], str | bytes], **look:
     return made
 
 
-def mask_of(emblem: Emblem) -> dict[str, str]:
+def mask_of(emblem: Icon) -> dict[str, str]:
     """A small picture as a mask, which takes the colour of its text."""
     line = 'fill="none" stroke="#000" stroke-width="1.4" stroke-linejoin="round"'
     svg = (

@@ -19,7 +19,6 @@ from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError, about
-from solver.scenes import behind, kind_of, law_of, loads_of
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
@@ -176,13 +175,13 @@ def _bricks(settings: Settings) -> Question | None:
 
 
 def _fretting(settings: Settings) -> Question | None:
-    across, up = _load(settings), behind(settings).get("top y")
+    across, up = _load(settings), settings.behind().get("top y")
     return _over(settings, "sliding_share", COARSE, across, up) if has_cycles(settings) else None
 
 
 def _shakedown(settings: Settings) -> Question | None:
     """Not of rods that stick rigidly: a load at their end has no limit, as the mesh is refined."""
-    is_rigid_rod = kind_of(settings) != "plane" and np.isinf(law_of(settings).stiffness)
+    is_rigid_rod = settings.kind != "plane" and np.isinf(settings.law.stiffness)
     if not has_a_limit(settings) or is_rigid_rod:
         return None
     return _over(settings, "shakedown_factor", COARSE, "friction")
@@ -191,7 +190,7 @@ def _shakedown(settings: Settings) -> Question | None:
 def _load(settings: Settings) -> str | None:
     """Name of the setting that says how large the load is, where a number does."""
     known = variable(settings)
-    names = (name for name in loads_of(settings) if name in known)
+    names = (name for name in settings.LOADS if name in known)
     return next((name for name in names if isinstance(known[name], param.Number)), None)
 
 
