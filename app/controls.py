@@ -190,9 +190,9 @@ class SettingControl:
         if self._is_updating:
             return
         self._is_dragged = False
-        self._change(self._from_slider(place))
-        if self._state.is_dragged:
-            self._state.run()
+        self._state.release(self.name, self._from_slider(place))
+        self.update()
+        self._explain(self._state.refusal)
 
     def _edit(self) -> None:
         """Open the points of a path."""

@@ -127,6 +127,7 @@ class Scene(View):
         if np.hypot(*(nearest.place - at)) <= NEAR:
             present = getattr(picture.frame.run.settings, nearest.setting)
             self._held = nearest, picture, float(present)
+            self.state.is_dragged = True
 
     def _drag(self, event: Any) -> None:
         if self._held is not None:
@@ -136,7 +137,7 @@ class Scene(View):
         if self._held is not None:
             name, value = self._held[0].setting, self._value(event)
             self._held = None
-            self.state.change(**{name: value})
+            self.state.release(name, value)
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
