@@ -61,7 +61,6 @@ class PlaneSettings(Settings):
         group="Contact",
         title="Normal stiffness",
         unit="N/m^3",
-        logarithmic=True,
         applies=lambda settings: settings.is_general and settings.features.opens,
     )
     cohesion = redefined(
@@ -150,7 +149,6 @@ class PlaneSettings(Settings):
         "Multiplies k once more, along the normals of contacts alone.",
         group="Method",
         title="Normal k factor",
-        logarithmic=True,
     )
     start = choice(
         "zero",

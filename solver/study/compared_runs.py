@@ -12,7 +12,7 @@ import param
 from scipy.optimize import least_squares
 
 from solver.arrays import Array
-from solver.definitions import SettingError, about
+from solver.definitions import SettingError, about, is_logarithmic
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
@@ -99,11 +99,10 @@ def scale_of(settings: Settings, name: str) -> Scale:
         raise SettingError("fitted setting", name, can, f"choose another: {reason}")
     definition, value = settings.definitions()[name], getattr(settings, name)
     low, high = definition.bounds
-    is_logarithmic = about(definition).logarithmic
-    if low >= 0.0 and (is_logarithmic or high >= SPANS * low):
+    if low >= 0.0 and (is_logarithmic(definition) or high >= SPANS * low):
         if value > 0.0:
             return Scale(value, None, low, high)
-        if is_logarithmic:
+        if is_logarithmic(definition):
             can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
             raise SettingError(name, value, can, "set it")
     return Scale(value, abs(value) or float(np.ptp(definition.softbounds)), low, high)

@@ -16,7 +16,7 @@ import param
 from numpy.random import Generator
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, Parameter, SettingError, about
+from solver.definitions import CurveParameter, Parameter, SettingError, about, is_logarithmic
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.stability.random_loads import LOADS
@@ -219,7 +219,7 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
     low, high = WIDE.get(name, definition.softbounds)
     if isinstance(definition, param.Integer):
         return int(generator.integers(low, high + 1))
-    if about(definition).logarithmic:
+    if is_logarithmic(definition):
         return log_uniform(generator, low, high)
     return float(generator.uniform(low, high))
 
