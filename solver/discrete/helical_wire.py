@@ -105,7 +105,7 @@ class RopeWire:
     length
         Of the wire, m.
     bound
-        Friction bound per length of wire, N/m: one number, or over time (n_instants,).
+        Friction bound per length of wire, N/m: a number, or over time, shape (n_instants,).
     curvature
         Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
     tension
@@ -119,7 +119,7 @@ class RopeWire:
     helix: HelicalWire
     diameter: float
     length: float
-    bound: Array
+    bound: float | Array
     curvature: Array
     tension: Array
     stands_for: int = 1

@@ -231,7 +231,7 @@ class RopeSettings(SceneSettings):
         curvature, tension = self.path("load"), self.path("tension_load")
         bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
         if self.tension_load == "steady":
-            bounds = bounds[:, :1]
+            bounds = bounds[:, 0]
         wires = [
             self._wire(layer, number, bounds[layer], curvature, tension)
             for layer, own in enumerate(self.section.layers)
