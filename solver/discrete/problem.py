@@ -64,9 +64,6 @@ class Problem:
     rest
         Displacement that the method may start from, scaled, shape (n_dofs, n_instants): that of a
         body which falls onto its support as if it were rigid. None is no displacement.
-    motions
-        Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent; None
-        where there are none, or where no digits are lost beside them.
     carried
         Displacement of the support that rods lie on, scaled, shape (n_dofs, n_instants), where it
         moves: all displacements of the problem are seen from it.
@@ -79,7 +76,6 @@ class Problem:
     scales: Scales
     inside: Inside | None = None
     rest: Array | None = None
-    motions: Array | None = None
     carried: Array | None = None
 
     def at_rest(self, displacement: Array) -> Array:
@@ -284,6 +280,14 @@ class Problem:
             places[name] = tuple(slice(start, start + size) for start in range(first, last, size))
             first = last
         return places
+
+    @cached_property
+    def motions(self) -> Array | None:
+        """Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent.
+
+        None where there are none, or where no digits are lost beside them, along rods.
+        """
+        return None if self.inside is None else self.inside.rigid_motions(self.prescribed[0])
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:

@@ -8,20 +8,23 @@ themselves, and need no interface. Contact forces are lumped at the nodes.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy import sparse
+from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.bricks import Brick, Joint, joints_of
 from solver.discrete.cut_rods import substructure_sizes
 from solver.discrete.elements import edge_mass, elastic_matrix
 from solver.discrete.plane import Condensed, Rectangle, edge_lengths, side_basis
-from solver.discrete.plane_parts import Part, Trace, lined_up, number_rows, problem_of
+from solver.discrete.plane_parts import Inside, Part
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rigid_stack import rigid_rest, rigid_slide
+from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import (
     Bodies,
     Component,
@@ -41,17 +44,23 @@ SIDES = "left", "right", "bottom", "top"
 
 
 def discretise_stack(stack: Stack) -> Problem:
-    """Cut the bodies into rectangles and write the laws of their interfaces."""
+    """Cut the bodies into rectangles and write the laws of their interfaces.
+
+    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
+    contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
+    """
     cut = _Cut(stack)
-    skeleton = number_rows(cut.parts)
-    return problem_of(
-        cut.parts,
-        skeleton,
-        cut.positions,
-        dict(cut.interfaces()),
-        scales=Scales(stack.length, stack.young * stack.length, stack.duration),
+    skeleton = np.unique(np.concatenate([part.dofs for part in cut.parts]))
+    scales = Scales(stack.length, stack.young * stack.length, stack.duration)
+    places = cut.positions[skeleton // 2]
+    return Problem(
+        substructures=tuple(cut.substructures(skeleton)),
+        interfaces=dict(cut.interfaces()),
+        positions=places * scales.displacement,
         instants=stack.instants,
-        rest=_rest(stack, cut.positions[skeleton // 2], skeleton % 2),
+        scales=scales,
+        inside=Inside(cut.parts, cut.positions, skeleton, scales, len(stack.instants)),
+        rest=_rest(stack, places, skeleton % 2),
     )
 
 
@@ -102,6 +111,38 @@ def _pieces(stack: Stack) -> Iterator[_Piece]:
                 yield _Piece(own, column, row, body)
 
 
+@dataclass(frozen=True)
+class _Trace:
+    """Boundary rows along a side of a substructure.
+
+    Attributes
+    ----------
+    side
+        "left", "right", "bottom" or "top".
+    components
+        Displacements that have rows, 0 along x and 1 along y.
+    first, last
+        Nodes of the side that have rows, as a slice.
+    has_macro
+        Whether macro forces are to balance there; parts that differ in it share no operator.
+    """
+
+    side: str
+    components: tuple[int, ...] = (0, 1)
+    first: int = 0
+    last: int | None = None
+    has_macro: bool = False
+
+    def dofs(self, rectangle: Rectangle) -> Indices:
+        """Degrees of freedom of a rectangle under the rows, shape (n_nodes, n_components)."""
+        nodes = rectangle.edge(self.side)[self.first : self.last]
+        return np.add.outer(2 * nodes, self.components)
+
+    def weights(self, rectangle: Rectangle) -> Array:
+        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled."""
+        return rectangle.edge_weights(self.side)[self.first : self.last]
+
+
 class _Cut:
     """The bodies, cut into substructures.
 
@@ -110,7 +151,7 @@ class _Cut:
     positions
         Of all nodes, shape (n_nodes, 2), in lengths of a body.
     parts
-        All substructures. Equal ones share what is condensed; their rows are still to be numbered.
+        All substructures. Equal ones share what is condensed.
     """
 
     def __init__(self, stack: Stack) -> None:
@@ -138,10 +179,19 @@ class _Cut:
         self._joints = [
             one for one in joints if order * (one.last - one.first) + 1 > sum(self._left_out(one))
         ]
-        self._outlines: dict[tuple[int, int, float], Condensed] = {}
-        self._kept: dict[tuple[object, ...], Condensed] = {}
-        traces = self._traces()
-        self.parts = [self._part(number, own) for number, own in enumerate(traces)]
+        self._meshes: dict[tuple[int, int, float], Rectangle] = {}
+        self._condensed: dict[tuple[object, ...], Condensed] = {}
+        # Rows are numbered part by part and trace by trace, by the name of a side or the joint.
+        self._traces = list(self._all_traces())
+        self.parts = [self._part(number) for number in range(len(self._pieces))]
+        self._rows: list[dict[Hashable, Indices]] = []
+        n_rows = 0
+        for part, traces in zip(self.parts, self._traces, strict=True):
+            self._rows.append({})
+            for name, trace in traces.items():
+                dofs = trace.dofs(part.condensed.rectangle)
+                self._rows[-1][name] = n_rows + np.arange(dofs.size).reshape(dofs.shape)
+                n_rows += dofs.size
 
     def _outer(self, number: int) -> Iterator[str]:
         """Sides of a substructure on which nothing is but what is given for such a side."""
@@ -194,13 +244,13 @@ class _Cut:
         last = joint.last == self.stack.grid[0] and sides["right"].y.prescribed
         return int(first), int(last)
 
-    def _traces(self) -> Iterator[dict[Hashable, Trace]]:
+    def _all_traces(self) -> Iterator[dict[Hashable, _Trace]]:
         """Rows of every substructure: all at an interface, or those of prescribed components.
 
         A support of known bound has the component along it.
         """
         stack, order = self.stack, self.stack.order
-        traces: list[list[tuple[Hashable, Trace]]] = [[] for _ in self._pieces]
+        traces: list[list[tuple[Hashable, _Trace]]] = [[] for _ in self._pieces]
         for joint in self._joints:
             is_known = joint.below is None and stack.support and stack.support.bound is not None
             before, after = self._left_out(joint)
@@ -210,7 +260,7 @@ class _Cut:
                 first, last = order * (joint.first - start) + before, order * (joint.last - start)
                 end = None if last - after == order * size else last - after + 1
                 held = (0,) if is_known else (0, 1)
-                trace = Trace(side, held, first, end, has_macro=self._has_macro(joint))
+                trace = _Trace(side, held, first, end, has_macro=self._has_macro(joint))
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             is_lowest = self._pieces[number][2:] == (0, 0)
@@ -218,34 +268,48 @@ class _Cut:
                 given = enumerate(stack.sides[side])
                 components = tuple(component for component, one in given if one.prescribed)
                 if components:
-                    named.append((side, Trace(side, components)))
+                    named.append((side, _Trace(side, components)))
                 elif side == "right" and stack.spring is not None and is_lowest:
-                    named.append(("spring", Trace(side, (0, 1), 0, 1)))
+                    named.append(("spring", _Trace(side, (0, 1), 0, 1)))
             yield dict(sorted(named, key=lambda each: SIDES.index(each[1].side)))
 
-    def _part(self, number: int, traces: dict[Hashable, Trace]) -> Part:
-        stack, (own, *_, body) = self.stack, self._pieces[number]
+    def _part(self, number: int) -> Part:
+        stack, (own, *_, body), traces = self.stack, self._pieces[number], self._traces[number]
         shape = own.columns, own.rows, stack.modulus(body)
-        if shape not in self._outlines:
+        if shape not in self._meshes:
             elastic = elastic_matrix(shape[2], stack.poisson, stack.state)
-            self._outlines[shape] = Condensed(
-                Rectangle(*shape[:2], *self._element, elastic, stack.order)
-            )
-        kind = shape, *traces.values()
-        if kind not in self._kept:
-            outline = self._outlines[shape]
-            edges = [trace.dofs(outline.rectangle).ravel() for trace in traces.values()]
-            self._kept[kind] = outline.keep(np.unique(np.concatenate(edges)))
+            self._meshes[shape] = Rectangle(*shape[:2], *self._element, elastic, stack.order)
+        mesh, kind = self._meshes[shape], (shape, *traces.values())
+        if kind not in self._condensed:
+            kept = np.concatenate([trace.dofs(mesh).ravel() for trace in traces.values()])
+            self._condensed[kind] = Condensed(mesh, np.unique(kept))
         brick = stack.rectangles[body]
         along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(stack.order)
-        return Part(
-            condensed=self._kept[kind],
-            nodes=self._nodes[body][up, along],
-            body=body,
-            traces=traces,
-            modulus=shape[2],
-            force=self._force(number, self._outlines[shape].rectangle),
-        )
+        nodes = self._nodes[body][up, along]
+        return Part(self._condensed[kind], nodes, body, self._force(number, mesh))
+
+    def substructures(self, skeleton: Indices) -> Iterator[Substructure]:
+        """All substructures, of the degrees of freedom of all nodes that any of them keeps."""
+        shared: dict[tuple[object, ...], Elasticity] = {}
+        for part, named, rows in zip(self.parts, self._traces, self._rows, strict=True):
+            condensed, traces = part.condensed, named.values()
+            mesh = condensed.rectangle
+            # Members of a group have body forces on all or on none, and see the same macro forces.
+            key = id(condensed), part.force is not None
+            if key not in shared:
+                size = np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
+                density = self.stack.modulus(part.body) / size
+                trace = [np.searchsorted(condensed.dofs, one.dofs(mesh).ravel()) for one in traces]
+                k = [density * np.repeat(one.weights(mesh), len(one.components)) for one in traces]
+                shared[key] = Elasticity(
+                    condensed.stiffness, np.concatenate(trace), np.concatenate(k)
+                )
+            yield Substructure(
+                elasticity=shared[key],
+                dofs=np.searchsorted(skeleton, part.dofs),
+                rows=np.concatenate([own.ravel() for own in rows.values()]),
+                body_force=None if part.force is None else condensed.condense(part.force),
+            )
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
@@ -293,12 +357,10 @@ class _Cut:
             yield "spring", self._spring(stack.spring)
         cuts = [one for one in self._joints if self._is_cut(one)]
         for joint in sorted(cuts, key=lambda one: (one.sides[1][0], not one.is_upright)):
-            below, side = joint.sides[1]
-            part, other = self.parts[below], self.parts[joint.above].rows[joint]
-            own = part.rows[joint]
-            basis = side_basis(part.rectangle, side, len(own), stack.macro_degree)
-            macro = np.asarray(np.kron(basis, np.eye(2)))
-            yield self._name(joint), Perfect(own.ravel(), other.ravel(), macro)
+            rows, basis = self._lined_up(1, [joint])
+            above = self._rows[joint.above][joint]
+            macro = np.asarray(np.kron(basis.toarray(), np.eye(2)))
+            yield self._name(joint), Perfect(rows.ravel(), above.ravel(), macro)
         for side, given in stack.sides.items():
             if any(one.prescribed for one in given):
                 yield from self._prescribed(side, given)
@@ -306,15 +368,15 @@ class _Cut:
     def _contact(self, joints: Sequence[Joint]) -> Contact:
         """Law of a body on what is below or to the left of it."""
         stack, is_upright = self.stack, joints[0].is_upright
-        upper = [(self.parts[one.above], one) for one in joints]
-        rows, macro = lined_up(upper, stack.macro_degree)
-        under = [(self.parts[one.below], one) for one in joints if one.below is not None]
-        lower = np.concatenate([part.rows[one] for part, one in under]) if under else None
+        (rows, macro), lower = self._lined_up(0, joints), None
+        if joints[0].below is not None:
+            lower, _ = self._lined_up(1, joints)
         node, weights = map(np.concatenate, zip(*map(self._points, joints), strict=True))
         touching, points = np.unique(node, return_inverse=True)
         body, axis = self._pieces[joints[0].above].body, 1 if is_upright else 0
         size = (stack.height if is_upright else stack.length) / stack.elements[axis]
-        support = None if under else stack.support
+        under = joints[0].below
+        support = stack.support if under is None else None
         gap = np.zeros(len(node)) if support is None else support.gap[node] / stack.length
         along, *across = (
             Component(rows[:, one], None if lower is None else lower[:, one])
@@ -336,7 +398,7 @@ class _Cut:
         if across:
             softness = law.softness_across(areas, scales)
             normal = Unilateral(component=across[0], gap=gap, softness=softness)
-        below = stack.modulus(under[0][0].body) if under else np.inf
+        below = np.inf if under is None else stack.modulus(self.parts[under].body)
         depth = stack.height * (stack.rectangles[body].rows / stack.elements[1])
         return Contact(
             normal=normal,
@@ -347,6 +409,21 @@ class _Cut:
             around=Bodies(moduli=(stack.modulus(body), below), depth=depth),
             macro=macro if self._has_macro(joints[0]) else None,
         )
+
+    def _lined_up(self, which: int, joints: Sequence[Joint]) -> tuple[Indices, sparse.csr_array]:
+        """Rows of one side of joints in a row, and the macro basis of one component there.
+
+        Shapes (n_points, n_components) and (n_points, n_macro); the side above is 0, below is 1.
+        """
+        rows, bases = [], []
+        for joint in joints:
+            number, side = joint.sides[which]
+            rows.append(self._rows[number][joint])
+            mesh, count = self.parts[number].condensed.rectangle, len(rows[-1])
+            bases.append(side_basis(mesh, side, count, self.stack.macro_degree))
+        # Most joints of a wall have one part, and SciPy takes long for one block.
+        whole = bases[0] if len(bases) == 1 else block_diag(*bases)
+        return np.concatenate(rows), sparse.csr_array(whole)
 
     def _points(self, joint: Joint) -> tuple[Indices, Array]:
         """Numbers of the pairs of a joint on the grid of all nodes, and the length of each."""
@@ -362,8 +439,8 @@ class _Cut:
     def _spring(self, spring: Spring) -> Contact:
         """Law of a spring: it pushes to the right, as if from the left."""
         stack = self.stack
-        (part,) = (one for one in self.parts if "spring" in one.traces)
-        rows = part.rows["spring"]
+        (number,) = (number for number, rows in enumerate(self._rows) if "spring" in rows)
+        rows, mesh = self._rows[number]["spring"], self.parts[number].condensed.rectangle
         return Contact(
             normal=Unilateral(
                 component=Component(rows[:, 0]),
@@ -373,22 +450,22 @@ class _Cut:
             tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
             points=np.zeros(1, dtype=np.intp),
             positions=np.array([stack.length]),
-            weights=stack.length * part.traces["spring"].weights(part.rectangle),
+            weights=stack.length * self._traces[number]["spring"].weights(mesh),
             around=PointOfBody(stack.modulus(0)),
         )
 
     def _prescribed(self, side: str, given: Side) -> Iterator[tuple[str, Dirichlet]]:
         rows, values = [], []
-        for number, part in enumerate(self.parts):
-            if side not in part.traces:
+        for number, traces in enumerate(self._traces):
+            if side not in traces:
                 continue
-            for column, component in enumerate(part.traces[side].components):
+            for column, component in enumerate(traces[side].components):
                 one = given[component]
                 along = self._along(self._pieces[number], side, one)
                 moved = one.mean + along * one.slope
                 if side in ("left", "right"):
                     self._settle_corners(number, side, component, moved)
-                rows.append(part.rows[side][:, column])
+                rows.append(self._rows[number][side][:, column])
                 values.append(moved / self.stack.length)
         if rows:
             yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
