@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods, resampled
 from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError, check_range
 
@@ -309,36 +309,28 @@ class Rods:
     def _acts(self) -> Iterator[Act]:
         right, pulled = OUTWARD["right"], self.wires if self.wires <= SEVERAL else 1
         heights = (np.arange(pulled) + 0.5) / pulled
-        for side, x, end in (("right", 1.0, self.right), ("left", 0.0, self.left)):
-            places = np.stack([np.full(pulled, x), heights], axis=1)
+        for side, end in (("right", self.right), ("left", self.left)):
             if end.displacement is not None:
-                where = places[:1] if side == "left" else places
-                yield Act(f"{side} x", "u", where, right, OUTWARD[side], end.displacement, "m")
+                places = on_side(side, heights[:1] if side == "left" else heights)
+                yield Act(f"{side} x", "u", places, right, end.displacement, "m")
             elif end.force is not None:
-                yield Act(f"{side} x", "F", places, right, OUTWARD[side], end.force, "N")
+                yield Act(f"{side} x", "F", on_side(side, heights), right, end.force, "N")
+        shown = np.rint(SHOWN * self.elements).astype(np.intp)
         if self.body_force is not None:
             is_uniform = self.body_force.ndim == 1
-            along = np.array([0.5]) if is_uniform else SHOWN
-            values = self.body_force if is_uniform else self._shown(self.body_force)
-            places = np.stack([along, np.full(len(along), 0.5)], axis=1)
-            yield Act("body", "b", places, right, right, values, "N/m")
+            values = self.body_force if is_uniform else self.body_force[shown]
+            places = on_side("body", [0.5] if is_uniform else SHOWN)
+            yield Act("body", "b", places, right, values, "N/m")
         if self.strain is not None:
             values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
-            yield Act("body strain", "ε₀", np.zeros((0, 2)), right, right, values, "")
+            yield Act("body strain", "ε₀", on_side("body", []), right, values, "")
         if self.settlement is not None:
-            places = np.stack([SHOWN, np.zeros_like(SHOWN)], axis=1)
-            values = self._shown(self.settlement)
-            yield Act("bottom x", "s", places, right, OUTWARD["bottom"], values, "m")
-        most = self.bounds.max(axis=1)
-        rubs = SHOWN[np.interp(SHOWN, self.nodes / self.length, most) > 0.0]
+            places = on_side("bottom", SHOWN)
+            yield Act("bottom x", "s", places, right, self.settlement[shown], "m")
+        rubs = SHOWN[np.interp(SHOWN, self.nodes / self.length, self.bounds.max(axis=1)) > 0.0]
         if self.pressure is not None and len(rubs):
-            places = np.stack([rubs, np.ones_like(rubs)], axis=1)
-            ways = OUTWARD["bottom"], OUTWARD["top"]
-            yield Act("top y", "p", places, *ways, self.pressure, "N/m")
-
-    def _shown(self, values: Array) -> Array:
-        """Values at the nodes nearest to where arrows are drawn."""
-        return np.asarray(values[np.rint(SHOWN * self.elements).astype(np.intp)])
+            places = on_side("top", rubs)
+            yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")
 
     def _holds(self) -> Iterator[Hold]:
         for side, end in (("left", self.left), ("right", self.right)):

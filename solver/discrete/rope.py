@@ -21,7 +21,7 @@ from solver.discrete.helical_wire import RopeWire
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rods import End, Rods
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
@@ -171,10 +171,10 @@ class Rope:
 
     def described(self) -> Description:
         """The strand in words, for whoever draws it."""
-        end, right = np.array([[1.0, 0.5]]), OUTWARD["right"]
+        end = on_side("right", [0.5])
         acts = (
-            Act("right y", "κ", end, OUTWARD["top"], right, self.curvature, "1/m"),
-            Act("right x", "T", end, right, right, self.tension, "N"),
+            Act("right y", "κ", end, OUTWARD["top"], self.curvature, "1/m"),
+            Act("right x", "T", end, OUTWARD["right"], self.tension, "N"),
         )
         # Beside a clamp wires move, unlike a bar, as far as anywhere.
         clamp = Hold("clamp", "left", moved=np.zeros(len(self.instants)))

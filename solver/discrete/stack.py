@@ -14,7 +14,7 @@ from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import discretise_stack
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, ends_of
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
 
 SIDES = "left", "right", "top", "bottom"
@@ -263,18 +263,18 @@ class Stack:
                 continue
             for component, given in enumerate(side):
                 act = _given(given, name, component)
-                yield replace(act, places=self._open(act)) if self.is_pile else act
+                yield replace(act, places=self._open(name, act.places))
         size = np.hypot(*self.weight)
         towards = self.weight / np.where(size > 0.0, size, 1.0)
-        yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), size, "N")
+        yield Act("body", "W", on_side("body", [0.5]), towards, size, "N")
 
-    def _open(self, act: Act) -> Array:
-        """Places of what acts on a side, where bodies of other lengths lie open to it."""
-        places, side = act.places.copy(), act.where.partition(" ")[0]
-        bodies = len(self.rectangles)
+    def _open(self, side: str, places: Array) -> Array:
+        """Places on a side of all bodies, brought to those bodies that are there."""
+        x, y, columns, rows = np.array(self.rectangles).T
+        places, (along, up) = places.copy(), self.grid
         for place in places:
-            there = np.flatnonzero(self.reach >= place[0])
-            low, high = there[0] / bodies, (there[-1] + 1) / bodies
+            is_there = (x <= place[0] * along) & (place[0] * along <= x + columns)
+            low, high = y[is_there].min() / up, (y + rows)[is_there].max() / up
             ends = {"top": (high, high), "bottom": (low, low)}.get(side, (low, high))
             place[1] = ends[0] + place[1] * (ends[1] - ends[0])
         return places
@@ -294,20 +294,17 @@ class Stack:
 
 def _given(given: Given, side: str, component: int) -> Act:
     """What is given along a side: evenly in the middle, unevenly at both ends."""
-    towards, away = ((1.0, 0.0), (0.0, 1.0))[component], OUTWARD[side]
-    first, last = ends_of(side)
+    towards, along = ((1.0, 0.0), (0.0, 1.0))[component], "xy"[component]
     unit = "m" if given.prescribed else "Pa"
-    is_normal = away[component] != 0.0
-    along = "xy"[component]
+    is_normal = OUTWARD[side][component] != 0.0
     symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
-    where = f"{side} {along}"
+    shares, values = [0.7 if is_normal else 0.15], given.mean
     if np.any(given.slope):
+        shares = [0.0, 1.0]
         values = np.stack([given.mean - given.slope, given.mean + given.slope])
-        return Act(where, symbol, np.stack([first, last]), towards, away, values, unit)
-    several = is_normal and not given.prescribed
-    share = np.array([0.15, 0.5, 0.85] if several else [0.7 if is_normal else 0.15])
-    places = first + share[:, None] * (last - first)
-    return Act(where, symbol, places, towards, away, given.mean, unit)
+    elif is_normal and not given.prescribed:
+        shares = [0.15, 0.5, 0.85]
+    return Act(f"{side} {along}", symbol, on_side(side, shares), towards, values, unit)
 
 
 def _spring_over_angle(tilt: Array) -> Loop:
