@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Literal, Self
 
@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods, resampled
 from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError, check_range
 
@@ -234,30 +234,26 @@ class Rods:
 
         Where no end is: what a right end does, or the force that holds it, over what drives.
         """
-        side = self.driven_end or "right"
-        end, moved = self._end(side), self._moved(problem, side)
-        force = self.end_force(problem, side)
-        drive = self._drive
+        side, drive = self.driven_end or "right", self._drive
+        moved, force = self._moved(problem, side), self.end_force(problem, side).of
         if self.driven_end is None and drive is not None:
             title, unit, values = drive
-            across = (title, unit)
-            if end.displacement is not None:
-                return Loop(across, ("Force", "N"), constant(values), force)
-            follow = lambda fields: moved(fields.displacement)  # noqa: E731
-            return Loop(across, ("End displacement", "m"), constant(values), follow)
-        of, up = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
-        return Loop((f"{of} displacement", "m"), (up, "N"), moved, force)
+            up = "Force", "N"
+            if self._end(side).displacement is None:
+                up, force = ("End displacement", "m"), moved.of
+            return Loop((title, unit), up, constant(values), force)
+        of, what = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
+        return Loop((f"{of} displacement", "m"), (what, "N"), moved, force)
 
-    def end_force(self, problem: Problem, side: Side) -> Array | Callable[[LoopFields], Array]:
-        """Mean axial force at the ends of a side, N, positive to the right; or what finds it."""
-        end, rows = self._end(side), problem.interfaces[SIDES[side]].rows
+    def end_force(self, problem: Problem, side: Side) -> Probe:
+        """Mean axial force at the ends of a side, N, positive to the right."""
+        end = self._end(side)
+        if end.displacement is None:
+            return constant(np.zeros(len(self.instants)) if end.force is None else end.force)
         if end.is_prescribed:
-            held = reaction(problem, SIDES[side])
-            return lambda fields: held(fields.displacement) / len(rows)
-        if end.displacement is not None:
-            given, spring, moved = end.displacement, end.spring, self._moved(problem, side)
-            return lambda fields: spring * (given - moved(fields.displacement))
-        return np.zeros(len(self.instants)) if end.force is None else end.force
+            return reaction(problem, SIDES[side]).times(1.0 / self.wires)
+        moved, spring = self._moved(problem, side).times(-end.spring), end.spring
+        return replace(moved, constant=moved.constant + spring * end.displacement)
 
     def _end(self, side: Side) -> End:
         return self.left if side == "left" else self.right

@@ -160,14 +160,9 @@ class Rope:
 
     def loop(self, problem: Problem) -> Loop:
         """Moment over the curvature, which drives it."""
-        moment = self.moment()
-        across = "Curvature at the clamp" if self.is_clamped else "Curvature"
-        return Loop(
-            (across, "1/m"),
-            ("Moment", "N·m"),
-            constant(self.curvature),
-            lambda fields: moment(fields.displacement),
-        )
+        title = "Curvature at the clamp" if self.is_clamped else "Curvature"
+        across, moment = constant(self.curvature), self.moment().of
+        return Loop((title, "1/m"), ("Moment", "N·m"), across, moment)
 
     def described(self) -> Description:
         """The strand in words, for whoever draws it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -231,18 +231,42 @@ class Stack:
     def loop(self, problem: Problem) -> Loop:
         """Spring force on a slope, shear force on a support, or what bends the end."""
         if self.tilt is not None and self.spring is not None:
-            return _spring_over_angle(self.tilt)
-        if self.support is not None and len(self.rectangles) > 1:
-            return _driven_top(self, problem)
-        if self.support is not None:
-            return _shear(self, problem)
-        bent = self.sides["right"].y
-        if bent.prescribed or np.any(bent.mean):
-            titles = "Deflection of the end", "Transverse force"
-            given = None if bent.prescribed else self.end_force
-            return _over_mean(problem, "right", 1, titles, given)
-        rotation, moment = end_rotation(problem), _moment(self)
-        return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
+            # The spring's force lags behind on the way back.
+            return Loop(
+                ("Angle of the slope", "°"),
+                ("Spring force", "N"),
+                constant(np.degrees(self.tilt)),
+                lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
+            )
+        bent, rests = self.sides["right"].y, self.support is not None
+        if not rests and not bent.prescribed and not np.any(bent.mean):
+            rotation, moment = end_rotation(problem), constant(self._moment()).of
+            return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
+        side, component, across, up = "right", 1, "Deflection of the end", "Transverse force"
+        if rests:
+            side = "top" if len(self.rectangles) > 1 else self._driven_side()
+            component, across, up = 0, f"Displacement of the {side}", "Shear force"
+        given = self.sides[side][component]
+        if rests and len(self.rectangles) == 1:
+            force = _shear_force
+        elif given.prescribed:
+            force = reaction(problem, side, component).of
+        else:
+            whole = self.size[0] if rests else self.longest * self.height
+            force = constant(np.broadcast_to(given.mean * whole, self.instants.shape)).of
+        return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
+
+    def _driven_side(self) -> str:
+        """Side of a body on a support that is driven."""
+        sides = ((name, self.sides[name]) for name in DRIVEN)
+        moved = (name for name, side in sides if not all(given.is_zero for given in side))
+        return next(moved, DRIVEN[0])
+
+    def _moment(self) -> Array:
+        """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
+        given, size = self.sides["right"].x, self.longest * self.height**2
+        bodies = 1 if given.each_body else len(self.rectangles)
+        return np.broadcast_to(-bodies * size / 6.0 * given.slope, self.instants.shape)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""
@@ -307,58 +331,6 @@ def _given(given: Given, side: str, component: int) -> Act:
     return Act(f"{side} {along}", symbol, on_side(side, shares), towards, values, unit)
 
 
-def _spring_over_angle(tilt: Array) -> Loop:
-    """Spring's force over the angle: it lags behind on the way back."""
-    return Loop(
-        ("Angle of the slope", "°"),
-        ("Spring force", "N"),
-        constant(np.degrees(tilt)),
-        lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
-    )
-
-
-def _shear(stack: Stack, problem: Problem) -> Loop:
-    """Shear force on the support over the horizontal displacement of the driven side."""
-    driven = (name for name in DRIVEN if not all(given.is_zero for given in stack.sides[name]))
-    side = next(driven, DRIVEN[0])
-    return Loop(
-        (f"Displacement of the {side}", "m"),
-        ("Shear force", "N"),
-        side_mean(problem, side, 0),
-        _shear_force,
-    )
-
-
-def _driven_top(stack: Stack, problem: Problem) -> Loop:
-    """Shear force that moves the top over the displacement of the top; given, or what holds it."""
-    given, force = stack.sides["top"].x, None
-    if not given.prescribed:
-        force = np.broadcast_to(given.mean * stack.size[0], stack.instants.shape)
-    return _over_mean(problem, "top", 0, ("Displacement of the top", "Shear force"), force)
-
-
 def _shear_force(fields: LoopFields) -> Array:
     force = -fields.contact("support").tangential_force
     return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
-
-
-def _over_mean(
-    problem: Problem, side: str, component: int, titles: tuple[str, str], given: Array | None
-) -> Loop:
-    """Force on a side over its mean displacement; the force is given, or that which holds it."""
-    force: Array | Callable[[LoopFields], Array]
-    if given is None:
-        held = reaction(problem, side)
-        force = lambda fields: held(fields.displacement)  # noqa: E731
-    else:
-        force = given
-    across, up = titles
-    return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
-
-
-def _moment(stack: Stack) -> Array:
-    """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
-    given = stack.sides["right"].x
-    several = stack.longest * stack.height**2
-    size = several if given.each_body else len(stack.rectangles) * several
-    return np.broadcast_to(-size / 6.0 * given.slope, stack.instants.shape)

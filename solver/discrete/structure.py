@@ -155,13 +155,13 @@ class Loop:
     displacement
         Of m, or 1 for a rotation; or what drives.
     force
-        Over time, N, shape (n_instants,), where it is given; else what finds it.
+        What finds it, N, shape (n_instants,).
     """
 
     across: tuple[str, str]
     up: tuple[str, str]
     displacement: Probe
-    force: Array | Callable[[LoopFields], Array]
+    force: Callable[[LoopFields], Array]
 
 
 class Structure(Protocol):

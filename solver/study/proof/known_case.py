@@ -58,8 +58,7 @@ class Answer:
     @property
     def loop_force(self) -> Array:
         """Force of that loop, shape (n_instants,)."""
-        force = loop_of(self.settings, self.problem).force
-        return force(self.fields) if callable(force) else force
+        return loop_of(self.settings, self.problem).force(self.fields)
 
 
 Number = tuple[str, str, float, float]
