@@ -17,7 +17,7 @@ from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, looks, mask_of
 from solver.definitions import CurveParameter, Parameter, about
-from solver.scenes import CATALOGUE, chief_of, ends_of
+from solver.scenes import CATALOGUE
 
 WIDTH = 286
 STEPS = 80
@@ -28,15 +28,6 @@ GROUPS = (
     *("Decomposition", "Method", "Stop"),
 )
 """Order of the groups: what the scene is, then how it is solved."""
-FIELD = {
-    "& .MuiInputBase-input": {"fontWeight": 600, "paddingBottom": "3px"},
-    "& .MuiInput-root::before": {"display": "none"},
-}
-ON_UNDERLINE = {
-    "& .MuiSlider-root": {"padding": "8px 0 !important"},
-    "& .MuiFormLabel-root": {"display": "none"},
-}
-"""A slider stands in place of the line under its field, whose label is its name too."""
 
 
 class SettingControl:
@@ -87,7 +78,7 @@ class SettingControl:
         if isinstance(definition, param.Selector):
             field = pmui.Select(options=list(definition.objects), variant="standard", **more)
             return field, field
-        more |= {"margin": 0, "variant": "standard", "sx": FIELD}
+        more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
         self.slider = self._make_slider()
@@ -108,7 +99,7 @@ class SettingControl:
             width=WIDTH,
             height=20,
             margin=(-10, 0, 0, 0),
-            sx=ON_UNDERLINE,
+            **looks("under-number"),
         )
         slider.param.watch(lambda event: self._drag(event.new), "value")
         slider.param.watch(lambda event: self._release(event.new), "value_throttled")
@@ -144,7 +135,7 @@ class SettingControl:
 
     def _show_on_slider(self, value: float) -> None:
         low, high = self._definition.softbounds
-        most = ends_of(self._state.settings).get(self.name, high)
+        most = self._state.settings.ends.get(self.name, high)
         self.slider.end = self._to_slider(max(min(most, high), low + 1) if most < high else high)
         place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
         if (self.slider.value, self.slider.value_throttled) == (place, place):
@@ -222,8 +213,8 @@ class Controls:
         self._state, self._copy = state, copy
         self._controls: list[SettingControl] = []
         pictures = {
-            f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(entry.emblem)
-            for number, entry in enumerate(CATALOGUE.values(), start=1)
+            f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(kind.icon)
+            for number, kind in enumerate(CATALOGUE.values(), start=1)
         }
         self._scene = pmui.RadioButtonGroup(
             options={name.capitalize(): name for name in CATALOGUE},
@@ -262,7 +253,7 @@ class Controls:
     def _build(self) -> None:
         settings = self._state.settings
         self._built = self._scene.value = settings.scene
-        self._scene.label = CATALOGUE[settings.scene].title
+        self._scene.label = settings.title
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
@@ -289,7 +280,7 @@ class Controls:
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     """The chief settings of a scene, and all others by group; without those of a single value."""
     definitions = kind.definitions()
-    chief = [name for name in chief_of(kind) if name in definitions]
+    chief = [name for name in kind.CHIEF if name in definitions]
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}
     for name, definition in definitions.items():
         if name not in chief and len(getattr(definition, "objects", "any")) > 1:

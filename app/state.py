@@ -91,7 +91,7 @@ class History:
 
 def default_settings(scene: str) -> Settings:
     """Settings with which a page begins a scene."""
-    return CATALOGUE[scene].settings.checked(SEARCH)
+    return CATALOGUE[scene].checked(SEARCH)
 
 
 class PageState(param.Parameterized):
@@ -116,6 +116,7 @@ class PageState(param.Parameterized):
     tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
     question = param.String(doc="What the tab What if asks, as `Question` writes it.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
+    height = param.Integer(default=720, doc="Of the browser's window, pixels.")
     plots = param.String(doc="Names of the views on top of their cards, between commas.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(

@@ -43,8 +43,8 @@ class Transport:
         self._pin = _button("push_pin", PIN, state.pin)
         self.view = wrapped(
             self._run,
+            _button("skip_previous", "From the start (r)", state.reset),
             _button("skip_next", "One iteration (s)", state.step),
-            _button("replay", "From the start (r)", state.reset),
             self._pin,
             *self._choices(),
         )
@@ -77,6 +77,7 @@ class Transport:
             size="small",
             width=110,
             margin=(0, 8),
+            **looks("small-label"),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
         return [self._way, pace, self._iteration]

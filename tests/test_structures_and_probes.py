@@ -15,7 +15,7 @@ from solver.discrete.elements import von_mises
 from solver.discrete.probes import reaction, side_mean
 from solver.latin import Iterate, iterations
 from solver.reference.solution import fingerprint
-from solver.scenes import CATALOGUE, discretise, loop_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 
@@ -26,7 +26,7 @@ LAYERS = {**SMALL, "elements_up": 2, "layers": 3}
 
 
 def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Settings, Iterate]:
-    settings = CATALOGUE[scene].settings.checked(values)
+    settings = CATALOGUE[scene].checked(values)
     run = iterations(discretise(settings), method_of(settings))
     return settings, next(islice(run, number - 1, None))
 
@@ -72,7 +72,7 @@ def test_reaction_is_the_force_that_holds_the_prescribed_end() -> None:
 
 def test_shear_force_on_the_support_is_the_traction_on_the_top() -> None:
     settings, iterate = iterate_of("block", {**SMALL, **PULLED}, 200)
-    loop = loop_of(settings, iterate.problem)
+    loop = settings.structure().loop(iterate.problem)
     expected = settings.path("top_tangential_load") * settings.values()["length"]
     assert loop.force(iterate) == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -24,9 +23,9 @@ from solver.loads import INJECTIONS, instants_of, interpolate
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
+from solver.settings import Features, Icon
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -106,10 +105,23 @@ class FaultSettings(PlaneSettings):
     """Settings of the fault; by default the fluid's pressure stays, and the front runs on."""
 
     scene = "fault"
-    LOADS: ClassVar = ("overpressure", "shear_stress")
-    PROFILES: ClassVar = PROFILES
-    PATH = "injection_load"
-    SHAPES: ClassVar = INJECTIONS
+    title = "Fault driven by a fluid"
+    source = "R. C. Viesca, J. Fluid Mech. 928, A29, 2021"
+    icon = Icon(
+        ground="M4 25H44M30 29H18M21 27L18 29L21 31",
+        body="M4 8H44V24H4Z",
+        load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
+    )
+    CHIEF = (
+        "injection_load",
+        "seed",
+        "overpressure",
+        "shear_stress",
+        "friction",
+        "substructures",
+        "k_scale",
+    )
+    LOADS = ("overpressure", "shear_stress")
 
     overpressure, injection_load = shared.sized_path(
         "injection_load",
@@ -183,8 +195,8 @@ class FaultSettings(PlaneSettings):
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
         if self.instants == 1:  # a fluid needs all of the time before
-            start = instants_of(self.duration, 2, self._knots(self.injection_load), times)
-        fluid = spread(place, start, self._along("injection_load", start), self.diffusivity)
+            start = instants_of(self.duration, 2, self.knots("injection_load"), times)
+        fluid = spread(place, start, self.path_at("injection_load", start), self.diffusivity)
         return fluid if start is times else fluid[:, np.searchsorted(start, times)]
 
     def strength_along(self, place: Array) -> Array:
@@ -229,7 +241,7 @@ class FaultSettings(PlaneSettings):
 
     def _check_work(self) -> None:
         """Refuse a fluid whose pressure would take minutes to spread."""
-        bends = len(self._knots(self.injection_load))
+        bends = len(self.knots("injection_load"))
         if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
             raise SettingError(
                 "injection_load",
@@ -269,7 +281,7 @@ class FaultSettings(PlaneSettings):
             "a quarter is seen."
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Front of slip and the friction, as long as slip spreads in an infinite body.
 
         It does where strength falls with time, everywhere, and grows away from the well.
@@ -296,17 +308,3 @@ class FaultSettings(PlaneSettings):
             friction[ahead, instant] += added
             friction[~ahead, instant] = strength[~ahead, instant]
         yield ExactCurve("friction", nodes, -friction)
-
-
-FAULT = Entry(
-    title="Fault driven by a fluid",
-    source="R. C. Viesca, J. Fluid Mech. 928, A29, 2021",
-    emblem=Emblem(
-        ground="M4 25H44M30 29H18M21 27L18 29L21 31",
-        body="M4 8H44V24H4Z",
-        load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
-    ),
-    settings=FaultSettings,
-    kind="plane",
-    grows=shared.PLANE_GROWS,
-)

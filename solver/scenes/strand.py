@@ -17,22 +17,30 @@ from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_strand
 from solver.scenes.words import acting, counted, is_steel
+from solver.settings import Features, Icon, Settings
 
 
-class StrandSettings(SceneSettings):
+class StrandSettings(Settings):
     """Settings of the strand; by default the wire in the middle is broken, and pulled to and fro.
 
     The broken wire then regains its force over 0.2 m on either side of the break.
     """
 
     scene = "strand"
-    LOADS: ClassVar = ("peak",)
+    title = "Parallel wires, one broken"
+    source = "closed form: force regained over T / (mu p)"
+    icon = Icon(
+        ground="M5 3V29",
+        body="M5 6H37V11H5ZM5 14H18V19H5ZM23 14H37V19H23ZM5 22H37V27H5Z",
+        load="M38 16H47M43 12L47 16L43 20",
+    )
+    kind = "wires"
+    CHIEF = ("load", "seed", "peak", "friction", "substructures", "k_scale")
+    GROWS = ("wires",)
+    LOADS = ("peak",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
-    SHAPES: ClassVar = PULLS
 
     peak, load = shared.sized_path(
         "load",
@@ -93,7 +101,7 @@ class StrandSettings(SceneSettings):
         title="Elements per wire",
     )
     substructures = redefined(
-        SceneSettings.param["substructures"],
+        Settings.param["substructures"],
         6,
         doc="Number of pieces (substructures) that a wire is cut into, at least two where one is "
         "broken: all wires are cut at the break, and alike.",
@@ -183,7 +191,7 @@ class StrandSettings(SceneSettings):
                 return
             yield coarse.structure()
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, where they are known."""
         return exact_strand(self.structure())
 
@@ -230,17 +238,3 @@ class StrandSettings(SceneSettings):
                 "pull less, raise friction or pressure, move the break to the left, or take the "
                 "grip of given displacement",
             )
-
-
-STRAND = Entry(
-    title="Parallel wires, one broken",
-    source="closed form: force regained over T / (mu p)",
-    emblem=Emblem(
-        ground="M5 3V29",
-        body="M5 6H37V11H5ZM5 14H18V19H5ZM23 14H37V19H23ZM5 22H37V27H5Z",
-        load="M38 16H47M43 12L47 16L43 20",
-    ),
-    settings=StrandSettings,
-    kind="wires",
-    grows=("wires",),
-)
