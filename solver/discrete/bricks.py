@@ -134,19 +134,17 @@ def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indic
 
 def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
     """All joints of rectangles that do not overlap: with the support, beds, and upright ones."""
-    x, y, columns, rows = np.array(bricks).T
+    lying = np.array(bricks).T
+    upright = lying[[1, 0, 3, 2]]
     joints = []
     for above, brick in enumerate(bricks):
         if brick.y == 0:
             joints.append(Joint(above, None, brick.x, brick.x + brick.columns))
-        for below in np.flatnonzero(y + rows == brick.y):
-            first = max(brick.x, int(x[below]))
-            last = min(brick.x + brick.columns, int(x[below] + columns[below]))
-            if last > first:
-                joints.append(Joint(above, int(below), first, last))
-        for left in np.flatnonzero(x + columns == brick.x):
-            first = max(brick.y, int(y[left]))
-            last = min(brick.y + brick.rows, int(y[left] + rows[left]))
-            if last > first:
-                joints.append(Joint(above, int(left), first, last, is_upright=True))
+        for is_upright, (x, y, columns, rows) in enumerate((lying, upright)):
+            ends = x + columns
+            for below in np.flatnonzero(y + rows == y[above]).tolist():
+                first = int(max(x[above], x[below]))
+                last = int(min(ends[above], ends[below]))
+                if last > first:
+                    joints.append(Joint(above, below, first, last, bool(is_upright)))
     return joints

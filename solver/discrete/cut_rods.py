@@ -17,8 +17,6 @@ from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfe
 if TYPE_CHECKING:
     from solver.discrete.rods import End, Rods
 
-COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 MACRO_DEGREE = 1
 """Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
 them both sides balance each other but slowly: 1 % of the friction force then takes more than 200
@@ -70,14 +68,6 @@ def substructure_sizes(elements: int, substructures: int) -> list[int]:
     """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
     size, extra = divmod(elements, substructures)
     return [size + 1] * extra + [size] * (substructures - extra)
-
-
-def resampled(values: Array, elements: int) -> Array:
-    """Values at the nodes of equal elements, linear between the nodes of others along one rod."""
-    places = np.linspace(0.0, len(values) - 1.0, elements + 1)
-    left = np.minimum(places.astype(np.intp), len(values) - 2)
-    share = (places - left).reshape(-1, *[1] * (values.ndim - 1))
-    return np.asarray(values[left] + share * (values[left + 1] - values[left]))
 
 
 class CutRods:

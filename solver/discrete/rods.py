@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods, resampled
+from solver.discrete.cut_rods import SIDES, discretise_rods
 from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
@@ -202,29 +202,6 @@ class Rods:
         """Neighbours of the broken rod."""
         return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
 
-    def coarser(self) -> Iterator[Self]:
-        """Yield the same uncut rods on ever fewer elements, as long as a front is seen.
-
-        They must be whole: a break stands at a node.
-        """
-        rods = self
-        while (elements := rods.elements // 2) >= COARSEST:
-            force, strain = rods.body_force, rods.strain
-            settled, section = rods.settlement, rods.section
-            if force is not None and force.ndim == 2:
-                force = resampled(force, elements)
-            rods = replace(
-                rods,
-                elements=elements,
-                substructures=1,
-                bound=resampled(rods.bound, elements),
-                body_force=force,
-                strain=None if strain is None else _means(strain, elements),
-                settlement=None if settled is None else resampled(settled, elements),
-                section=None if section is None else 1.0 / _means(1.0 / section, elements),
-            )
-            yield rods
-
     def discretise(self) -> Problem:
         """Make the discrete problem."""
         return discretise_rods(self)
@@ -341,12 +318,6 @@ class Rods:
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements
                 yield Hold("support", "bottom", (float(first), float(last)))
-
-
-def _means(values: Array, elements: int) -> Array:
-    """Means over equal elements of what others along one rod have, (n_elements, ...)."""
-    sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
-    return np.diff(resampled(sums, elements), axis=0) * (elements / len(values))
 
 
 def neighbours(wire: int, wires: int) -> int:

@@ -8,22 +8,71 @@ Lengths are scaled by the longest wire, forces by E A of the stiffest (solver/RE
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Self
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection
-from solver.discrete.cut_rods import COARSEST, CutRods, assembled, resampled, substructure_sizes
-from solver.discrete.helical_wire import RopeWire
+from solver.discrete.cross_section import CrossSection, WireLayer
+from solver.discrete.cut_rods import CutRods, assembled, substructure_sizes
+from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
+
+
+@dataclass(frozen=True, eq=False)
+class RopeWire:
+    """A wire of a strand, between two of its places that do not slip.
+
+    Attributes
+    ----------
+    layer, number
+        From 0 on, inside out and around.
+    helix
+        Its geometry and stiffness E A.
+    made
+        Of what: the wire's cross-section and Young's modulus.
+    length
+        Of the wire, m.
+    bound
+        Friction bound per length of wire, N/m: a number, or over time, shape (n_instants,).
+    curvature
+        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
+    tension
+        Its force before it is bent, shape (n_instants,), N.
+    stands_for
+        Number of wires that are this one, each at another place along the strand.
+    """
+
+    layer: int
+    number: int
+    helix: HelicalWire
+    made: WireLayer
+    length: float
+    bound: float | Array
+    curvature: Array
+    tension: Array
+    stands_for: int = 1
+
+    @property
+    def name(self) -> str:
+        """What its interface is called: numbers of layer and wire, from 1 on."""
+        return f"wire {self.layer + 1}.{self.number + 1}"
+
+    @property
+    def arc(self) -> Array:
+        """Arc lengths of the nodes, shape (n_nodes,), m."""
+        return np.linspace(0.0, self.length, len(self.curvature))
+
+    @property
+    def along(self) -> Array:
+        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
+        return np.asarray(np.cos(self.helix.lay) * self.arc)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,16 +147,6 @@ class Rope:
     def stiffness(self) -> float:
         """Axial stiffness of the stiffest wire, N."""
         return max(wire.helix.stiffness for wire in self.wires)
-
-    def coarser(self) -> Iterator[Self]:
-        """Yield the same uncut wires on ever fewer elements, as long as a front is seen."""
-        rope = self
-        while (elements := rope.elements // 2) >= COARSEST:
-            wires = [
-                replace(one, curvature=resampled(one.curvature, elements)) for one in rope.wires
-            ]
-            rope = replace(rope, wires=wires, substructures=1)
-            yield rope
 
     def discretise(self) -> Problem:
         """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.

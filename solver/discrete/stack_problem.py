@@ -322,8 +322,7 @@ class _Cut:
             for component, given in enumerate(stack.sides[side]):
                 if given.prescribed or given.is_zero:
                     continue
-                along = self._along(self._pieces[number], side, given)
-                traction = (given.mean + along * given.slope) / stack.young
+                traction = self._values(number, side, given) / stack.young
                 force = step * np.matmul(edge_mass(order), traction[edges])
                 np.add.at(total[:, component], nodes[edges], force)
         if stack.body_force is not None:
@@ -332,18 +331,18 @@ class _Cut:
             total += areas.reshape(-1, 1, 1) * density
         return total.reshape(-1, len(stack.instants)) if total.any() else None
 
-    def _along(self, piece: _Piece, side: str, given: Given) -> Array:
-        """2 s / length - 1 at the nodes of a substructure on an outer side, (n_nodes, 1)."""
-        own, (columns, rows) = piece.rectangle, self.stack.grid
+    def _values(self, number: int, side: str, given: Given) -> Array:
+        """What is given at the nodes of a substructure on an outer side, (n_nodes, n_instants)."""
+        (own, *_, body), (columns, rows) = self._pieces[number], self.stack.grid
         first, count, whole = own.x, own.columns, columns
         if side in ("left", "right"):
             first, count, whole = own.y, own.rows, rows
             if given.each_body:
-                brick = self.stack.rectangles[piece.body]
+                brick = self.stack.rectangles[body]
                 first, whole = own.y - brick.y, brick.rows
         order = self.stack.order
         nodes = np.arange(order * first, order * (first + count) + 1)[:, None]
-        return np.asarray(2.0 * nodes / (order * whole) - 1.0)
+        return np.asarray(given.mean + (2.0 * nodes / (order * whole) - 1.0) * given.slope)
 
     def interfaces(self) -> Iterator[tuple[str, Interface]]:
         """All interfaces by name: contacts, then cuts, then prescribed sides."""
@@ -357,30 +356,25 @@ class _Cut:
             yield "spring", self._spring(stack.spring)
         cuts = [one for one in self._joints if self._is_cut(one)]
         for joint in sorted(cuts, key=lambda one: (one.sides[1][0], not one.is_upright)):
-            rows, basis = self._lined_up(1, [joint])
-            above = self._rows[joint.above][joint]
-            macro = np.asarray(np.kron(basis.toarray(), np.eye(2)))
-            yield self._name(joint), Perfect(rows.ravel(), above.ravel(), macro)
+            above, below = self._rows_of([joint])
+            macro = np.asarray(np.kron(self._basis(joint, 1), np.eye(2)))
+            yield self._name(joint), Perfect(below.ravel(), above.ravel(), macro)
         for side, given in stack.sides.items():
             if any(one.prescribed for one in given):
                 yield from self._prescribed(side, given)
 
     def _contact(self, joints: Sequence[Joint]) -> Contact:
         """Law of a body on what is below or to the left of it."""
-        stack, is_upright = self.stack, joints[0].is_upright
-        (rows, macro), lower = self._lined_up(0, joints), None
-        if joints[0].below is not None:
-            lower, _ = self._lined_up(1, joints)
+        stack, axis, under = self.stack, int(joints[0].is_upright), joints[0].below
         node, weights = map(np.concatenate, zip(*map(self._points, joints), strict=True))
         touching, points = np.unique(node, return_inverse=True)
-        body, axis = self._pieces[joints[0].above].body, 1 if is_upright else 0
-        size = (stack.height if is_upright else stack.length) / stack.elements[axis]
-        under = joints[0].below
+        body, size = self._pieces[joints[0].above].body, (stack.length, stack.height)[axis]
         support = stack.support if under is None else None
         gap = np.zeros(len(node)) if support is None else support.gap[node] / stack.length
+        rows = self._rows_of(joints)
         along, *across = (
-            Component(rows[:, one], None if lower is None else lower[:, one])
-            for one in (axis, 1 - axis)[: rows.shape[1]]
+            Component(*(own[:, one] for own in rows))
+            for one in (axis, 1 - axis)[: rows[0].shape[1]]
         )
         areas = stack.length * weights
         law, scales = stack.friction_law, (stack.length, stack.young * stack.length)
@@ -398,32 +392,38 @@ class _Cut:
         if across:
             softness = law.softness_across(areas, scales)
             normal = Unilateral(component=across[0], gap=gap, softness=softness)
+        macro = None
+        if self._has_macro(joints[0]):
+            bases = [self._basis(joint, 0) for joint in joints]
+            # Most joints of a wall have one part, and SciPy takes long for one block.
+            macro = sparse.csr_array(bases[0] if len(bases) == 1 else block_diag(*bases))
         below = np.inf if under is None else stack.modulus(self.parts[under].body)
         depth = stack.height * (stack.rectangles[body].rows / stack.elements[1])
         return Contact(
             normal=normal,
             tangential=friction,
             points=points,
-            positions=touching * (size / stack.order),
+            positions=touching * (size / stack.elements[axis] / stack.order),
             weights=areas,
             around=Bodies(moduli=(stack.modulus(body), below), depth=depth),
-            macro=macro if self._has_macro(joints[0]) else None,
+            macro=macro,
         )
 
-    def _lined_up(self, which: int, joints: Sequence[Joint]) -> tuple[Indices, sparse.csr_array]:
-        """Rows of one side of joints in a row, and the macro basis of one component there.
+    def _rows_of(self, joints: Sequence[Joint]) -> list[Indices]:
+        """Rows of each side of joints in a row, the one above first, (n_points, n_components)."""
+        sides = zip(*(joint.sides for joint in joints), strict=True)
+        return [
+            np.concatenate(
+                [self._rows[number][one] for (number, _), one in zip(side, joints, strict=True)]
+            )
+            for side in sides
+        ]
 
-        Shapes (n_points, n_components) and (n_points, n_macro); the side above is 0, below is 1.
-        """
-        rows, bases = [], []
-        for joint in joints:
-            number, side = joint.sides[which]
-            rows.append(self._rows[number][joint])
-            mesh, count = self.parts[number].condensed.rectangle, len(rows[-1])
-            bases.append(side_basis(mesh, side, count, self.stack.macro_degree))
-        # Most joints of a wall have one part, and SciPy takes long for one block.
-        whole = bases[0] if len(bases) == 1 else block_diag(*bases)
-        return np.concatenate(rows), sparse.csr_array(whole)
+    def _basis(self, joint: Joint, which: int) -> Array:
+        """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
+        number, side = joint.sides[which]
+        mesh, count = self.parts[number].condensed.rectangle, len(self._rows[number][joint])
+        return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _points(self, joint: Joint) -> tuple[Indices, Array]:
         """Numbers of the pairs of a joint on the grid of all nodes, and the length of each."""
@@ -460,9 +460,7 @@ class _Cut:
             if side not in traces:
                 continue
             for column, component in enumerate(traces[side].components):
-                one = given[component]
-                along = self._along(self._pieces[number], side, one)
-                moved = one.mean + along * one.slope
+                moved = self._values(number, side, given[component])
                 if side in ("left", "right"):
                     self._settle_corners(number, side, component, moved)
                 rows.append(self._rows[number][side][:, column])
