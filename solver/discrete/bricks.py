@@ -53,17 +53,10 @@ class Joint(NamedTuple):
 
 
 def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> list[Brick]:
-    """Bricks of a wall, course by course from below.
+    """Bricks of a wall, course by course from below: of so many in a course, and courses.
 
-    Parameters
-    ----------
-    bond
-        "running": every second course begins and ends with a half. "stack": all joints are one
-        above the other.
-    columns, courses
-        Bricks of a course, and courses.
-    size
-        Elements of a brick along, even in a running bond, and up.
+    In a running bond every second course begins and ends with a half, in a stack bond all joints
+    are one above the other. `size` is elements of a brick along, even in a running bond, and up.
     """
     along, up = size
     bricks = []
@@ -112,14 +105,9 @@ def with_opening(
 
 
 def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indices:
-    """Group of each brick, of a number of groups: the largest is halved where it is longest.
+    """Group of each brick, of `count` groups: the largest is halved where it is longest.
 
-    Parameters
-    ----------
-    bricks, size
-        All of them, and elements of one along and up.
-    count
-        Of the groups; as many as there are bricks at most.
+    There are as many as bricks at most; `size` is elements of one along and up.
     """
     x, y, columns, rows = np.array(bricks).T
     centres = np.stack([(x + 0.5 * columns) / size[0], (y + 0.5 * rows) / size[1]])

@@ -192,18 +192,10 @@ class CrossSection:
         return np.array(below[::-1]), np.array(above[::-1])
 
     def friction_bounds(self, tension: Array, friction: float, factors: Array | None) -> Array:
-        """Friction that the wires of every layer can take, from below and from above.
+        """Friction that the wires of every layer can take, from below and from above, N/m.
 
-        Parameters
-        ----------
-        tension
-            Of the strand, shape (n_instants,), N.
-        friction, factors
-            mu, and that of every layer on what it lies on over it, shape (n_layers,); None is 1.
-
-        Returns
-        -------
-        Shape (n_layers, n_instants), N per metre of wire.
+        Shape (n_layers, n_instants), per metre of wire, under the tension of the strand,
+        (n_instants,), N; `factors` are mu of every layer on what it lies on over `friction`.
         """
         below, above = self.line_pressures(tension)
         if factors is not None:

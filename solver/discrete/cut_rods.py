@@ -28,20 +28,9 @@ SIDES = {"left": "support", "right": "load"}
 """Interfaces of the ends, by their side."""
 
 
-def rod_stiffness(elements: int, element_stiffness: float | Array) -> sparse.csr_array:
-    """Assemble the stiffness of linear elements in a row.
-
-    Parameters
-    ----------
-    elements
-        Their number.
-    element_stiffness
-        ES/h of each of them, or of all alike.
-
-    Returns
-    -------
-    Shape (elements + 1, elements + 1).
-    """
+def rod_stiffness(element_stiffness: Array) -> sparse.csr_array:
+    """Stiffness of linear elements in a row, (n + 1, n + 1), of ES/h of each of them, (n,)."""
+    elements = len(element_stiffness)
     diagonal = np.zeros(elements + 1)
     diagonal[:-1] = element_stiffness
     diagonal[1:] += element_stiffness
@@ -235,7 +224,7 @@ def assembled(
     names: Sequence[str],
     scales: Scales,
 ) -> Problem:
-    """Discrete problem of rods that are cut alike.
+    """Discrete problem of rods that are cut alike, and have ends and instants alike.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
     substructure. On the friction points it is that of a density ES/l_sub^2 over one element's
@@ -244,18 +233,8 @@ def assembled(
     reports (displacement error 0.15 against 0.21 at iteration 10 of its test), with the whole
     element length they meet them.
 
-    Parameters
-    ----------
-    cut
-        How they are cut.
-    rods
-        What each of them is; all have ends and instants alike.
-    places
-        Of the nodes of each, shape (n_nodes,), m.
-    names
-        Of the interfaces on supports, or between two rods.
-    scales
-        As of `Problem`.
+    Each is one of `rods`; `places` are those of its nodes, shape (n_nodes,), m, and `names` are of
+    the interfaces on supports, or between two rods.
     """
     shared: dict[tuple[object, ...], Elasticity] = {}
     first, carried = rods[0], rods[0].settlement
@@ -309,7 +288,7 @@ def _substructure(
         at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
         direction = np.full(len(trace), at_ends)
         direction[: len(trace) - ends] = at_ends * element / part
-        matrix = rod_stiffness(size, stiffness * (rods.elements / length))
+        matrix = rod_stiffness(stiffness * (rods.elements / length))
         for node, end in springs.items():
             matrix[node, node] += end.spring / (scales.force / scales.displacement)
         shared[key] = Elasticity(matrix, trace, direction)

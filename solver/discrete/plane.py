@@ -149,16 +149,8 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
     at the wavenumber q, where d is the depth behind it. Bending waves that are long beside d are so
     soft that no k suits both them and the waves shorter than d: the macro forces are to balance
     them. Those softer than E d / l^2 over the length l, as soft as its stretching, number
-    some 0.7 times the root of l / d.
-
-    Parameters
-    ----------
-    rectangle, side
-        Whose, and which one.
-    n_points
-        Points of the side that have rows.
-    degree
-        Of a side that is not long.
+    some 0.7 times the root of l / d. `n_points` of the side have rows, and `degree` is that of one
+    that is not long.
     """
     ratio = rectangle.columns * rectangle.width / (rectangle.rows * rectangle.height)
     slenderness = ratio if side in ("bottom", "top") else 1.0 / ratio

@@ -212,10 +212,7 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces whose macro forces are in equilibrium, and their load.
 
-        Returns
-        -------
-        P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
-        solver/README.md, 2).
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README, 2).
         """
         entries, rows, columns, loads = [], [], [], []
         n_macro = 0
@@ -254,10 +251,8 @@ class Problem:
 
     @cached_property
     def sum_of_contact(self) -> sparse.csr_array:
-        """Sum over the rows of each point and component of all interfaces with friction.
+        """Sum over the rows of each point and component of interfaces with friction.
 
-        Returns
-        -------
         Shape (n_forces, n_rows). The forces on the body above are stacked interface by interface:
         all normal forces, where it may open, and then all friction forces.
         """
@@ -291,10 +286,7 @@ class Problem:
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
-        """Degrees of freedom with prescribed displacement, each once, and its values.
-
-        Shapes (n,) and (n, n_instants).
-        """
+        """Degrees of freedom with prescribed displacement, (n,), and values, (n, n_instants)."""
         given = self.given_displacements
         rows = np.concatenate([np.zeros(0, dtype=np.intp), *(part.rows for part in given)])
         values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]

@@ -85,11 +85,8 @@ def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> 
 def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     """Mean stress of every wire that is cut, from `wire_stresses`.
 
-    It is linear between the middles of elements, and beyond the first and the last of them.
-
-    Returns
-    -------
-    Shape (n_cut, n_columns), Pa.
+    Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the first and
+    the last of them.
     """
     if rope.elements == 1:
         return np.asarray(stress[cut.wire, 0])
