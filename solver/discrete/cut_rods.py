@@ -294,8 +294,8 @@ def _substructure(
         shared[key] = Elasticity(matrix, trace, direction)
     forces: list[Array] = []
     if rods.body_force is not None:
-        own = np.s_[None] if rods.body_force.ndim == 1 else np.s_[start : start + size + 1]
-        scaled = rods.body_force[own] * scales.displacement / scales.force
+        along = np.broadcast_to(rods.body_force, (rods.elements + 1, len(rods.instants)))
+        scaled = along[start : start + size + 1] * scales.displacement / scales.force
         forces.append(tributary(size, length / rods.elements)[:, None] * scaled)
     strain = rods.free_strain
     needed = None

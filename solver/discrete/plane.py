@@ -13,9 +13,9 @@ from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import (
+    edge_mass,
     element_stiffness,
     projected_strain_matrix,
-    shares,
     strain_matrix,
 )
 
@@ -98,14 +98,8 @@ class Rectangle:
 
     def edge(self, side: str) -> Indices:
         """Nodes of a side in ascending order of their coordinate."""
-        nodes = self.nodes
-        sides: dict[str, Indices] = {
-            "left": nodes[:, 0],
-            "right": nodes[:, -1],
-            "bottom": nodes[0],
-            "top": nodes[-1],
-        }
-        return sides[side]
+        lines = self.nodes if side in ("bottom", "top") else self.nodes.T
+        return np.asarray(lines[0 if side in ("bottom", "left") else -1])
 
     def edge_weights(self, side: str) -> Array:
         """Length of a side that belongs to each of its nodes, scaled."""
@@ -132,7 +126,7 @@ class Rectangle:
 def edge_lengths(order: int, count: int, step: float) -> Array:
     """Length that belongs to each node of edges of elements in a row, of one length each."""
     lengths = np.zeros(order * count + 1)
-    for place, share in enumerate(shares(order)):
+    for place, share in enumerate(edge_mass(order).sum(axis=0)):
         lengths[place : place + order * count : order] += step * share
     return lengths
 

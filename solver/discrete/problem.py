@@ -166,26 +166,18 @@ class Problem:
         return [(law.first, law.second) for law in glued]
 
     @cached_property
-    def sliding(self) -> tuple[Indices, Array]:
-        """Rows of all tangential components, of both sides, and their weights (m, or m^2)."""
-        laws = self.rubbing.values()
-        pairs = [(rows, law.weights) for law in laws for rows in law.tangent.sides]
-        rows, weights = zip(*pairs, strict=True)
-        return np.concatenate(rows), np.concatenate(weights)
+    def rubbing_rows(self) -> tuple[slice | Indices, NDArray[np.bool_]]:
+        """Rows of all components of the bodies above at interfaces with friction.
 
-    @cached_property
-    def rubbing_rows(self) -> slice | Indices:
-        """Rows of all components of the bodies above at interfaces with friction."""
-        rows = [side.above for law in self.rubbing.values() for side in law.components]
-        return as_slice(np.unique(np.concatenate(rows)))
-
-    @cached_property
-    def rubbing_is_normal(self) -> NDArray[np.bool_]:
-        """Which of these rows are along the normal of their interface."""
-        rows = np.arange(self.n_rows)[self.rubbing_rows]
+        And which of them are along the normal of their interface.
+        """
+        is_normal = np.zeros(self.n_rows, dtype=bool)
         laws = self.rubbing.values()
-        normal = [law.normal.component.above for law in laws if law.normal is not None]
-        return np.isin(rows, np.concatenate([np.zeros(0, dtype=np.intp), *normal]))
+        for law in laws:
+            if law.normal is not None:
+                is_normal[law.normal.component.above] = True
+        rows = np.unique(np.concatenate([one.above for law in laws for one in law.components]))
+        return as_slice(rows), is_normal[rows]
 
     @cached_property
     def friction(self) -> Contact:

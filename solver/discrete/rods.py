@@ -171,6 +171,11 @@ class Rods:
         return self.bound if self.bound.ndim == 2 else self.bound[:, None]
 
     @property
+    def ends(self) -> dict[Side, End]:
+        """Both, by their side."""
+        return {"right": self.right, "left": self.left}
+
+    @property
     def load(self) -> Array:
         """Force on the right end of a rod that rubs nowhere, shape (n_instants,), N."""
         if self.right.is_prescribed:
@@ -216,7 +221,7 @@ class Rods:
         if self.driven_end is None and drive is not None:
             title, unit, values = drive
             up = "Force", "N"
-            if self._end(side).displacement is None:
+            if self.ends[side].displacement is None:
                 up, force = ("End displacement", "m"), moved.of
             return Loop((title, unit), up, constant(values), force)
         of, what = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
@@ -224,16 +229,13 @@ class Rods:
 
     def end_force(self, problem: Problem, side: Side) -> Probe:
         """Mean axial force at the ends of a side, N, positive to the right."""
-        end = self._end(side)
+        end = self.ends[side]
         if end.displacement is None:
             return constant(np.zeros(len(self.instants)) if end.force is None else end.force)
         if end.is_prescribed:
             return reaction(problem, SIDES[side]).times(1.0 / self.wires)
         moved, spring = self._moved(problem, side).times(-end.spring), end.spring
         return replace(moved, constant=moved.constant + spring * end.displacement)
-
-    def _end(self, side: Side) -> End:
-        return self.left if side == "left" else self.right
 
     def _moved(self, problem: Problem, side: Side) -> Probe:
         """Mean displacement of the ends of a side, which stand on no support, m."""
@@ -245,9 +247,7 @@ class Rods:
     @property
     def driven_end(self) -> Side | None:
         """The end that is pulled or moved, the right one before the left one, or None."""
-        sides: tuple[Side, ...] = "right", "left"
-        for side in sides:
-            end = self._end(side)
+        for side, end in self.ends.items():
             if np.any(end.force) if end.displacement is None else np.any(end.displacement):
                 return side
         return None
@@ -282,7 +282,7 @@ class Rods:
     def _acts(self) -> Iterator[Act]:
         right, pulled = OUTWARD["right"], self.wires if self.wires <= SEVERAL else 1
         heights = (np.arange(pulled) + 0.5) / pulled
-        for side, end in (("right", self.right), ("left", self.left)):
+        for side, end in self.ends.items():
             if end.displacement is not None:
                 places = on_side(side, heights[:1] if side == "left" else heights)
                 yield Act(f"{side} x", "u", places, right, end.displacement, "m")
@@ -306,7 +306,7 @@ class Rods:
             yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")
 
     def _holds(self) -> Iterator[Hold]:
-        for side, end in (("left", self.left), ("right", self.right)):
+        for side, end in self.ends.items():
             if end.is_on_spring:
                 yield Hold("spring", side, moved=end.displacement)
             elif end.is_prescribed and (side == "left" or not np.any(end.displacement)):

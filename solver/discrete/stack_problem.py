@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -179,19 +180,54 @@ class _Cut:
         self._joints = [
             one for one in joints if order * (one.last - one.first) + 1 > sum(self._left_out(one))
         ]
-        self._meshes: dict[tuple[int, int, float], Rectangle] = {}
-        self._condensed: dict[tuple[object, ...], Condensed] = {}
+        self._mesh, self._operator = cache(self._mesh_of), cache(self._operator_of)
         # Rows are numbered part by part and trace by trace, by the name of a side or the joint.
         self._traces = list(self._all_traces())
-        self.parts = [self._part(number) for number in range(len(self._pieces))]
+        self.parts: list[Part] = []
+        self._operators: list[Elasticity] = []
         self._rows: list[dict[Hashable, Indices]] = []
         n_rows = 0
-        for part, traces in zip(self.parts, self._traces, strict=True):
+        for (own, *_, body), traces in zip(self._pieces, self._traces, strict=True):
+            modulus, number = stack.modulus(body), len(self.parts)
+            mesh = self._mesh(own.columns, own.rows, modulus)
+            force = self._force(number, mesh)
+            # Members of a group have body forces on all or on none, and see the same macro forces.
+            condensed, operator = self._operator(
+                mesh, modulus, tuple(traces.values()), force is not None
+            )
+            brick = stack.rectangles[body]
+            along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(order)
+            self.parts.append(Part(condensed, self._nodes[body][up, along], body, force))
+            self._operators.append(operator)
             self._rows.append({})
             for name, trace in traces.items():
-                dofs = trace.dofs(part.condensed.rectangle)
+                dofs = trace.dofs(mesh)
                 self._rows[-1][name] = n_rows + np.arange(dofs.size).reshape(dofs.shape)
                 n_rows += dofs.size
+
+    def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
+        elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
+        return Rectangle(columns, rows, *self._element, elastic, self.stack.order)
+
+    def _operator_of(
+        self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
+    ) -> tuple[Condensed, Elasticity]:
+        dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
+        condensed = Condensed(mesh, np.unique(dofs))
+        density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
+        k = [np.repeat(density * one.weights(mesh), len(one.components)) for one in traces]
+        trace = np.searchsorted(condensed.dofs, dofs)
+        return condensed, Elasticity(condensed.stiffness, trace, np.concatenate(k))
+
+    def substructures(self, skeleton: Indices) -> Iterator[Substructure]:
+        """All substructures, of the degrees of freedom of all nodes that any of them keeps."""
+        for part, operator, rows in zip(self.parts, self._operators, self._rows, strict=True):
+            yield Substructure(
+                elasticity=operator,
+                dofs=np.searchsorted(skeleton, part.dofs),
+                rows=np.concatenate([own.ravel() for own in rows.values()]),
+                body_force=None if part.force is None else part.condensed.condense(part.force),
+            )
 
     def _outer(self, number: int) -> Iterator[str]:
         """Sides of a substructure on which nothing is but what is given for such a side."""
@@ -272,44 +308,6 @@ class _Cut:
                 elif side == "right" and stack.spring is not None and is_lowest:
                     named.append(("spring", _Trace(side, (0, 1), 0, 1)))
             yield dict(sorted(named, key=lambda each: SIDES.index(each[1].side)))
-
-    def _part(self, number: int) -> Part:
-        stack, (own, *_, body), traces = self.stack, self._pieces[number], self._traces[number]
-        shape = own.columns, own.rows, stack.modulus(body)
-        if shape not in self._meshes:
-            elastic = elastic_matrix(shape[2], stack.poisson, stack.state)
-            self._meshes[shape] = Rectangle(*shape[:2], *self._element, elastic, stack.order)
-        mesh, kind = self._meshes[shape], (shape, *traces.values())
-        if kind not in self._condensed:
-            kept = np.concatenate([trace.dofs(mesh).ravel() for trace in traces.values()])
-            self._condensed[kind] = Condensed(mesh, np.unique(kept))
-        brick = stack.rectangles[body]
-        along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(stack.order)
-        nodes = self._nodes[body][up, along]
-        return Part(self._condensed[kind], nodes, body, self._force(number, mesh))
-
-    def substructures(self, skeleton: Indices) -> Iterator[Substructure]:
-        """All substructures, of the degrees of freedom of all nodes that any of them keeps."""
-        shared: dict[tuple[object, ...], Elasticity] = {}
-        for part, named, rows in zip(self.parts, self._traces, self._rows, strict=True):
-            condensed, traces = part.condensed, named.values()
-            mesh = condensed.rectangle
-            # Members of a group have body forces on all or on none, and see the same macro forces.
-            key = id(condensed), part.force is not None
-            if key not in shared:
-                size = np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
-                density = self.stack.modulus(part.body) / size
-                trace = [np.searchsorted(condensed.dofs, one.dofs(mesh).ravel()) for one in traces]
-                k = [density * np.repeat(one.weights(mesh), len(one.components)) for one in traces]
-                shared[key] = Elasticity(
-                    condensed.stiffness, np.concatenate(trace), np.concatenate(k)
-                )
-            yield Substructure(
-                elasticity=shared[key],
-                dofs=np.searchsorted(skeleton, part.dofs),
-                rows=np.concatenate([own.ravel() for own in rows.values()]),
-                body_force=None if part.force is None else condensed.condense(part.force),
-            )
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
