@@ -142,7 +142,7 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
         axial = np.abs(force).max(initial=0.0) / wire.helix.stiffness
-        bent = 0.5 * wire.diameter * np.abs(wire.curvature).max(initial=0.0)
+        bent = 0.5 * wire.made.diameter * np.abs(wire.curvature).max(initial=0.0)
         largest = max(largest, float(axial + bent))
     return largest
 

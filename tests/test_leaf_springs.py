@@ -90,8 +90,7 @@ def test_two_leaves_lose_the_energy_of_goodman_and_klumpp(share: float) -> None:
     solution = solve(problem, method_of(settings))
     assert solution.is_certified
     loop = settings.structure().loop(problem)
-    bent, force = loop.displacement(solution.iterate.displacement), loop.force
-    assert isinstance(force, np.ndarray)
+    bent, force = loop.displacement.of(solution.iterate), loop.force(solution.iterate)
     cycle = settings.times() >= 0.4
     energy = abs(float(np.trapezoid(force[cycle], bent[cycle])))
     assert energy == pytest.approx(leaves.energy(peak), rel=0.005)

@@ -121,8 +121,10 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
             continue
         if curve.of == "loop":
             loop = settings.structure().loop(problem)
-            force = loop.force if isinstance(loop.force, np.ndarray) else loop.force(found)
-            pairs = [(curve.up, force), (curve.across, loop.displacement(found.displacement))]
+            pairs = [
+                (curve.up, loop.force(found)),
+                (curve.across, loop.displacement(found.displacement)),
+            ]
         else:
             (name, law), *_ = problem.rubbing.items()
             contact = found.contact(name)

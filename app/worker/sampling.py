@@ -164,7 +164,5 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = self.loop.force
-        force = force if isinstance(force, np.ndarray) else force(shown)
-        both = self.loop.displacement(shown.displacement), force
+        both = self.loop.displacement.of(shown), self.loop.force(shown)
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))

@@ -9,8 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, quantity, redefined
-from solver.discrete.cut_rods import COARSEST
+from solver.definitions import choice, count, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods, neighbours
 from solver.discrete.structure import LoopFields
@@ -171,19 +170,6 @@ class StrandSettings(Settings):
             broken=(self.broken, self._break_node()) if self.broken else None,
             friction_law=self.law,
         )
-
-    def coarser(self) -> Iterator[Rods]:
-        """Yield the same strand, uncut, on ever coarser meshes.
-
-        Until its break, at the nearest node, left less than the tension to friction.
-        """
-        coarse = self
-        while (elements := coarse.elements // 2) >= COARSEST:
-            try:
-                coarse = coarse.replace(elements=elements, substructures=1)
-            except SettingError:
-                return
-            yield coarse.structure()
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, where they are known."""

@@ -63,8 +63,7 @@ class Answer:
     @property
     def loop_force(self) -> Array:
         """Force of that loop, shape (n_instants,)."""
-        force = self._loop.force
-        return force(self.fields) if callable(force) else force
+        return self._loop.force(self.fields)
 
 
 Number = tuple[str, str, float, float]

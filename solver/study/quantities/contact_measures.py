@@ -90,8 +90,8 @@ def _force_at(side: str) -> Quantity:
     def force(run: FinishedRun) -> float:
         problem, structure = run.problem, run.settings.structure()
         if isinstance(structure, Rods):
-            given = structure.end_force(problem, "right" if side == "right" else "left")
-            values = given if isinstance(given, np.ndarray) else given(run.iterate)
+            end = structure.end_force(problem, "right" if side == "right" else "left")
+            values = end.of(run.iterate)
             return float(values[np.abs(values).argmax()])
         moved = run.iterate.displacement
         return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())

@@ -88,8 +88,7 @@ class FinishedRun:
     @cached_property
     def force(self) -> Array:
         """Force of that loop, shape (n_instants,), N."""
-        force = self._loop.force
-        return force if isinstance(force, np.ndarray) else force(self.iterate)
+        return self._loop.force(self.iterate)
 
     @cached_property
     def dissipated(self) -> Array:
