@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields
+from solver.discrete.structure import Loop, LoopFields
 from solver.latin import Ending, Solution, solve
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, loop_of
+from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
+from solver.settings import Settings
 from solver.study.cases.case import Case
-from solver.study.mesh import size_of
 from solver.study.quantities.finished import FinishedRun
 
 PARTS = CLOSED_FORMS, PUBLISHED, TRADE = "Closed forms", "Published numbers", "Cases of the trade"
@@ -33,12 +33,6 @@ class Answer:
     solution: Solution | None = None
 
     @property
-    def bar(self) -> tuple[float, float]:
-        """ES, N, and mu p, N/m, of a uniform bar."""
-        settings = self.settings
-        return settings.young * settings.section, settings.friction * settings.pressure
-
-    @property
     def support(self) -> tuple[Array, Array]:
         """Pressing force and friction on a support, N, each of shape (n_points, n_instants)."""
         contact = self.fields.contact("support")
@@ -51,15 +45,15 @@ class Answer:
         return self.fields.contact("support").slip
 
     @property
-    def loop_displacement(self) -> Array:
-        """Displacement of the scene's loop, shape (n_instants,)."""
-        return loop_of(self.settings, self.problem).displacement(self.fields.displacement)
+    def loop(self) -> Loop:
+        """Loop that the scene shows."""
+        return loop_of(self.settings, self.problem)
 
     @property
-    def loop_force(self) -> Array:
-        """Force of that loop, shape (n_instants,)."""
-        force = loop_of(self.settings, self.problem).force
-        return force(self.fields) if callable(force) else force
+    def along_loop(self) -> tuple[Array, Array]:
+        """Displacement and force of that loop, each of shape (n_instants,)."""
+        force = self.loop.force(self.fields) if callable(self.loop.force) else self.loop.force
+        return self.loop.displacement(self.fields.displacement), force
 
 
 Number = tuple[str, str, float, float]
@@ -78,8 +72,8 @@ class KnownCase:
         Where the answer is from, in full.
     allowed
         Largest deviation: what the mesh leaves.
-    scene, values
-        The problem: a name of the catalogue, and settings that differ from its own.
+    settings
+        The problem.
     numbers
         What is known of an answer, beside what it has.
     part
@@ -89,29 +83,18 @@ class KnownCase:
     title: str
     source: str
     allowed: float
-    scene: str
-    values: Mapping[str, Any]
+    settings: Settings
     numbers: Callable[[Answer], Iterable[Number]]
     part: str = CLOSED_FORMS
-
-    @property
-    def settings(self) -> Any:
-        """Settings of the run."""
-        return CATALOGUE[self.scene].settings.checked(dict(self.values))
-
-    @property
-    def mesh(self) -> str:
-        """What it is solved on, and over how many instants."""
-        return size_of(self.settings)
 
     @property
     def address(self) -> str:
         """What follows the page's address to open this run there."""
         texts = {
             name: value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
-            for name, value in self.values.items()
+            for name, value in self.settings.changed().items()
         }
-        return f"?{urlencode({'scene': self.scene, **texts})}"
+        return f"?{urlencode({'scene': self.settings.scene, **texts})}"
 
 
 @dataclass(frozen=True)
@@ -170,6 +153,5 @@ def known_case(case: Case) -> KnownCase:
         found = asked(FinishedRun(answer.settings, answer.solution))
         yield asked.title, asked.unit or "-", case.known, found
 
-    settings, source = case.settings, f"{case.formula}. {case.how} {case.source}"
-    changes = settings.changed()
-    return KnownCase(case.title, source, case.tolerance, settings.scene, changes, numbers, TRADE)
+    source = f"{case.formula}. {case.how} {case.source}"
+    return KnownCase(case.title, source, case.tolerance, case.settings, numbers, TRADE)

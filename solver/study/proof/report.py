@@ -8,9 +8,11 @@ from html import escape
 from itertools import groupby
 from pathlib import Path
 
+from solver.scenes import CATALOGUE
 from solver.study.cases.case import all_cases
+from solver.study.mesh import size_of
 from solver.study.page import html_table, text_of, write_csv, write_page
-from solver.study.proof import bodies, rods
+from solver.study.proof import known_numbers
 from solver.study.proof.known_case import CLOSED_FORMS, PARTS, KnownCase, ProofRow, known_case
 
 SHOWN = {
@@ -36,13 +38,16 @@ WORDS = (
 
 def cases() -> list[KnownCase]:
     """All cases, none of them solved yet."""
-    numbers, known = {**vars(rods), **vars(bodies)}, []
+    known = []
     for group in tomllib.loads(CASES.read_text(encoding="utf-8"))["known"]:
         for title, settings in group["cases"].items():
+            kind = CATALOGUE[group["scene"]].settings
             case = KnownCase(
-                *(title, group["source"], group["allowed"], group["scene"]),
-                {**group.get("common", {}), **settings},
-                numbers[group["numbers"]],
+                title,
+                group["source"],
+                group["allowed"],
+                kind.checked({**group.get("common", {}), **settings}),
+                getattr(known_numbers, group["numbers"]),
                 group.get("part", CLOSED_FORMS),
             )
             known.append(case)
@@ -56,7 +61,7 @@ def entries(row: ProofRow) -> dict[str, object]:
         **{"holds": "holds" if row.holds else "FAILS", "part": case.part, "case": case.title},
         **{"solver": row.solver, "quantity": row.quantity, "unit": row.unit},
         **{"known": float(row.exact), "ours": float(row.found), "deviation": row.deviation},
-        **{"allowed": case.allowed, "mesh": case.mesh},
+        **{"allowed": case.allowed, "mesh": size_of(case.settings)},
         **{"source": case.source, "address": case.address},
     }
 
@@ -83,7 +88,9 @@ def write_proof(rows: Sequence[ProofRow], folder: Path) -> None:
         for case, own in groupby(of_part, lambda row: row.case):
             address, title = escape(PAGE + case.address), escape(case.title)
             link = f'<a class="run" href="{address}"><b>{title}</b></a>'
-            lines.append([f"{link} · {case.mesh}<br><small>{escape(case.source)}</small>"])
+            lines.append(
+                [f"{link} · {size_of(case.settings)}<br><small>{escape(case.source)}</small>"]
+            )
             for entry in map(entries, own):
                 digits = {"known": 6, "ours": 6}
                 lines.append([text_of(entry[name], digits.get(name, 2)) for name in NUMBERS])
