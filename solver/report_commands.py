@@ -92,8 +92,8 @@ def _study(chosen: argparse.Namespace) -> int:
         curves = error_against_time(settings, chosen.repeats)
         write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        note = write_study(curves, sizes, chosen.out)
-    print("\n".join(conditions(curves)), end="\n\n")
+        note = write_study(settings, chosen.repeats, curves, sizes, chosen.out)
+    print("\n".join(conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(table(curves)))
     print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
