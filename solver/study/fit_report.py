@@ -126,13 +126,7 @@ def write_loop(run: FinishedRun, folder: Path) -> None:
 
 
 def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
-    """Write all files; what is to be told of them.
-
-    Raises
-    ------
-    OSError
-        When one cannot be written.
-    """
+    """Write all files; what is to be told of them."""
     head = ["setting", "unit", "start", "value", "standard_error"]
     write_csv(folder / PARAMETERS, [*head, *(f"correlation_{n}" for n in fit.names)], _entries(fit))
     write_loop(fit.nearest.run, folder)

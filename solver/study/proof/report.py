@@ -72,13 +72,7 @@ def summary(rows: Sequence[ProofRow]) -> str:
 
 
 def write_proof(rows: Sequence[ProofRow], folder: Path) -> None:
-    """Write `FILES` into an existing folder.
-
-    Raises
-    ------
-    OSError
-        When a file cannot be written.
-    """
+    """Write `FILES` into an existing folder."""
     written = [entries(row) for row in rows]
     write_csv(folder / FILES[0], list(written[0]), [entry.values() for entry in written])
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
