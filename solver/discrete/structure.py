@@ -156,6 +156,16 @@ class Loop:
     displacement: Probe
     force: Array | Callable[[LoopFields], Array]
 
+    @property
+    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Titles and units of displacement and force."""
+        return self.across, self.up
+
+    def along(self, fields: LoopFields) -> tuple[Array, Array]:
+        """Displacement and force of an iterate, or of a reference, each (n_instants,)."""
+        force = self.force if isinstance(self.force, np.ndarray) else self.force(fields)
+        return self.displacement(fields.displacement), force
+
 
 class Structure(Protocol):
     """Bodies, how they are held and what acts on them, as plain data: `Rods`, `Rope`, `Stack`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import param
@@ -16,7 +16,6 @@ from solver.definitions import SettingError, about
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.scenes import loop_of
 from solver.settings import Settings
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -183,11 +182,7 @@ class ComparedRuns:
             values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", values, "one that converges", status.advice)
         self._before = finished.states
-        loop = loop_of(settings, finished.problem)
-        finished, beside = (
-            replace(finished, loop=loop),
-            LoopComparison(self._measured, loop, finished.problem),
-        )
+        beside = LoopComparison(self._measured, finished.loop, finished.problem)
         both = beside.differences(finished.displacement, finished.force)
         return ComparedRun(np.array(list(changes.values())), finished, beside, *both)
 

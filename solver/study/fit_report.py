@@ -120,7 +120,7 @@ def _finite(value: float) -> float | None:
 
 def write_loop(run: FinishedRun, folder: Path) -> None:
     """Write the loop of a run as CSV, with time, in SI."""
-    across, up = (f"{name} [{unit}]" for name, unit in run.axes)
+    across, up = (f"{name} [{unit}]" for name, unit in run.loop.axes)
     columns = {"time [s]": run.problem.instants, across: run.displacement, up: run.force}
     write(folder / LOOP, csv_of(columns))
 
@@ -149,7 +149,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
     nearest, beside, first = fit.nearest, fit.nearest.beside, fit.first.run
-    x, y = (PanelAxis(title, unit) for title, unit in nearest.run.axes)
+    x, y = (PanelAxis(title, unit) for title, unit in nearest.run.loop.axes)
     curves = (
         PanelCurve("measured", measured.displacement, measured.force, 5, "points"),
         PanelCurve("before", first.displacement, first.force, 0, "dotted"),

@@ -76,5 +76,5 @@ def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
     instant = largest_load(run)
     loop = run.displacement, run.force
     energy = float(run.dissipated.sum())
-    figures = key_figures(run.axes, loop, run.iterate.status, energy, instant)
+    figures = key_figures(run.loop.axes, loop, run.iterate.status, energy, instant)
     return figures, float(run.problem.instants[instant])

@@ -82,11 +82,6 @@ def csv_of(columns: Mapping[str, Array]) -> str:
     return "\n".join([",".join(columns), *rows, ""])
 
 
-def axes_of(loop: Loop) -> Axes:
-    """Titles and units of a loop."""
-    return loop.across, loop.up
-
-
 def is_a_loop(data: bytes | str, source: str) -> bool:
     """Whether a table is a measured loop, and not results over places."""
     table = read_table(data, partial(SettingError, "--with", source, CAN))
@@ -183,7 +178,7 @@ class LoopComparison:
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:
         self.measured, self.loop, self._instants = measured, loop, problem.instants
-        (across, x), (up, y) = axes_of(loop)
+        (across, x), (up, y) = loop.axes
         if measured.units != (x, y):
             can = f"a loop of {across} ({x}) and {up} ({y})"
             raise self._refusal(can, "load one of this scene")
@@ -210,15 +205,9 @@ class LoopComparison:
         far = f"{100.0 * rms(drive):.2g} % of its range from the measured"
         return f"{self.given} of the run is {far}: give the run the measured path"
 
-    def both(self, fields: LoopFields) -> tuple[Array, Array]:
-        """Displacement and force of an iterate, or of a reference, shape (n_instants,)."""
-        force = self.loop.force
-        force = force if isinstance(force, np.ndarray) else force(fields)
-        return self.loop.displacement(fields.displacement), force
-
     def of(self, fields: LoopFields) -> float:
         """Distance to an iterate, or to a reference."""
-        return rms(self.differences(*self.both(fields))[0])
+        return rms(self.differences(*self.loop.along(fields))[0])
 
     def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
         """What is found, and what is given, of a run less the rows that are compared.

@@ -49,12 +49,6 @@ class Answer:
         """Loop that the scene shows."""
         return loop_of(self.settings, self.problem)
 
-    @property
-    def along_loop(self) -> tuple[Array, Array]:
-        """Displacement and force of that loop, each of shape (n_instants,)."""
-        force = self.loop.force(self.fields) if callable(self.loop.force) else self.loop.force
-        return self.loop.displacement(self.fields.displacement), force
-
 
 Number = tuple[str, str, float, float]
 """Quantity, unit, what is known, and what an answer has."""

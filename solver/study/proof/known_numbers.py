@@ -30,7 +30,8 @@ def loop(answer: Answer) -> Iterator[Number]:
     """
     curves = exact_of(answer.settings, answer.problem, answer.fields)
     (exact,) = [curve for curve in curves if curve.of == "loop"]
-    loop, (across, up) = answer.loop, answer.along_loop
+    loop = answer.loop
+    across, up = loop.along(answer.fields)
     known, found, given, named = exact.across, across, up, loop.across
     if callable(loop.force):
         known, found, given, named = exact.up, up, across, loop.up
@@ -157,14 +158,14 @@ def _forces(answer: Answer) -> tuple[float, float]:
 def sliding_pile(answer: Answer) -> Iterator[Number]:
     """Shear force of a pile of bricks that slides."""
     held = answer.settings.friction * sum(_forces(answer))
-    yield "shear force", "N/m", held, float(answer.along_loop[1][-1])
+    yield "shear force", "N/m", held, float(answer.loop.along(answer.fields)[1][-1])
 
 
 def tipping_pile(answer: Answer) -> Iterator[Number]:
     """Moments about the toe: what presses, and the weight, have half a length."""
     settings, (pressed, brick) = answer.settings, _forces(answer)
     held = 0.5 * settings.length * (pressed + 3.0 * brick) / (3.0 * settings.height)
-    yield "shear force", "N/m", held, float(answer.along_loop[1][-1])
+    yield "shear force", "N/m", held, float(answer.loop.along(answer.fields)[1][-1])
 
 
 def weighed_wall(answer: Answer) -> Iterator[Number]:

@@ -45,16 +45,16 @@ class FinishedRun:
 
     Attributes
     ----------
-    loop
-        As the scene shows it, where that is at hand: in the plane it takes a solution to make one.
     was_warm
         Whether it started from another run.
+    made_loop
+        Its loop, where that is at hand: in the plane it takes a while to make one.
     """
 
     settings: Settings
     solution: Solution
-    loop: Loop | None = None
     was_warm: bool = False
+    made_loop: Loop | None = None
 
     @property
     def iterate(self) -> Iterate:
@@ -67,13 +67,9 @@ class FinishedRun:
         return self.iterate.problem
 
     @cached_property
-    def _loop(self) -> Loop:
-        return self.loop or loop_of(self.settings, self.problem)
-
-    @property
-    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Titles and units of displacement and force of that loop."""
-        return self._loop.across, self._loop.up
+    def loop(self) -> Loop:
+        """Loop that the scene shows."""
+        return self.made_loop or loop_of(self.settings, self.problem)
 
     @property
     def states(self) -> States:
@@ -81,15 +77,18 @@ class FinishedRun:
         return states_of(self.iterate)
 
     @cached_property
+    def _along_loop(self) -> tuple[Array, Array]:
+        return self.loop.along(self.iterate)
+
+    @property
     def displacement(self) -> Array:
         """Displacement of the loop that the scene shows, m, or what it goes over; (n_instants,)."""
-        return self._loop.displacement(self.iterate.displacement)
+        return self._along_loop[0]
 
-    @cached_property
+    @property
     def force(self) -> Array:
         """Force of that loop, shape (n_instants,), N."""
-        force = self._loop.force
-        return force if isinstance(force, np.ndarray) else force(self.iterate)
+        return self._along_loop[1]
 
     @cached_property
     def dissipated(self) -> Array:
