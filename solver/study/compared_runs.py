@@ -22,8 +22,6 @@ from solver.study.quantities.finished import FinishedRun, finished_run
 
 NOT_FITTED = "Method", "Stop", "Decomposition"
 """Groups of settings that do not change the answer."""
-SPANS = 100.0
-"""Largest over smallest value from which on a setting is varied in decades."""
 FARTHEST = math.log(1e6)
 """How far from its start, in z, a setting may go."""
 COARSE, FAR = math.log(3.0), math.log(1e3)
@@ -99,13 +97,11 @@ def scale_of(settings: Settings, name: str) -> Scale:
         raise SettingError("fitted setting", name, can, f"choose another: {reason}")
     definition, value = settings.definitions()[name], getattr(settings, name)
     low, high = definition.bounds
-    is_logarithmic = about(definition).logarithmic
-    if low >= 0.0 and (is_logarithmic or high >= SPANS * low):
-        if value > 0.0:
-            return Scale(value, None, low, high)
-        if is_logarithmic:
-            can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
-            raise SettingError(name, value, can, "set it")
+    if low >= 0.0 and value > 0.0:
+        return Scale(value, None, low, high)
+    if about(definition).logarithmic:
+        can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
+        raise SettingError(name, value, can, "set it")
     return Scale(value, abs(value) or float(np.ptp(definition.softbounds)), low, high)
 
 
@@ -117,10 +113,6 @@ class ComparedRun:
     ----------
     values
         Of the settings that are fitted, shape (p,), in SI.
-    run
-        What it came to.
-    beside
-        The loop as it is laid beside the problem.
     differences, drive
         Of what it finds, and of what is given, to every row; shares of the measured range.
     """

@@ -57,10 +57,8 @@ class OtherResults:
         `DISPLACEMENT`, m.
     positions, times, values
         Of every row, shape (n_rows,); m, s.
-    source, scene
-        Name of the file, and of the scene that it is brought to.
-    message
-        What was understood of the file.
+    scene, message
+        That it is brought to, and what was understood of the file.
     """
 
     quantity: str
@@ -159,21 +157,10 @@ def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refu
 class Comparison:
     """Results of another program beside the runs of one problem.
 
-    Parameters
-    ----------
-    results
-        The table.
-    problem
-        What is solved.
-    interface
-        The one whose friction is compared; the first one if there is none of this name.
-
     Attributes
     ----------
-    results
-        The table.
     interface
-        Name of the interface.
+        The one whose friction is compared; the first one if there is none of the given name.
     counted
         Number of rows that both cover.
     """

@@ -71,8 +71,6 @@ class Fit:
         standard error of the logarithm of their product; NaN where some are not logarithmic.
     first, nearest
         The run at the start, and the nearest one.
-    runs
-        How many it took.
     """
 
     settings: Settings
@@ -95,16 +93,8 @@ def fit(
 ) -> Fit:
     """Find the settings under which a run comes nearest to a measured loop.
 
-    Parameters
-    ----------
-    settings
-        Where to begin, with all that is not fitted.
-    measured
-        The loop.
-    names
-        Settings to fit, one to four.
-    watch
-        Called after each run with how many there were, and the nearest one.
+    It begins at the settings; of these one to four are fitted. `watch` is called after each run
+    with how many there were, and the nearest one.
 
     Raises
     ------

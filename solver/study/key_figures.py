@@ -19,16 +19,9 @@ ZERO = 1e-9
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """A number of a run at an instant.
+    """A number of a run at an instant, in SI, by the names of scripts and of people.
 
-    Attributes
-    ----------
-    name, title
-        What scripts and people call it.
-    value, unit
-        In SI; the unit is empty for a share.
-    largest
-        Size of the largest value in the run, by which a unit is chosen.
+    The unit is empty for a share, and chosen by the size of the largest value in the run.
     """
 
     name: str
@@ -49,10 +42,8 @@ def key_figures(
 
     Parameters
     ----------
-    axes
-        Titles and units of displacement and force of the loop.
-    loop
-        Both, shape (2, n_instants).
+    axes, loop
+        Titles and units of displacement and force of the loop, and both, shape (2, n_instants).
     status
         Of all contact points, shape (n_points, n_instants).
     energy

@@ -54,10 +54,8 @@ class MeasuredLoop:
         Same shape, s; None where rows are matched along the path.
     units
         Of both, as the loop of its scene has them.
-    source
-        Name of the file.
     message
-        What was understood of it.
+        What was understood of the file.
     """
 
     displacement: Array
@@ -89,16 +87,7 @@ def is_a_loop(data: bytes | str, source: str) -> bool:
 
 
 def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
-    """Read a measured loop.
-
-    Parameters
-    ----------
-    data
-        A table as `solver.tables` takes it, a file's bytes or its text.
-    source
-        Name of the file.
-    axes
-        Titles and units of the loop that it is compared with.
+    """Read a measured loop of a table, bytes or text, for a loop of these titles and units.
 
     Raises
     ------

@@ -56,22 +56,9 @@ Number = tuple[str, str, float, float]
 
 @dataclass(frozen=True, eq=False)
 class KnownCase:
-    """A problem whose answer is known.
+    """A problem whose answer is known from a source, and the largest deviation that is allowed.
 
-    Attributes
-    ----------
-    title
-        What it is.
-    source
-        Where the answer is from, in full.
-    allowed
-        Largest deviation: what the mesh leaves.
-    settings
-        The problem.
-    numbers
-        What is known of an answer, beside what it has.
-    part
-        Of the report.
+    `numbers` are what is known of an answer, beside what it has; `part` is that of the report.
     """
 
     title: str
@@ -93,16 +80,9 @@ class KnownCase:
 
 @dataclass(frozen=True)
 class ProofRow:
-    """One number of one case by one solver.
+    """One number of one case by one solver, as it is known and as that has it.
 
-    Attributes
-    ----------
-    solver
-        LATIN, or the incremental one.
-    ended
-        Whether the run came to its end; a number of one that did not proves nothing.
-    exact, found
-        What is known, and what the solver has, in the same unit.
+    `ended` is whether the run came to its end; a number of one that did not proves nothing.
     """
 
     case: KnownCase
