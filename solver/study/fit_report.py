@@ -29,8 +29,6 @@ from solver.study.quantities.finished import FinishedRun
 
 PARAMETERS, LOOP, SETTINGS, PAGE = "parameters.csv", "loop.csv", "settings.toml", "fit.html"
 FILES = PARAMETERS, LOOP, SETTINGS, PAGE
-LEAST = 0.005
-"""Correlation that is printed as 0."""
 
 
 def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:

@@ -62,13 +62,16 @@ def peak_displacement(run: FinishedRun) -> float:
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
 
 
+def _axial_force(run: FinishedRun) -> Array:
+    return AxialForce(run.problem)(run.iterate.displacement)
+
+
 def _most_axial_force(run: FinishedRun, at: float | None) -> int:
     """Instant at a share of the interval, or that of the largest axial force."""
-    if at is not None:
-        times = run.problem.instants
-        return int(np.abs(times - at * times[-1]).argmin())
-    force = AxialForce(run.problem)(run.iterate.displacement)
-    return int(np.abs(force).max(axis=0).argmax())
+    times = run.problem.instants
+    if at is None:
+        return int(np.abs(_axial_force(run)).max(axis=0).argmax())
+    return int(np.abs(times - at * times[-1]).argmin())
 
 
 @quantity(
@@ -80,9 +83,8 @@ def _most_axial_force(run: FinishedRun, at: float | None) -> int:
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
     """Largest axial force in any element at an instant, N, pull positive."""
-    some = slice(instant, instant + 1)
-    force = AxialForce(run.problem, some)(run.iterate.displacement[:, some])
-    return float(force[np.abs(force).argmax(), 0])
+    force = _axial_force(run)[:, instant]
+    return float(force[np.abs(force).argmax()])
 
 
 def _force_at(side: str) -> Quantity:
@@ -130,38 +132,35 @@ def peak_friction(run: FinishedRun) -> float:
     return float(np.abs(run.iterate.friction_force).sum(axis=0).max())
 
 
-def _normal_forces(run: FinishedRun) -> dict[str, Array]:
-    """Pressing forces by interface, where they are unknowns."""
-    forces = {name: run.iterate.contact(name).normal_force for name in run.problem.rubbing}
-    return {name: force for name, force in forces.items() if force is not None}
+def _pressing(run: FinishedRun, name: str) -> Array:
+    """Pressing force at an interface, which is an unknown in scenes whose contacts open."""
+    force = run.iterate.contact(name).normal_force
+    assert force is not None
+    return force
 
 
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
-    """Largest sum over all points of the pressing force, N; NaN where it is given."""
-    pressing = list(_normal_forces(run).values())
-    return float(np.concatenate(pressing).sum(axis=0).max()) if pressing else math.nan
+    """Largest sum over all points of the pressing force, N."""
+    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing]
+    return float(np.sum(forces, axis=0).max())
 
 
 @quantity("Largest pressure", "Pa", applies=_opens)
 def peak_pressure(run: FinishedRun) -> float:
-    """Largest pressure at any point of an interface, Pa; NaN where it is given.
+    """Largest pressure at any point of an interface, Pa.
 
     Force of a point over its tributary length, one metre thick. A single point, as that under a
     spring, has a force and no pressure.
     """
-    lengths, forces = _lengths(run), _normal_forces(run)
-    peaks = [
-        float((forces[name] / lengths[name][:, None]).max()) for name in forces.keys() & lengths
-    ]
+    lengths = _lengths(run).items()
+    peaks = (float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths)
     return max(peaks, default=math.nan)
 
 
 @quantity("Largest length in contact", "m", applies=_opens)
 def contact_width(run: FinishedRun) -> float:
-    """Largest length over which bodies touch at once, m; NaN where they always do."""
-    if run.problem.inside is None:
-        return math.nan
+    """Largest length over which bodies touch at once, m."""
     length, status = _touching(run)
     return float((length[:, None] * (status != OPEN)).sum(axis=0).max())
 
@@ -201,8 +200,7 @@ def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
     """Largest von Mises stress, Pa, and the centre of the element that has it first, m."""
     inside, values = run.problem.inside, run.settings.values()
     largest, place = 0.0, np.full(2, np.nan)
-    if inside is None:
-        return math.nan, place
+    assert inside is not None  # these quantities are of the plane
     for instant in range(run.problem.n_instants):
         moved = inside.displacement(run.iterate.displacement, [instant])[:, :, 0]
         stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
