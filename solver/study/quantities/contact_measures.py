@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -237,7 +237,7 @@ def holding_friction(run: FinishedRun) -> float:
         ways = [(status == way) | is_free for way in (-1, 1)]
         if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
             return math.nan
-    needed = max((float((held / pressing).max()) for pressing, held in _carried(run)), default=0.0)
+    needed, _ = _nearest_to_sliding(run)
     return needed if needed > RESIDUE else 0.0
 
 
@@ -247,19 +247,13 @@ def holding_force(run: FinishedRun) -> float:
 
     That is mu times all that presses; beyond it the interface slides as a whole.
     """
-    if not run.settings.friction:
-        return 0.0
-    nearest, most = -1.0, 0.0
-    for pressing, held in _carried(run):
-        instant = int((held / pressing).argmax())
-        if held[instant] / pressing[instant] > nearest:
-            nearest, most = held[instant] / pressing[instant], pressing[instant]
-    return float(run.settings.friction * most)
+    friction = float(run.settings.friction)
+    return friction and friction * _nearest_to_sliding(run)[1]
 
 
-def _carried(run: FinishedRun) -> Iterator[tuple[Array, Array]]:
-    """All that presses an interface, and all its friction, at instants at which any does, N."""
-    friction = run.settings.friction
+def _nearest_to_sliding(run: FinishedRun) -> tuple[float, float]:
+    """Largest share of all friction at an interface in all that presses it, and the latter, N."""
+    friction, every = run.settings.friction, [np.zeros((2, 0))]
     for name, law in run.problem.rubbing.items():
         contact = run.iterate.contact(name)
         if contact.normal_force is None:
@@ -268,9 +262,13 @@ def _carried(run: FinishedRun) -> Iterator[tuple[Array, Array]]:
         else:
             share = law.mean_by_point(law.tangential.friction) / friction
             pressing = share @ contact.normal_force
-        held = np.abs(contact.tangential_force.sum(axis=0))
-        if np.any(pressing > 0.0):
-            yield pressing[pressing > 0.0], held[pressing > 0.0]
+        held, is_pressed = np.abs(contact.tangential_force.sum(axis=0)), pressing > 0.0
+        every.append(np.array([held[is_pressed] / pressing[is_pressed], pressing[is_pressed]]))
+    shares, forces = np.concatenate(every, axis=1)
+    if not len(shares):
+        return 0.0, 0.0
+    nearest = shares.argmax()
+    return float(shares[nearest]), float(forces[nearest])
 
 
 @quantity("Displacement at the largest load", "m", applies=_over_a_displacement, when=largest_load)

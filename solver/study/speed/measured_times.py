@@ -180,16 +180,9 @@ def incremental(settings: Settings) -> Reference:
 
 @dataclass(frozen=True)
 class TimesAtSize:
-    """Both solvers at one size.
+    """Medians of both solvers, s, at a size of the first setting that grows with the scene.
 
-    Attributes
-    ----------
-    size, instants
-        Of the first setting that grows with the scene, and of time.
-    latin, incremental
-        Medians, s; NaN where it was left out.
-    message
-        Why there is no answer; empty where there is one.
+    The message says why there is no answer; it is empty where there is one.
     """
 
     size: int

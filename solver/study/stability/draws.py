@@ -8,7 +8,7 @@ loads, which are measured by what friction can carry.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,21 +27,15 @@ of counts, not of clocks, so that a row is the same on every machine."""
 MOST_INSTANTS = 101
 SIZES = "elements", "elements_up", "wires", "layers", "bricks", "courses"
 """Numbers of a mesh, all sizes alike."""
-WIDE = {"poisson": (0.0, 0.4999), "friction": (0.02, 2.0), "relaxation": (0.4, 1.0)}
+WIDE = {
+    **{"poisson": (0.0, 0.4999), "friction": (0.02, 2.0)},
+    **{"relaxation": (0.4, 1.0), "k_scale": (1e-3, 1e3)},
+}
 """Ranges other than those of the sliders."""
 KEPT = {"max_iterations", "method", "opening", "opening_height"}
 """Settings that are not drawn by their definition alone."""
-PRESETS_ALONE = {"wall"}
-"""Scenes without tables of loads: where the top of a wall is moved before anything presses, it is
-not determinate where bricks lie."""
-COUNTED = "layers", "wires", "construction"
-"""Settings that say how many interfaces there are."""
-INSTANTS_A_CYCLE = 4
-"""At least, of what is drawn: more cycles take more instants than there is room for."""
 NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
-FOOLISH = -3.0, 3.0
-"""Decades of a factor on k that nobody would choose."""
 CHANGED = 0.15
 """How often a setting differs from its default."""
 SELDOM = 0.2
@@ -133,7 +127,7 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         if generator.random() < often:
             values[name] = _drawn(name, definition, generator)
     if "friction_factors" in values:
-        some = {name: values[name] for name in COUNTED if name in values}
+        some = {n: values[n] for n in ("layers", "wires", "construction") if n in values}
         each = points_of(kind.checked(some), "friction_factors")
         values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
     if "layer_lengths" in values and generator.random() < 0.5:
@@ -145,10 +139,11 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         aspect = 10.0 ** generator.uniform(-power, power)
         values[kind.across] = length * values["elements_up"] / (values["elements"] * aspect)
     if "cycles" in values:
-        most = max((values["instants"] - 1) // INSTANTS_A_CYCLE, 1)
-        values["cycles"] = min(values["cycles"], most)
+        # Every cycle takes instants of its own.
+        values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))
     values |= _loads(kind, values, generator)
-    if kind.scene not in PRESETS_ALONE:
+    # Where the top of a wall is moved before anything presses, where bricks lie is not determinate.
+    if kind.scene != "wall":
         settings = kind.checked(values)
         for path in settings.paths:
             if generator.random() < CHANGED:
@@ -233,26 +228,12 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
         return bool(generator.random() < 0.5)
     if isinstance(definition, param.Selector):
         return str(generator.choice(definition.objects))
-    if name in SPECIAL:
-        return float(SPECIAL[name](generator))
     low, high = WIDE.get(name, definition.softbounds)
     if isinstance(definition, param.Integer):
         return int(generator.integers(low, high + 1))
     if about(definition).logarithmic:
         return log_uniform(generator, low, high)
     return float(generator.uniform(low, high))
-
-
-SPECIAL: dict[str, Callable[[Generator], float]] = {
-    "k_scale": lambda draw: (
-        10.0 ** draw.uniform(*(FOOLISH if draw.random() < 0.4 else (-1.0, 1.0)))
-    ),
-    "poisson": lambda draw: (
-        draw.uniform(0.0, 0.4999) if draw.random() < 0.5 else 0.5 - log_uniform(draw, 1e-4, 1e-1)
-    ),
-    "accuracy": lambda draw: log_uniform(draw, 1e-5, 0.1),
-    "tolerance": lambda draw: log_uniform(draw, 1e-12, 1.0),
-}
 
 
 def _construction(_name: str, generator: Generator) -> list[list[float]]:
