@@ -11,8 +11,8 @@ from solver.console import add_command, given, writing
 from solver.definitions import SettingError
 from solver.files import scene_settings
 from solver.study.cases.case import case_from_file
-from solver.study.figures import paper_figures
 from solver.study.figures.figure import FILE, write_figures
+from solver.study.figures.modes import paper_figures
 from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned, head_of, line_of
 from solver.study.proof import report as proof
