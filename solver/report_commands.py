@@ -16,7 +16,6 @@ from solver.study.figures.modes import paper_figures
 from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned, head_of, line_of
 from solver.study.proof import report as proof
-from solver.study.proof.known_case import known_case, rows_of
 from solver.study.speed.measured_times import error_against_time, times_at_sizes
 from solver.study.speed.study_report import (
     FILES as STUDY_FILES,
@@ -130,12 +129,12 @@ def _stability(chosen: argparse.Namespace) -> int:
 
 
 def _proof(chosen: argparse.Namespace) -> int:
-    own = [known_case(case_from_file(path)) for path in chosen.files]
+    own = [proof.known_case(case_from_file(path)) for path in chosen.files]
     rows = []
     with writing(chosen.out, *proof.FILES):
         print(head_of(proof.SHOWN))
         for case in own or proof.cases():
-            for row in rows_of(case):
+            for row in proof.rows_of(case):
                 print(line_of(proof.entries(row), proof.SHOWN), flush=True)
                 rows.append(row)
         proof.write_proof(rows, chosen.out)

@@ -3,24 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
+from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
+from solver.discrete.structure import Loop, LoopFields
+from solver.latin import Solution
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     slip_under_growing_strength,
 )
 from solver.reference.closed_forms.pulled_bar import broken_wire
-from solver.scenes import exact_of, structure_of
-from solver.study.proof.known_case import Answer, Number
+from solver.scenes import exact_of, loop_of, structure_of
 from solver.study.quantities.cycles import turning_points
 
 WORKS = {"m": "J", "1/m": "J/m"}
 """Unit of what a loop encloses, by that of what it goes over, where it is work."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A problem with its settings, and what a run or a reference has for it."""
+
+    settings: Any
+    problem: Problem
+    fields: LoopFields
+    solution: Solution | None = None
+
+    @property
+    def support(self) -> tuple[Array, Array]:
+        """Pressing force and friction on a support, N, each of shape (n_points, n_instants)."""
+        contact = self.fields.contact("support")
+        assert contact.normal_force is not None
+        return contact.normal_force, contact.tangential_force
+
+    @property
+    def slip(self) -> Array:
+        """Slip on a support, m, same shape."""
+        return self.fields.contact("support").slip
+
+    @property
+    def loop(self) -> Loop:
+        """Loop that the scene shows."""
+        return loop_of(self.settings, self.problem)
+
+
+Number = tuple[str, str, float, float]
+"""Quantity, unit, what is known, and what an answer has."""
 
 
 def loop(answer: Answer) -> Iterator[Number]:
