@@ -23,7 +23,7 @@ from solver.study.speed.study_report import (
 from solver.study.speed.study_report import (
     conditions,
     notes,
-    ratio_table,
+    sizes_table,
     table,
     write_curves,
     write_study,
@@ -94,7 +94,7 @@ def _study(chosen: argparse.Namespace) -> int:
         note = write_study(settings, chosen.repeats, curves, sizes, chosen.out)
     print("\n".join(conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(table(curves)))
-    print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
+    print("", aligned(sizes_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
         print(note)
     print(f"{len(STUDY_FILES)} files in {chosen.out}")

@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from solver.study.speed.measured_times import (
     forms_of,
     times_at_sizes,
 )
-from solver.study.speed.study_report import notes, ratio_table, table
+from solver.study.speed.study_report import sizes_table, table
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1"]
@@ -149,12 +150,13 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("scene", ["bar", "layers"])
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     settings = CATALOGUE[scene].settings.checked(SMALL_ONES[scene])
-    (head, *rows), name = ratio_table(settings, times_at_sizes(settings)), CATALOGUE[scene].grows[0]
+    measured, name = times_at_sizes(settings), CATALOGUE[scene].grows[0]
     sizes = [round(factor * getattr(settings, name)) for factor in FACTORS]
-    assert head[1:] == [f"{name} {size}" for size in sizes]
     instants = [round(factor * (settings.instants - 1)) + 1 for factor in FACTORS]
-    assert [row[0] for row in rows] == [f"{number} instants" for number in instants]
-    assert all(float(ratio) > 0.0 for row in rows for ratio in row[1:])
+    at = {(times.size, times.instants): times for times in measured}
+    assert at.keys() == set(product(sizes, instants))
+    assert all(times.ratio > 0.0 and not times.message for times in measured)
+    assert len(sizes_table(settings, measured)) == 1 + len(measured)
 
 
 def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
@@ -167,4 +169,4 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     assert list(said) == [1, 2, 4]
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
-    assert any("Wires 4" in line and "left out" in line for line in notes(settings, found))
+    assert any(row[0] == "4" and "left out" in row[-1] for row in sizes_table(settings, found))

@@ -14,9 +14,18 @@ from solver.executors import machine
 from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.page import PlotSection, Section, bullets, html_table, write_csv, write_page
+from solver.study.page import (
+    PlotSection,
+    Section,
+    bullets,
+    html_table,
+    text_of,
+    write_csv,
+    write_page,
+)
 from solver.study.speed.measured_times import (
     GOAL,
+    INCREMENTAL,
     LEVELS,
     MOST_ITERATIONS,
     ErrorCurve,
@@ -87,39 +96,24 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
     return [*rows, [f"best {TIMES}", *texts, "-", "-"]]
 
 
-def ratio_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
-    """Time of LATIN over that of the other, a row for each number of instants."""
-    sizes = sorted({times.size for times in measured})
-    rows = [[TIMES, *(f"{entry_of(settings).grows[0]} {size}" for size in sizes)]]
-    for instants, ratios in _ratios(measured).items():
-        texts = (f"{ratios.get(size, math.nan):.2g}".replace("nan", "-") for size in sizes)
-        rows.append([f"{instants} instants", *texts])
+def sizes_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
+    """Times of both solvers at every size, or why they have none."""
+    rows = [[_titles(settings)[0], "instants", "LATIN, s", f"{INCREMENTAL}, s", TIMES, ""]]
+    for times in measured:
+        numbers = (text_of(number) for number in (times.latin, times.incremental, times.ratio))
+        rows.append([str(times.size), str(times.instants), *numbers, times.message])
     return rows
 
 
-def _ratios(measured: Sequence[TimesAtSize]) -> dict[int, dict[int, float]]:
-    """Ratios by number of instants and size, both in ascending order; NaN without an answer."""
-    ratios: dict[int, dict[int, float]] = {}
-    for times in sorted(measured, key=lambda times: (times.instants, times.size)):
-        ratios.setdefault(times.instants, {})[times.size] = times.ratio
-    return ratios
-
-
 def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
-    """What the sizes show, and which are left out, in sentences."""
-    title, *others = _titles(settings)
+    """What the sizes show, in sentences."""
+    _, *others = titles = _titles(settings)
     ratios = np.array([times.ratio for times in measured if not times.message])
-    grows = " and ".join(name.lower() for name in (title, *others))
     return [
         f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
         "settings to a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
-        *([f"What grows along the axis: {grows}."] if others else []),
-        *(
-            f"{title} {times.size}, {times.instants} instants: {times.message}"
-            for times in measured
-            if times.message
-        ),
+        *([f"What grows together: {' and '.join(titles).lower()}."] if others else []),
     ]
 
 
@@ -150,9 +144,10 @@ def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
 def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
     """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
     curves = []
-    for hue, (instants, ratios) in enumerate(_ratios(measured).items(), start=1):
-        sizes, values = np.array([*ratios.items()]).T
-        curves.append(PanelCurve(f"{instants} instants", sizes, values, hue, "points"))
+    for hue, instants in enumerate(sorted({times.instants for times in measured}), start=1):
+        own = sorted((each.size, each.ratio) for each in measured if each.instants == instants)
+        sizes, ratios = np.array(own).T
+        curves.append(PanelCurve(f"{instants} instants", sizes, ratios, hue, "points"))
     ends = np.array([curves[0].x[0], curves[0].x[-1]])
     return Panel(
         f"Time of {TIMES}",
@@ -196,7 +191,7 @@ def write_study(
         PlotSection(CURVES, error_panels(curves)),
         f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
         PlotSection(SIZES, [ratio_panel(settings, measured)]),
-        f"{html_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
+        f"{html_table(sizes_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
     ]
     return write_page(folder / FILES[-1], "Error against run time", sections)
