@@ -71,18 +71,10 @@ class OtherResults:
 
 
 def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
-    """Read results of another program for a scene.
+    """Read results of another program for a scene, of a table, bytes or text.
 
-    Parameters
-    ----------
-    data
-        A table as `solver.tables` takes it, a file's bytes or its text. Its head names the columns
-        x (m), t (s), and friction force or displacement, in any order and with units if they are
-        others; further columns are passed over, and rows may have any order.
-    source
-        Name of the file.
-    settings
-        Those in force, which say how long the body and the run are.
+    Its head names the columns x (m), t (s), and friction force or displacement, in any order and
+    with units if they are others; further columns are passed over, and rows may have any order.
 
     Raises
     ------

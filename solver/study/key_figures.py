@@ -40,16 +40,8 @@ def key_figures(
 ) -> list[KeyFigure]:
     """Key figures at an instant.
 
-    Parameters
-    ----------
-    axes, loop
-        Titles and units of displacement and force of the loop, and both, shape (2, n_instants).
-    status
-        Of all contact points, shape (n_points, n_instants).
-    energy
-        Lost by friction in the whole run, J.
-    instant
-        Its number.
+    Of the axes of the loop and both of its sides, shape (2, n_instants), the status of all contact
+    points, shape (n_points, n_instants), and the energy that friction takes in the whole run, J.
     """
     figures = []
     for name, (title, unit), values in zip(("displacement", "force"), axes, loop, strict=True):

@@ -145,11 +145,6 @@ def loop_in(table: Table, columns: LoopColumns, source: str, axes: Axes) -> Meas
 class LoopComparison:
     """A measured loop beside the runs of one problem.
 
-    Parameters
-    ----------
-    measured, loop, problem
-        The table, and the loop of the problem.
-
     Attributes
     ----------
     finds_force

@@ -141,17 +141,7 @@ def size_of(settings: Settings) -> str:
 
 
 def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
-    """Two sentences on what three meshes, or numbers of instants, tell.
-
-    Parameters
-    ----------
-    refinement
-        What they came to.
-    unit
-        Of the values; empty for a pure number.
-    size
-        What is halved.
-    """
+    """Two sentences on what three meshes, or numbers of instants, tell by halving a size."""
     if not refinement.is_told:
         return "One of the runs came to no certified solution, or has no such value: no answer."
     if refinement.margin == 0.0:

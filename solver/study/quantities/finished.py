@@ -112,21 +112,10 @@ def finished_run(
     cancelled: Callable[[], bool] = lambda: False,
     before: States | None = None,
 ) -> FinishedRun:
-    """Run a scene to its stop rule.
+    """Run a scene to its stop rule, unless it is cancelled.
 
-    Parameters
-    ----------
-    settings
-        Of the run.
-    errors
-        Whether the distance to a reference is wanted, which takes its time; where there is none,
-        the run is made without.
-    indicators
-        Whether the indicators of every iteration are wanted, which take theirs.
-    cancelled
-        As for `solve`.
-    before
-        What stuck, slipped and opened in a run of like settings, to start from where that holds.
+    Errors, where there is a reference, and indicators of every iteration take their time. `before`
+    is what stuck, slipped and opened in a run of like settings, to start from where that holds.
     """
     began = time.perf_counter()
     problem = discretise(settings)
@@ -158,17 +147,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     It counts only if it finds the one solution of the discrete problem, which does not depend on
     the start. Iterations of the method in between better no states that are as near as these
     (solver/study/README.md, 7). A run on separated bases is its own, as it is asked for these too.
-
-    Parameters
-    ----------
-    problem, settings
-        What to solve, and the options of the method.
-    states
-        As `solver.latin.status_step.states_of` gives them.
-
-    Returns
-    -------
-    That solution; None where it is not found soon.
+    None where it is not found soon.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)

@@ -161,16 +161,7 @@ class Row:
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Plan of texts as `--vary` and `--of` take them.
-
-    Parameters
-    ----------
-    settings
-        What is fixed.
-    vary
-        One or two of `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`.
-    of
-        Quantities of a run, as `solver.study.quantities.reading` takes them.
+    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` (quantities) take them.
 
     Raises
     ------
