@@ -13,7 +13,7 @@ from solver.definitions import SettingError
 from solver.scenes import CATALOGUE
 from solver.study.cases.case import Case, all_cases, case_from_file
 from solver.study.proof import report
-from solver.study.proof.known_case import known_case, rows_of
+from solver.study.proof.report import known_case, rows_of
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
 

@@ -98,7 +98,7 @@ class Sampler:
     ) -> Frame:
         """What is shown of an iterate, with the extras that views need."""
         solution = Solution(iterate, list(history), status or CANCELLED)
-        run = FinishedRun(self.settings, solution, self.loop)
+        run = FinishedRun(self.settings, solution, made_loop=self.loop)
         kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
         scalars = {n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS}
         return Frame(
@@ -164,5 +164,4 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        both = self.loop.displacement.of(shown), self.loop.force(shown)
-        return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
+        return floats(np.stack(self.loop.along(shown))[:, self.columns])
