@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -129,30 +128,3 @@ def ratio(part: float, whole: float) -> float:
     if part == 0.0:
         return 0.0
     return part / whole if whole != 0.0 else float("inf")
-
-
-SHARE = 8
-"""A number that is awaited is computed again at the latest after this part of the iterations."""
-
-
-class Awaited:
-    """The next iteration at which a number that falls towards a level is worth computing.
-
-    Half way to where its last two values would have it cross the level; while it does not fall,
-    after half of the longest wait. So it is missed by little, and only if it falls suddenly.
-    """
-
-    def __init__(self) -> None:
-        self.next = 0
-        self._last = (0, math.nan)
-
-    def saw(self, iteration: int, value: float, level: float) -> None:
-        """Take in a value."""
-        before, last = self._last
-        self._last = iteration, value
-        left = 0.0
-        if level < value < last and iteration > before:
-            rate = math.log(last / value) / (iteration - before)
-            left = 0.5 * math.log(value / level) / rate
-        least = 0 if value <= level else iteration // (2 * SHARE)
-        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)
