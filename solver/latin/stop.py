@@ -13,6 +13,7 @@ from solver.arrays import Array
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
+from solver.latin.indicators import Look
 from solver.latin.iterate import Iterate
 from solver.latin.status import (
     BELOW,
@@ -40,8 +41,6 @@ STALL_FACTOR = 0.99
 """A lower indicator is one below this part of the lowest so far."""
 SELDOM = 16
 """Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
-SHARE = 8
-"""What may be low enough is computed again at the latest after this part of the iterations."""
 DEFAULT_ACCURACY = 0.01
 """Of a status step that ends a run which nobody asks to be accurate."""
 LEAST_VIOLATION, LARGEST_VIOLATION = 1e-12, 1e-2
@@ -142,7 +141,7 @@ class StopState:
             self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY,
             needs_proof=latin.linear.has_to_prove,
         )
-        self._on_goal, self._on_sufficient = _Look(), _Look()
+        self._on_goal, self._on_sufficient = Look(), Look()
         self._lowest, self._lowest_at = math.inf, 0
         self._k: Array | None = None
 
@@ -160,7 +159,7 @@ class StopState:
             return decision
         began = time.perf_counter()
         error = certificate.distance.of_friction_force(iterate)
-        number, spent, searched = iterate.number + 1, iterate.seconds, iterate.reduction
+        number, spent, searched = iterate.number + 1, iterate.seconds, iterate.bases
         answer = finished(iterate.problem, iterate.k, certificate, number, spent, searched)
         answer = replace(answer, is_answer=self._searches)
         gave_up = status is not None and status.ending is not Ending.CONVERGED
@@ -198,9 +197,7 @@ class StopState:
         ):
             status = BELOW
         if status is None and self._has_stalled(iterate):
-            tolerance = min(stop.tolerance, stop.sufficient or math.inf)
-            agrees = self._agrees(iterate, tolerance)
-            status = stalled(self._latin, self._lowest, tolerance, agrees=agrees)
+            status = stalled(self._latin, self._lowest)
         gives_up = is_last if status is None else status.ending is not Ending.CONVERGED
         if gives_up and may_finish and not self._is_proven:
             # Whatever it costs, where a run that may end with it would give up.
@@ -239,18 +236,16 @@ class StopState:
         """Whether the estimate is the distance to a certified solution."""
         return self.estimate.certificate is not None
 
-    def _is_low(self, iterate: Iterate, tolerance: float, look: _Look) -> bool:
-        """Whether the LATIN indicator is low enough, and the k-free one agrees."""
-        look.saw(iterate.number, iterate.indicator / tolerance)
-        return iterate.indicator <= tolerance and self._agrees(iterate, tolerance)
-
-    def _agrees(self, iterate: Iterate, tolerance: float) -> bool:
-        """Whether the k-free indicator says converged, or the solution itself does.
+    def _is_low(self, iterate: Iterate, tolerance: float, look: Look) -> bool:
+        """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.
 
         The LATIN indicator alone can be fooled: a search direction that is far from the stiffness
         in play makes it as small as one likes (solver/README.md, 4). The k-free one is a share of
         what contact carries, which is nothing where all contacts open.
         """
+        look.saw(iterate.number, iterate.indicator / tolerance)
+        if iterate.indicator > tolerance:
+            return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
         return iterate.behaviour <= enough or self.estimate.is_proven_within(enough, iterate)
 
@@ -265,24 +260,3 @@ class StopState:
         if iterate.indicator < STALL_FACTOR * self._lowest:
             self._lowest, self._lowest_at = iterate.indicator, number
         return number - self._lowest_at >= STALL_WINDOW
-
-
-class _Look:
-    """The next iteration at which a number that falls is worth computing.
-
-    Half way to where its last two values, over what is low enough, would have it fall to 1; while
-    it does not fall, after half of the longest wait. So it is missed by little, and only if it
-    falls suddenly.
-    """
-
-    def __init__(self) -> None:
-        self.next, self._last = 0, (0, math.nan)
-
-    def saw(self, iteration: int, value: float) -> None:
-        """Take in a value."""
-        (before, last), left = self._last, 0.0
-        self._last = iteration, value
-        if 1.0 < value < last and iteration > before:
-            left = 0.5 * math.log(value) / math.log(last / value) * (iteration - before)
-        least = 0 if value <= 1.0 else iteration // (2 * SHARE)
-        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)
