@@ -16,7 +16,7 @@ from solver.latin import solve
 from solver.laws import Component, Contact, Unilateral
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
-from solver.scenes import discretise, loop_of
+from solver.scenes import discretise
 from solver.scenes.incline import InclineSettings
 from solver.scenes.method import method_of
 
@@ -32,7 +32,7 @@ class Run:
         distance = distance_to(reference_of(problem), problem)
         self.solution = solve(problem, method_of(self.settings), distance=distance)
         iterate = self.solution.iterate
-        loop = loop_of(self.settings, problem)
+        loop = self.settings.structure().loop(problem)
         self.degrees = loop.displacement(iterate.displacement)
         self.angle = np.radians(self.degrees)
         self.force = loop.force(iterate)

@@ -18,7 +18,7 @@ COMPLIANT = {"friction_law": "compliant"}
 
 
 def run(scene="bar", **values):
-    chosen = CATALOGUE[scene].settings.checked({**SMALL[scene], **COMPLIANT, **values})
+    chosen = CATALOGUE[scene].checked({**SMALL[scene], **COMPLIANT, **values})
     problem = discretise(chosen)
     return solve(problem, method_of(chosen), distance=distance_to(reference_of(problem), problem))
 

@@ -140,7 +140,7 @@ def test_an_error_is_that_of_friction_and_one_of_next_to_nothing_counts_beside_t
 
 @pytest.mark.parametrize(("scene", "values"), RUNS, ids=str)
 def test_what_is_called_converged_is_within_one_percent(scene, values):
-    settings = CATALOGUE[scene].settings.checked(values)
+    settings = CATALOGUE[scene].checked(values)
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
     distance = distance_to(reference_of(problem), problem)

@@ -23,7 +23,7 @@ SMALL = {"elements": 32, "elements_up": 16, "instants": 41}
 
 
 def problem_of(scene, **values):
-    settings = CATALOGUE[scene].settings.checked(values)
+    settings = CATALOGUE[scene].checked(values)
     return settings, discretise(settings)
 
 

@@ -174,7 +174,7 @@ def with_others(draw, definitions, chosen):
 @st.composite
 def values(draw, scene, power):
     """Any values in their ranges, for few or for most of the settings; the rest keep defaults."""
-    definitions = CATALOGUE[scene].settings.definitions()
+    definitions = CATALOGUE[scene].definitions()
     chosen = {name: draw(st.integers(*bounds)) for name, bounds in SIZES[scene].items()}
     for cut, elements in CUTS.items():
         if cut in definitions:
@@ -196,7 +196,7 @@ def values(draw, scene, power):
 @given(st.data())
 def test_any_run_ends_finite_with_a_status_or_is_refused_and_converged_is_right(scene, power, data):
     try:
-        chosen = CATALOGUE[scene].settings.checked(data.draw(values(scene, power)))
+        chosen = CATALOGUE[scene].checked(data.draw(values(scene, power)))
         problem = discretise(chosen)
         try:
             reference = reference_of(problem)

@@ -160,7 +160,7 @@ LARGE = {
 
 @pytest.mark.parametrize("scene", LARGE)
 def test_iterates_are_the_same_to_the_bit_whatever_the_threads(scene):
-    settings = CATALOGUE[scene].settings.checked(LARGE[scene])
+    settings = CATALOGUE[scene].checked(LARGE[scene])
     problem = discretise(settings)
     assert len(Blocks(problem.n_rows, problem.n_instants).slices) > 1
     one, several = (

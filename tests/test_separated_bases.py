@@ -63,7 +63,7 @@ def test_the_default_basis_reaches_one_percent_of_displacement(substructures, mo
     [("bar", {"substructures": 5}), ("layers", {"elements": 16, "instants": 31})],
 )
 def test_the_force_follows_the_number_of_modes(scene, size):
-    settings = CATALOGUE[scene].settings.checked({"linear_stage": "pgd", **size, "finish": "none"})
+    settings = CATALOGUE[scene].checked({"linear_stage": "pgd", **size, "finish": "none"})
     problem = discretise(settings)
     distance = distance_to(reference_of(problem), problem)
     errors = []
@@ -144,7 +144,7 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
 
 @pytest.mark.parametrize("scene", ["bar", "strand"])
 def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
-    settings = CATALOGUE[scene].settings.checked({"linear_stage": "pgd", "finish": "none"})
+    settings = CATALOGUE[scene].checked({"linear_stage": "pgd", "finish": "none"})
     problem = discretise(settings)
     distance = distance_to(reference_of(problem), problem)
     errors, stored = [], []
@@ -161,7 +161,7 @@ SMALL_ONES = {"elements": 12, "instants": 21}
 
 def of_scene(scene: str = "bar", **changes: Any) -> Settings:
     given = {"linear_stage": "pgd", **SMALL_ONES, **changes}
-    return CATALOGUE[scene].settings.checked(given)
+    return CATALOGUE[scene].checked(given)
 
 
 def ended(settings: Settings) -> Solution:

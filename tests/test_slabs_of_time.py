@@ -57,7 +57,7 @@ def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
         "incline": dict,
     }[scene]()
     own = {**path, "instants": CYCLE * cycles + 1, "duration": float(cycles), **changes}
-    return discretise(CATALOGUE[scene].settings.checked(own))
+    return discretise(CATALOGUE[scene].checked(own))
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from solver.scenes.method import method_of
 
 
 def problem_of(scene, **values):
-    settings = CATALOGUE[scene].settings.checked({"instants": 13, **values})
+    settings = CATALOGUE[scene].checked({"instants": 13, **values})
     return settings, discretise(settings)
 
 
@@ -76,7 +76,7 @@ THIN = {"length": 2.0, "thickness": 0.01, "elements": 24, "instants": 13, "finis
 
 
 def stuck(**values):
-    settings = CATALOGUE["layers"].settings.checked(values)
+    settings = CATALOGUE["layers"].checked(values)
     return discretise(settings), method_of(settings)
 
 

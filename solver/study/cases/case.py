@@ -9,9 +9,7 @@ from typing import Any
 
 from solver.definitions import SettingError
 from solver.files import check_keys, placed, read_toml, require, scene_settings
-from solver.scenes import CATALOGUE
-from solver.scenes.entry import Emblem
-from solver.settings import Settings
+from solver.settings import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 
@@ -78,7 +76,7 @@ class Case:
     change: str
     controls: tuple[str, ...]
     views: tuple[str, ...]
-    picture: Emblem
+    picture: Icon
 
 
 def case_from_file(path: Path) -> Case:
@@ -114,8 +112,8 @@ def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
     for control in entries["controls"]:
         remedy = "name a setting that does something here"
         require(control in working, "controls", control, ", ".join(working), remedy)
-    paths = entries.get("picture", CATALOGUE[settings.scene].emblem._asdict())
-    check_keys(paths, dict.fromkeys(Emblem._fields, str))
+    paths = entries.get("picture", settings.icon._asdict())
+    check_keys(paths, dict.fromkeys(Icon._fields, str))
     read = dict(entries) | {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
-    read |= {"quantity": reading(entries["quantity"]), "picture": Emblem(**paths)}
+    read |= {"quantity": reading(entries["quantity"]), "picture": Icon(**paths)}
     return Case(name=name, settings=settings, **read)
