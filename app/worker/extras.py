@@ -163,12 +163,11 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     "x", (n_places,), m; "space", (n_modes, n_places), over the largest entry of each; "time",
     (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the basis.
     """
-    bases = iterate.reduction
-    if bases is None:
+    if not iterate.bases:
         return None
-    last = len(bases.modes) - 1
+    last = len(iterate.bases) - 1
     place = last if needs.substructure is None else min(max(needs.substructure, 0), last)
-    basis, record, problem = bases.modes[place], bases.records[place], sampler.problem
+    basis, problem = iterate.bases[place], sampler.problem
     x, space = _along(basis, problem, place)
     size = _signed_size(space)
     time = basis.time_functions[:MOST_MODES, sampler.columns] * problem.scales.displacement
@@ -177,7 +176,7 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
         "space": floats(space / size[:, None]),
         "time": floats(time * size[:, None]),
         "substructure": place,
-        "text": f"substructure {place + 1}: {record.modes} modes, {record.added} added",
+        "text": f"substructure {place + 1}: {basis.n_modes} modes, {basis.record.added} added",
     }
 
 
@@ -214,9 +213,9 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     """
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
-    fitted, bases = clips_in(sampler.settings, iterate), iterate.reduction
-    pieces = of_bases(iterate, bases) if bases is not None else None
-    if bases is None and len(sampler.problem.substructures) > 1:
+    fitted, bases = clips_in(sampler.settings, iterate), iterate.bases
+    pieces = of_bases(iterate, bases) if bases else None
+    if not bases and len(sampler.problem.substructures) > 1:
         pieces = in_pieces(iterate)
     return {
         "table": fitted.given.size,
