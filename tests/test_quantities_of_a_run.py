@@ -71,18 +71,6 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "exact"),
-    [({}, 0.2), ({"pressure": 2500.0}, 0.4), ({"peak": 300.0}, 0.1), ({"wires": 2}, 0.4)],
-)
-def test_a_broken_wire_regains_its_force_over_its_tension_by_the_friction(
-    changes: dict[str, Any], exact: float
-) -> None:
-    changes = {"broken": 1, **changes} if "wires" in changes else changes
-    run = ran("strand", load="ramp", **{"peak": 600.0, **changes}, instants=11)
-    assert taken("recovery_length", run) == pytest.approx(exact, rel=1e-3)
-
-
-@pytest.mark.parametrize(
     ("scene", "changes", "exact"),
     [
         ("bar", {"peak": 900.0}, 0.18),
