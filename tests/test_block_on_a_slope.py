@@ -10,15 +10,12 @@ import pytest
 from contact_problems import friction_of, local_stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from runs import solved
 
 from solver.definitions import SettingError
-from solver.latin import solve
 from solver.laws import Component, Contact, Unilateral
-from solver.reference.distance import distance_to
-from solver.reference.incremental import reference_of
-from solver.scenes import discretise, loop_of
+from solver.scenes import loop_of
 from solver.scenes.incline import InclineSettings
-from solver.scenes.method import method_of
 
 SMALL = {"elements": 12, "elements_up": 6, "instants": 41}
 
@@ -28,10 +25,9 @@ class Run:
 
     def __init__(self, **values):
         self.settings = InclineSettings.checked({**SMALL, **values})
-        problem = discretise(self.settings)
-        distance = distance_to(reference_of(problem), problem)
-        self.solution = solve(problem, method_of(self.settings), distance=distance)
+        self.solution = solved(self.settings)
         iterate = self.solution.iterate
+        problem = iterate.problem
         loop = loop_of(self.settings, problem)
         self.degrees = loop.displacement(iterate.displacement)
         self.angle = np.radians(self.degrees)

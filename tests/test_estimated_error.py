@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from runs import distance_of, solved
 
 from solver.cli import main
 from solver.latin import (
@@ -21,12 +22,9 @@ from solver.latin import (
     StopState,
     iterations,
     judged,
-    solve,
     status,
     stop,
 )
-from solver.reference.distance import Distance, distance_to
-from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -48,10 +46,6 @@ def small(scene: str, **changes: Any) -> Any:
     return CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
 
 
-def true_distance(problem: Any) -> Distance:
-    return distance_to(reference_of(problem), problem)
-
-
 @pytest.mark.parametrize("scene", SMALL)
 @pytest.mark.parametrize("method", METHODS)
 def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
@@ -59,7 +53,7 @@ def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
 ) -> None:
     settings = small(scene, method=method, finish="none", tolerance=1e-8, max_iterations=400)
     problem = discretise(settings)
-    distance = true_distance(problem)
+    distance = distance_of(problem)
     proven = 0
     for iterate, verdict in judged(problem, method_of(settings)):
         if verdict.certificate is not None:
@@ -79,9 +73,7 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
     scene: str, method: str, accuracy: float
 ) -> None:
     changes = {"finish": "none", "tolerance": 1e-3, "max_iterations": 2000}
-    settings = small(scene, method=method, accuracy=accuracy, **changes)
-    problem = discretise(settings)
-    solution = solve(problem, method_of(settings), distance=true_distance(problem))
+    solution = solved(small(scene, method=method, accuracy=accuracy, **changes))
     assert solution.status.ending is Ending.CONVERGED
     last = solution.records[-1]
     assert last.error_force <= accuracy / LOW
@@ -91,9 +83,7 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
 @pytest.mark.parametrize("scene", SMALL)
 def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scene: str) -> None:
     for accuracy in (1e-2, 1e-6):
-        settings = small(scene, accuracy=accuracy)
-        problem = discretise(settings)
-        solution = solve(problem, method_of(settings), distance=true_distance(problem))
+        solution = solved(small(scene, accuracy=accuracy))
         assert solution.status.ending is Ending.CONVERGED
         assert solution.is_certified
         assert solution.records[-1].error_force < ROUNDING
@@ -104,9 +94,7 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
 def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     scene: str, is_by_increments: bool
 ) -> None:
-    settings = CATALOGUE[scene].settings()
-    problem = discretise(settings)
-    found = solve(problem, method_of(settings), distance=true_distance(problem))
+    found = solved(CATALOGUE[scene].settings())
     before = found.records[-2]
     advice = found.status.advice
     assert f"iterate {before.iteration}, whose" in advice
@@ -193,8 +181,7 @@ def options(scene: str = "bar", **changes: Any) -> Settings:
 
 @cache
 def ended(settings: Settings) -> Solution:
-    problem = discretise(settings)
-    return solve(problem, method_of(settings), distance=distance_to(reference_of(problem), problem))
+    return solved(settings)
 
 
 @cache

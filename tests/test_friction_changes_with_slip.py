@@ -9,6 +9,7 @@ import pytest
 from contact_problems import local_stage, rubbing_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from runs import solved
 
 from solver import Stack
 from solver.discrete import Given, Side, Support
@@ -161,12 +162,9 @@ def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(ratio,
 def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": 3e-4, "load": load}
     chosen = CATALOGUE["bar"].settings.checked({**values, "instants": 51, "finish": "none"})
-    problem = discretise(chosen)
-    distance = distance_to(reference_of(problem), problem)
-    run = solve(problem, method_of(chosen), distance=distance)
+    run, whole = (solved(chosen.replace(finish=finish)) for finish in ("none", "at-once"))
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.02
-    whole = solve(problem, method_of(chosen.replace(finish="at-once")), distance=distance)
     assert whole.is_certified
     assert whole.records[-1].error_force < 1e-9
     assert whole.records[-1].behaviour < 1e-9

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import islice
-
 import numpy as np
 import pytest
-from bars import SMALL, boundary_of, options, relative, sample, table
+from bars import SMALL, boundary_of, options, relative, table
+from runs import iterates, sample
 
-from solver.latin import Iterate, iterations
+from solver.latin import Iterate
 from solver.laws import Contact, Dirichlet, Neumann
 from solver.reference.incremental import reference_of
 from solver.scenes import discretise
@@ -44,7 +43,7 @@ def test_scaling_load_and_pressure_scales_the_answer(factor):
     ids=["millimetres and milliseconds", "inches and pounds", "kilometres, giganewtons and hours"],
 )
 def test_other_units_give_the_same_iterates(method, metre, newton, second):
-    def iterates(metre, newton, second):
+    def in_units(metre, newton, second):
         table = BarSettings.checked({})
         values = {
             "length": table.length * metre,
@@ -55,9 +54,9 @@ def test_other_units_give_the_same_iterates(method, metre, newton, second):
             "duration": table.duration * second,
         }
         settings = BarSettings.checked({"method": method, **SMALL, **values})
-        return islice(iterations(discretise(settings), method_of(settings)), 40)
+        return iterates(settings, 40)
 
-    for own, other in zip(iterates(1.0, 1.0, 1.0), iterates(metre, newton, second), strict=True):
+    for own, other in zip(in_units(1.0, 1.0, 1.0), in_units(metre, newton, second), strict=True):
         assert relative(other.displacement, own.displacement * metre) < 1e-10
         assert relative(other.friction_force, own.friction_force * newton) < 1e-10
 
