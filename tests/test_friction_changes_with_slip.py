@@ -173,11 +173,11 @@ def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
 def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
     length = 4e-4
     largest = MOST / gamma(0.0, length)
-    force = np.linspace(0.0, 1.2 * largest, 121)
-    problem = pulled_bar(changing(0.0, length), force, 100)
+    force = np.linspace(0.0, 1.2 * largest, 61)
+    problem = pulled_bar(changing(0.0, length), force, 50)
     found = reference_of(problem)
     assert found.jumps_at is not None
-    assert force[found.jumps_at] == pytest.approx(largest, rel=0.015)
+    assert force[found.jumps_at] == pytest.approx(largest, rel=0.03)
     run = solve(problem, Latin())
     assert run.is_certified
     assert f"At {problem.instants[found.jumps_at]:.4g} s" in run.status.advice
@@ -188,13 +188,13 @@ def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
 @pytest.mark.parametrize("displaced", [False, True])
 def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(length, displaced):
     found = []
-    for steps in (10, 320):
+    for steps in (10, 80):
         end = np.linspace(0.0, 1.0, steps + 1) * (6e-4 * STIFFNESS if displaced else 800.0)
         found.append(reference_of(pulled_bar(changing(0.3, length), end, 40, displaced=displaced)))
         assert found[-1].converged.all()
         assert found[-1].jumps_at is None
     few, many = (one.displacement for one in found)
-    assert np.allclose(few, many[:, ::32], rtol=0.0, atol=1e-9 * np.abs(many).max())
+    assert np.allclose(few, many[:, ::8], rtol=0.0, atol=1e-9 * np.abs(many).max())
 
 
 STRIP = {
