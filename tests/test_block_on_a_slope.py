@@ -53,11 +53,6 @@ def test_the_block_sticks_until_the_slope_is_that_of_friction(run):
     assert np.all(run.moved[slides] < -run.settings.slack)
 
 
-def test_on_the_way_up_the_spring_carries_what_friction_does_not(run):
-    rising = (np.tan(run.angle) > 0.3) & (np.arange(41) <= 20)
-    np.testing.assert_allclose(run.force[rising], run.sliding_down[rising], rtol=1e-7)
-
-
 def test_on_the_way_back_nothing_moves_until_the_spring_overcomes_friction(run):
     peak = run.force.max()
     back = np.arange(41) > 20

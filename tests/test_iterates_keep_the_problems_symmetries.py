@@ -26,10 +26,11 @@ def test_a_path_with_pauses_gives_every_iterate_again_with_pauses():
         assert relative(sample(slow, number).displacement, expected) < 1e-12
 
 
-@pytest.mark.parametrize("factor", [0.37, 8.0])
-def test_scaling_load_and_pressure_scales_the_answer(factor):
+@pytest.mark.parametrize("factor", [0.37, 8.0, -1.0])
+def test_scaling_or_reversing_the_load_does_so_to_the_answer(factor):
     plain, scaled = (
-        sample(options(**SMALL, peak=900.0 * c, pressure=5000.0 * c), 20) for c in (1.0, factor)
+        sample(options(**SMALL, peak=900.0 * c, pressure=5000.0 * abs(c)), 20)
+        for c in (1.0, factor)
     )
     assert relative(scaled.displacement, factor * plain.displacement) < 1e-12
     assert relative(scaled.friction_force, factor * plain.friction_force) < 1e-12
@@ -59,12 +60,6 @@ def test_other_units_give_the_same_iterates(method, metre, newton, second):
     for own, other in zip(in_units(1.0, 1.0, 1.0), in_units(metre, newton, second), strict=True):
         assert relative(other.displacement, own.displacement * metre) < 1e-10
         assert relative(other.friction_force, own.friction_force * newton) < 1e-10
-
-
-def test_reversing_the_load_reverses_the_answer():
-    plain, reversed_ = (sample(options(**SMALL, peak=peak), 20) for peak in (900.0, -900.0))
-    assert relative(reversed_.displacement, -plain.displacement) < 1e-12
-    assert np.array_equal(reversed_.status, -plain.status)
 
 
 def iterate_of(problem, k, displacement, force):
