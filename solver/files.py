@@ -85,20 +85,7 @@ def settings_from_command(
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Content of a file in TOML.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-    kind
-        What it is to be, used in messages.
-
-    Raises
-    ------
-    SettingError
-        For a file that cannot be read, or is no TOML.
-    """
+    """Content of a file in TOML; one that is none is refused as what it is to be, its `kind`."""
     refuse = partial(SettingError, kind, str(path), "a file that can be read")
     return _parsed(read_bytes(path, refuse), kind, str(path))
 
