@@ -113,10 +113,7 @@ def renamed(table: Table, heads: str) -> Table:
         return replace(table, columns=columns)
     if len(columns) != width + 1:
         raise table.refuse(f"it has {width} columns: write as many names, or one more")
-    rows = [
-        (line, [*cells, *[""] * (width - len(cells)), str(number)])
-        for number, (line, cells) in enumerate(table.rows)
-    ]
+    rows = [(line, [*cells, str(n)]) for n, (line, cells) in enumerate(table.rows)]
     return replace(table, columns=columns, rows=rows)
 
 

@@ -59,7 +59,7 @@ Number = tuple[str, str, float, float]
 
 
 def loop(answer: Answer) -> Iterator[Number]:
-    """Largest and last value that a scene's loop finds, and the work that it encloses from there on.
+    """Largest and last value that a loop finds, and the work that it encloses from the first on.
 
     Both beside the closed form over the same path.
     """
