@@ -129,8 +129,8 @@ class ClipErrors(ExtraView):
         lines = [self.add(name, color=color, width=2.5) for name, color in colors.items()]
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         lines.append(self.add("alone", "Scatter", size=11, **ring))
+        lines[-1].name = "clips"
         self.add("table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
-        self._drawn["clips"].append(lines[-1])
         self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 

@@ -153,9 +153,9 @@ class AxialForces(ExtraView):
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
-        lines = [self.add(wire, width=2) for wire in WIRES]
+        self._lines = [self.add(wire, width=2) for wire in WIRES]
         self.legend(*WIRES, stuck="all stick", exact="closed form")
-        hover(made, lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
+        hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
         """Show the force in each wire, the broken one in its own colour."""
@@ -176,7 +176,7 @@ class AxialForces(ExtraView):
                 self.draw(wire, [], [])
                 continue
             is_broken = "broken" in names[number]
-            look = (ERROR, 3.5) if is_broken else (next(colors), 2.0)
-            self.restyle(wire, *look)
+            color, width = (ERROR, 3.5) if is_broken else (next(colors), 2.0)
+            self._lines[number].glyph.update(line_color=color, line_width=width)
             title = names[number] if bent or number or len(names) == 1 else f"wire {names[0]}"
             self.draw(wire, x, axial["force"][number, :, column], title)
