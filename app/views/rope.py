@@ -14,7 +14,7 @@ from app.units import unit_for
 from app.views.axis import extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.view import ExtraView, color_bar, end_of, hover, joined, key_of
-from app.worker.extras import MOST_WIRES
+from app.worker.geometry import MOST_WIRES
 from solver.scenes import kind_of
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
