@@ -12,8 +12,7 @@ from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.picture import bands
 from app.views.rope import StressRanges, Unrolled, WireSection
-from app.views.scene import HEIGHT, WIDTH, Scene, Stress
-from app.views.thrust import WIDEST, Thrust
+from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
 from app.views.timeline import Timeline, paths_of
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -158,7 +157,7 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
             _ = view.figure
             for phase in (0.0, 0.6):
                 view.update(frame, Selection(phase), None)
-    assert all(np.isfinite(values).all() for _, values, _ in paths_of(frame.run))
+    assert all(np.isfinite(values).all() for _, values in paths_of(frame.run))
     _, _, values = frame.extras["stress"]
     assert values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
 
