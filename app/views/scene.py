@@ -16,7 +16,7 @@ from app.frame import Frame, Selection
 from app.units import number, unit_for
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
-from app.views.layout import layout_of
+from app.views.layout import layout_of, without_acts
 from app.views.picture import Handle, Picture
 from app.views.view import View, bare, color_bar
 
@@ -78,7 +78,8 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        layout = layout_of(run.geometry, *self._size.values())
+        geometry = run.geometry if self.shows_status else without_acts(run.geometry)
+        layout = layout_of(geometry, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
@@ -87,7 +88,7 @@ class Scene(View):
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
         self.picture = picture = Picture(
-            frame, run.column(selection.phase), layout, self._factor, self._peaks,
+            frame, run.column(selection.phase), geometry, layout, self._factor, self._peaks,
             run.settings.behind(),
         )  # fmt: skip
         for name, columns in picture.columns(with_status=self.shows_status).items():
