@@ -89,8 +89,7 @@ class Iteration:
         self.local = LocalStage(problem, self.k, blocks)
         self._mixture: AndersonState | None = None
         if latin.acceleration is not None and self.linear.is_full:
-            memory, motion = latin.acceleration.memory, self.local.motion
-            self._mixture = AndersonState(problem, self.linear, memory, motion, blocks)
+            self._mixture = AndersonState(problem, self.linear, self.local.motion, blocks)
         if start is None and problem.rest is not None:
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
         elif start is None and latin.start is not None:
