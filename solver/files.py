@@ -166,7 +166,7 @@ def scene_settings(scene: object) -> type[Settings]:
     """Settings of a scene by its name in the catalogue."""
     if not isinstance(scene, str) or scene not in CATALOGUE:
         raise SettingError("scene", scene, ", ".join(CATALOGUE), "choose one of these")
-    return CATALOGUE[scene].settings
+    return CATALOGUE[scene]
 
 
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:

@@ -17,7 +17,6 @@ from solver.discrete.structure import Structure
 from solver.discrete.wire_forces import wire_forces
 from solver.latin import Iterate
 from solver.laws import OPEN
-from solver.scenes import left_out, structure_of
 from solver.settings import Settings
 
 MOST_GROWTH = 2
@@ -54,8 +53,8 @@ def ends_of_tables(settings: Settings) -> dict[str, float]:
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     """Sentences on what an iterate shows, at the end or on the way, that no status tells."""
-    remarks = list(left_out(settings))
-    beyond = beyond_small_strain(structure_of(settings), iterate.problem, iterate.displacement)
+    remarks = list(settings.left_out())
+    beyond = beyond_small_strain(settings.structure(), iterate.problem, iterate.displacement)
     remarks += [] if beyond is None else [beyond]
     standing = _standing_on_an_end(settings, iterate)
     if standing.any():
@@ -88,7 +87,7 @@ def contact_growth(iterate: Iterate) -> int:
 
 def _standing_on_an_end(settings: Settings, iterate: Iterate) -> NDArray[np.bool_]:
     """Instants at which a body that is free to turn touches its support at one end alone."""
-    structure = structure_of(settings)
+    structure = settings.structure()
     none = np.zeros(iterate.problem.n_instants, dtype=bool)
     if not isinstance(structure, Stack) or structure.support is None:
         return none
@@ -135,7 +134,7 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
         axial = np.abs(force).max(initial=0.0) / wire.helix.stiffness
-        bent = 0.5 * wire.diameter * np.abs(wire.curvature).max(initial=0.0)
+        bent = 0.5 * wire.made.diameter * np.abs(wire.curvature).max(initial=0.0)
         largest = max(largest, float(axial + bent))
     return largest
 

@@ -18,7 +18,7 @@ from solver.settings import Settings
 
 
 def settings_of(scene: str, **values: Any) -> Any:
-    return CATALOGUE[scene].settings.checked(values)
+    return CATALOGUE[scene].checked(values)
 
 
 def distance_of(problem: Problem) -> Distance:

@@ -11,14 +11,14 @@ from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, loop_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.quantities import QUANTITIES
 from solver.study.quantities.finished import finished_run
 
 
 def bar(**changes):
-    return CATALOGUE["bar"].settings.checked(changes)
+    return CATALOGUE["bar"].checked(changes)
 
 
 def answer(settings):
@@ -71,7 +71,7 @@ def test_a_spring_is_a_clamp_where_it_is_stiff_and_nothing_where_it_is_soft():
 def test_the_loop_of_a_spring_that_is_pulled_out_holds_the_energy_that_friction_takes():
     settings = bar(left_end="free", right_end="spring", right_displacement=5e-3, right_load="cycle")
     fields, _, _ = answer(settings)
-    loop = loop_of(settings, fields.problem)
+    loop = settings.structure().loop(fields.problem)
     force, moved = loop.force(fields), loop.displacement(fields.displacement)
     contact = fields.contact("friction")
     taken = np.diff(contact.slip, axis=1) * fields.friction_force[:, 1:]
@@ -113,7 +113,7 @@ def test_a_bar_between_two_clamps_holds_all_of_its_heat():
         right_end="held", temperature=30.0, friction=0.0, section_profile="rising", elements=40
     )
     fields, moved, axial = answer(settings)
-    loop = loop_of(settings, fields.problem)
+    loop = settings.structure().loop(fields.problem)
     force = loop.force(fields)
     assert loop.across == ("Strain without force", "")
     np.testing.assert_allclose(axial[:, -1], force[-1], rtol=1e-9)

@@ -144,7 +144,7 @@ def test_what_is_no_strand_is_refused() -> None:
     with pytest.raises(RefusedError, match="same number of nodes"):
         replace(scene, wires=[short, *scene.wires[1:]])
     with pytest.raises(RefusedError, match="below zero"):
-        replace(scene, wires=[replace(scene.wires[0], bound=np.array([-1.0]))])
+        replace(scene, wires=[replace(scene.wires[0], bound=-1.0)]).discretise()
 
 
 def taken(name: str, run: FinishedRun) -> float:

@@ -129,7 +129,7 @@ def test_a_row_is_drawn_alike_whatever_was_drawn_before(scene):
 
 @pytest.mark.parametrize("scene", SMALL)
 def test_the_equations_alone_tell_a_solution_from_what_is_near_it(scene):
-    problem = discretise(CATALOGUE[scene].settings.checked(SMALL[scene]))
+    problem = discretise(CATALOGUE[scene].checked(SMALL[scene]))
     found = reference_of(problem)
     weaker = dataclasses.replace(found, contact_force=0.999 * found.contact_force)
     further = dataclasses.replace(found, displacement=1.001 * found.displacement)

@@ -14,7 +14,6 @@ from runs import solved
 
 from solver.definitions import SettingError
 from solver.laws import Component, Contact, Unilateral
-from solver.scenes import loop_of
 from solver.scenes.incline import InclineSettings
 
 SMALL = {"elements": 12, "elements_up": 6, "instants": 41}
@@ -28,7 +27,7 @@ class Run:
         self.solution = solved(self.settings)
         iterate = self.solution.iterate
         problem = iterate.problem
-        loop = loop_of(self.settings, problem)
+        loop = self.settings.structure().loop(problem)
         self.degrees = loop.displacement(iterate.displacement)
         self.angle = np.radians(self.degrees)
         self.force = loop.force(iterate)

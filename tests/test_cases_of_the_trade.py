@@ -93,7 +93,7 @@ def test_a_case_is_a_file_of_settings_too(
     assert main(["run", str(path), "--json", "--no-reference"]) == 0
     assert json.loads(capsys.readouterr().out)["scene"] == "bar"
     case = case_from_file(path)
-    assert case.picture == CATALOGUE["bar"].emblem
+    assert case.picture == CATALOGUE["bar"].icon
     assert (case.name, case.known, case.controls) == ("mine", 4.095e-4, ("load",))
 
 

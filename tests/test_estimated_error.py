@@ -41,7 +41,7 @@ ROUNDING = 1e-9
 
 
 def small(scene: str, **changes: Any) -> Any:
-    return CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
+    return CATALOGUE[scene].checked({**SMALL[scene], **changes})
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -92,7 +92,7 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
 def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     scene: str, is_by_increments: bool
 ) -> None:
-    found = solved(CATALOGUE[scene].settings())
+    found = solved(CATALOGUE[scene]())
     before = found.records[-2]
     advice = found.status.advice
     assert f"iterate {before.iteration}, whose" in advice
@@ -160,7 +160,7 @@ FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
     sizes = {**SHORT, **(FEW if scene == "wall" else {})}
-    return CATALOGUE[scene].settings.checked({**sizes, "finish": "accuracy", **changes})
+    return CATALOGUE[scene].checked({**sizes, "finish": "accuracy", **changes})
 
 
 @cache

@@ -161,7 +161,7 @@ def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(ratio,
 @pytest.mark.parametrize("load", ["sine", "random"])
 def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": 3e-4, "load": load}
-    chosen = CATALOGUE["bar"].settings.checked({**values, "instants": 51, "finish": "none"})
+    chosen = CATALOGUE["bar"].checked({**values, "instants": 51, "finish": "none"})
     run, whole = (solved(chosen.replace(finish=finish)) for finish in ("none", "at-once"))
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.02
@@ -236,7 +236,7 @@ def pull_out(length):
 def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(length, end):
     path = [[0.0, 0.0], [0.25, 0.0], [1.0, end]]
     values = {**STRIP, "slip_length": length, "right_normal_load": path, "instants": 121}
-    chosen = CATALOGUE["block"].settings.checked(values)
+    chosen = CATALOGUE["block"].checked(values)
     problem = discretise(chosen)
     run = solve(problem, method_of(chosen))
     assert run.status.ending is Ending.CONVERGED
@@ -261,7 +261,7 @@ def test_a_fault_that_softens_is_solved_and_jumps_only_where_its_elements_are_to
 ):
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": 1e-3}
     for elements, expected in ((48, jumps), (96, False)):
-        chosen = CATALOGUE["fault"].settings.checked({**values, "elements": elements})
+        chosen = CATALOGUE["fault"].checked({**values, "elements": elements})
         run = solve(discretise(chosen), method_of(chosen))
         assert run.is_certified
         assert ("jumps" in run.status.advice) is expected
@@ -280,7 +280,7 @@ def test_what_is_found_obeys_equilibrium_and_the_law_wherever_it_is_found(
     random = np.random.default_rng(seed)
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": length, "instants": 21}
     values |= {"friction": random.uniform(0.1, 0.8), "elements": 12}
-    chosen = CATALOGUE[scene].settings.checked(values)
+    chosen = CATALOGUE[scene].checked(values)
     problem = discretise(chosen)
     found = reference_of(problem)
     if found.converged.all():

@@ -28,7 +28,7 @@ SMALL_BLOCK = {"elements": 12, "elements_up": 6, "instants": 13, "substructures"
 
 @functools.cache
 def made(scene: str, errors: bool, changes: tuple[tuple[str, Any], ...]) -> FinishedRun:
-    return finished_run(CATALOGUE[scene].settings.checked(dict(changes)), errors=errors)
+    return finished_run(CATALOGUE[scene].checked(dict(changes)), errors=errors)
 
 
 def ran(scene: str, *, errors: bool = False, **changes: Any) -> FinishedRun:
@@ -206,7 +206,7 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(scene: str) -> None:
     """Also at iterates on the way, such as one at which nothing touches yet."""
-    settings = CATALOGUE[scene].settings.checked({"method": "paper"})
+    settings = CATALOGUE[scene].checked({"method": "paper"})
     for iterate in islice(iterations(discretise(settings), method_of(settings)), 2):
         run = FinishedRun(settings, Solution(iterate, [], CANCELLED))
         for values in (run.displacement, run.force):
@@ -338,7 +338,7 @@ COMES_BACK = {"fault": {"injection_load": "pulses"}}
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
     """One more of the preset is always so many cycles more of the load."""
-    settings = CATALOGUE[scene].settings
+    settings = CATALOGUE[scene]
     values = {"instants": 401, **COMES_BACK.get(scene, {})}
     counted = [cycles_in(settings.checked({**values, "cycles": n})) for n in (2, 3, 9)]
     more = counted[1] - counted[0]

@@ -55,5 +55,5 @@ def test_any_run_is_right_or_says_that_it_is_not_or_is_refused(scene: str) -> No
     for row in range(RUNS):
         values = values_of(scene, row)
         outcome = run(scene, values)
-        accuracy = values.get("accuracy", CATALOGUE[scene].settings.checked({}).accuracy)
+        accuracy = values.get("accuracy", CATALOGUE[scene].checked({}).accuracy)
         assert judge(outcome, accuracy) is not Verdict.WRONG, (values, outcome)

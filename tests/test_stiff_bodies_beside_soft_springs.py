@@ -121,7 +121,7 @@ def test_a_run_ends_certified_and_its_forces_balance(case):
 def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiffness):
     law = {"friction_law": "compliant", "contact_stiffness": stiffness}
     sizes = {"elements": 8, "substructures": 2, "instants": 13}
-    problem = discretise(CATALOGUE[scene].settings.checked({**sizes, **law, **changes}))
+    problem = discretise(CATALOGUE[scene].checked({**sizes, **law, **changes}))
     found = reference_of(problem)
     assert found.converged.all()
     assert kkt_residual(found, problem) < 1e-10

@@ -153,8 +153,8 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("scene", ["bar", "layers"])
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
-    settings = CATALOGUE[scene].settings.checked(SMALL_ONES[scene])
-    (head, *rows), name = ratio_table(settings, times_at_sizes(settings)), CATALOGUE[scene].grows[0]
+    settings = CATALOGUE[scene].checked(SMALL_ONES[scene])
+    (head, *rows), name = ratio_table(settings, times_at_sizes(settings)), CATALOGUE[scene].GROWS[0]
     sizes = [round(factor * getattr(settings, name)) for factor in FACTORS]
     assert head[1:] == [f"{name} {size}" for size in sizes]
     instants = [round(factor * (settings.instants - 1)) + 1 for factor in FACTORS]
@@ -165,7 +165,7 @@ def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
 def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    settings = CATALOGUE["strand"].settings.checked({**SMALL_ONES["strand"], "wires": 2})
+    settings = CATALOGUE["strand"].checked({**SMALL_ONES["strand"], "wires": 2})
     monkeypatch.setattr(measuring, "LONGEST", 0.0)
     found = times_at_sizes(settings)
     said = {one.size: one.message for one in found}

@@ -81,7 +81,7 @@ def test_a_run_ends_itself_when_its_time_is_up() -> None:
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> None:
-    changes = {"elements_up": 8} if "elements_up" in CATALOGUE[scene].settings.param else {}
+    changes = {"elements_up": 8} if "elements_up" in CATALOGUE[scene].param else {}
     if scene == "wall":  # of so few bricks that a step is soon worth a trial
         changes = {"elements_up": 2, "bricks": 3, "courses": 3, "displacement": 5e-5}
     plan = tiny(["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes)

@@ -19,7 +19,7 @@ from solver.reduction.svd import (
     front_decay,
 )
 from solver.reference.incremental import reference_of
-from solver.scenes import discretise, structure_of
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
@@ -97,7 +97,7 @@ def solved(**changes) -> Clips:
     law = problem.rubbing["friction"]
     lengths = law.by_point(law.weights)
     friction = reference_of(problem).contact("friction").tangential_force
-    load = structure_of(settings).load
+    load = settings.structure().load
     return clips_of(
         friction / lengths[:, None],
         law.by_point(law.tangential.bound) * problem.scales.force / lengths[:, None],

@@ -11,7 +11,7 @@ from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import settings_from_toml
 from solver.remarks import ends_of_tables
-from solver.scenes import discretise, loop_of
+from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.comparison import OtherResults, read_results
 from solver.study.measured_loop import Axes, MeasuredLoop, axes_of, columns_of, loop_in
@@ -142,4 +142,4 @@ def axes_on(state: PageState) -> Axes:
     frame, settings = state.frame, state.settings
     if frame is not None and frame.run.settings.scene == settings.scene:
         return frame.run.across, frame.run.up
-    return axes_of(loop_of(settings, discretise(settings)))
+    return axes_of(settings.structure().loop(discretise(settings)))

@@ -14,7 +14,6 @@ from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scale
 from app.views.view import ExtraView, color_bar, hover
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
-from solver.scenes import kind_of
 from solver.study.quantities.reduction_measures import can_be_clipped
 
 LEAST, FEWEST = 1e-4, 8
@@ -83,7 +82,7 @@ class SpaceModes(ModePlot):
     name = "Space modes"
 
     # Those of plane bodies are no curves.
-    applies = staticmethod(lambda given: given.applies("pgd_modes") and kind_of(given) != "plane")
+    applies = staticmethod(lambda given: given.applies("pgd_modes") and given.kind != "plane")
 
     def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         self.x.rename(f"x ({modes['text']})", "m")

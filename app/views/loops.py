@@ -24,7 +24,6 @@ from app.views.colors import (
 )
 from app.views.view import ExtraView, View, end_of, hover, key_of
 from app.worker.geometry import thinned
-from solver.scenes import kind_of
 from solver.study.quantities.cycles import cycles_in
 
 MOST_LOOPS = 12
@@ -172,7 +171,7 @@ class Fretting(CyclePlot):
             return
         self.x.hold((run.number, name), *extent([x]))
         work, slip = (float(cycles[name].max(initial=0.0)) for name in ("work", "slip"))
-        unit = "J/m²" if kind_of(run.settings) == "plane" else "J/m"
+        unit = "J/m²" if run.settings.kind == "plane" else "J/m"
         title = f"friction work, at most {work:.3g} {unit}"
         self.draw("work", x, cycles["work"] / (work or 1.0), title)
         title = f"slip, at most {unit_for(slip, 'm')(slip)}"

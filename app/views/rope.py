@@ -15,7 +15,6 @@ from app.views.axis import extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.view import ExtraView, color_bar, end_of, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
-from solver.scenes import kind_of
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
 COLORS = [color for color in RANKS if color != ERROR]
@@ -26,7 +25,7 @@ WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 class RopePlot(ExtraView):
     """A plot of a strand that is bent; a tap selects a wire."""
 
-    applies = staticmethod(lambda settings: kind_of(settings) == "helices")
+    applies = staticmethod(lambda settings: settings.kind == "helices")
 
     def _select(self, number: int) -> None:
         frame = self.state.frame
@@ -147,7 +146,7 @@ class AxialForces(ExtraView):
     name = "Axial force"
     needs = frozenset({"axial force"})
 
-    applies = staticmethod(lambda settings: kind_of(settings) != "plane")
+    applies = staticmethod(lambda settings: settings.kind != "plane")
 
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N"))

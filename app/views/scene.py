@@ -19,7 +19,6 @@ from app.views.colors import BODY, EDGE, GHOST, KEYS, UNSEEN
 from app.views.layout import layout_of
 from app.views.picture import Handle, Picture
 from app.views.view import View, bare, color_bar
-from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0
 """Of the figure until the browser tells, px."""
@@ -65,7 +64,7 @@ class Scene(View):
         look = {"size": 11, "fill_color": "white", "line_width": 2.5}
         self.add("marks", "Scatter", "x y line_color", **look)
         self.add(
-            "words", "Text", "x y text text_align text_color", text_font_size="14px",
+            "words", "Text", "x y text text_align text_color",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         self.mark(KEYS | {"note": UNSEEN})
@@ -87,7 +86,7 @@ class Scene(View):
         made.x_range.end, made.y_range.end = layout.width, layout.height
         self.picture = picture = Picture(
             frame, run.column(selection.phase), layout, self._factor, self._peaks,
-            behind(run.settings),
+            run.settings.behind(),
         )  # fmt: skip
         for name, columns in picture.columns(with_status=self.shows_status).items():
             self.fill(name, **columns)
@@ -128,6 +127,7 @@ class Scene(View):
         if np.hypot(*(nearest.place - at)) <= NEAR:
             present = getattr(picture.frame.run.settings, nearest.setting)
             self._held = nearest, picture, float(present)
+            self.state.is_dragged = True
 
     def _drag(self, event: Any) -> None:
         if self._held is not None:
@@ -137,7 +137,7 @@ class Scene(View):
         if self._held is not None:
             name, value = self._held[0].setting, self._value(event)
             self._held = None
-            self.state.change(**{name: value})
+            self.state.release(name, value)
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""

@@ -9,7 +9,6 @@ from app.views.axis import extent
 from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE, UNSEEN
 from app.views.view import View
 from solver.laws import FrictionLaw
-from solver.scenes import features_of, law_of
 
 FAR = 10.0
 """Times the plot by which a line goes beyond it."""
@@ -24,9 +23,9 @@ class SlipPlane(View):
     # Two points rub, whose friction follows from what presses them.
     applies = staticmethod(
         lambda settings: (
-            features_of(settings).opens
-            and features_of(settings).jumps == 4
-            and law_of(settings) == FrictionLaw()
+            settings.features.opens
+            and settings.features.jumps == 4
+            and settings.law == FrictionLaw()
         )
     )
 

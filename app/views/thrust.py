@@ -8,7 +8,6 @@ from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.colors import LATIN
 from app.views.scene import Scene
-from solver.scenes import features_of
 
 WIDEST = 9.0
 """Width of the line of the largest force, px."""
@@ -25,7 +24,7 @@ class Thrust(Scene):
     name = "Thrust"
     needs = frozenset({"thrust"})
     shows_status = False
-    applies = staticmethod(lambda settings: features_of(settings).bricks > 2)
+    applies = staticmethod(lambda settings: settings.features.bricks > 2)
 
     def _draw(self, made: object) -> None:
         super()._draw(made)

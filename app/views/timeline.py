@@ -33,7 +33,7 @@ class Timeline(View):
         made.yaxis.visible = False
         self._number = 0
         axis = made.xaxis
-        axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
+        axis.major_label_standoff = 1
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
         axis.axis_line_alpha = 0.4
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
@@ -47,9 +47,6 @@ class Timeline(View):
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             made.on_event(event, self._select)
-
-    def magnify(self, size: str) -> None:
-        """Keep the size of its type: there is no room for more."""
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""

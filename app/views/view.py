@@ -41,8 +41,10 @@ from app.views.colors import CUT, KEYS, STATUS
 from solver.settings import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
-TEXT = "12px"
-"""Size of text in plots, of which the theme takes shares."""
+TEXT, WORDS = "12px", "14px"
+"""Sizes of what is written in plots, and of what belongs to arrows."""
+KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
+"""Keeps sizes that are not the theme's, as the browser sets these when it draws a figure."""
 ABOVE = {"margin-left": "-44px", "top": "-3px"}
 """Has a legend begin at the left end of the figure."""
 CLOSE = """
@@ -109,8 +111,18 @@ class View:
                 self._size_type()
 
     def _size_type(self) -> None:
-        for model in (self._made, *self._made.legend):
-            model.styles = {**model.styles, "font-size": self._type}
+        """Size what is written, each by itself: an em is 13 pixels to axes, whatever the style."""
+        made, size, keep = self._made, self._type, CustomJS(code=KEEP)
+        for model in (made, *made.legend):
+            model.styles = {**model.styles, "font-size": size}
+        for words in made.select(models.Text):
+            words.text_font_size = WORDS if size == TEXT else size
+        for model in (*made.axis, *made.select(Title), *made.select(ColorBar)):
+            names = [name for name in model.properties() if name.endswith("text_font_size")]
+            sizes = dict.fromkeys(names, size)
+            model.update(tags=[sizes] if size != TEXT else [], **sizes)
+            if not model.js_property_callbacks:
+                model.js_on_change(names[0], keep)
 
     def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
@@ -296,8 +308,7 @@ def color_bar(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     """A bar beside a figure that says what its colours mean."""
     bar = ColorBar(
         color_mapper=colors, width=9, padding=2, margin=0, title_standoff=4,
-        title_text_font_size="11px", title_text_font_style="normal",
-        major_label_text_font_size="11px", background_fill_alpha=0.0, **look,
+        title_text_font_style="normal", background_fill_alpha=0.0, **look,
     )  # fmt: skip
     made.add_layout(bar, "right")
     return bar

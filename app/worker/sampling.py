@@ -23,7 +23,6 @@ from solver.latin.status import CANCELLED
 from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Reference
 from solver.remarks import remarks_on
-from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun
@@ -51,8 +50,8 @@ class Sampler:
         self.rows = {
             name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
         }
-        self.loop = loop_of(settings, problem)
-        structure = structure_of(settings)
+        self.loop = settings.structure().loop(problem)
+        structure = settings.structure()
         self.rope = structure if isinstance(structure, Rope) else None
         self.drawn: DrawnRods | DrawnMesh | DrawnRope
         if self.rope is not None:
@@ -63,7 +62,7 @@ class Sampler:
         self.run = Run(
             number=number,
             settings=settings,
-            sentence=words_of(settings),
+            sentence=settings.sentence(),
             instants=floats(problem.instants[self.columns]),
             interfaces={name: self._interface(name) for name in problem.rubbing},
             geometry=self.drawn.geometry,
@@ -74,7 +73,7 @@ class Sampler:
 
     def complete(self, reference: Reference | None) -> None:
         """Add what is known without the search: the reference, and closed forms."""
-        curves = exact_of(self.settings, self.problem, reference)
+        curves = self.settings.exact(self.problem, reference)
         exact = tuple(
             replace(curve, across=curve.across[self.columns], up=curve.up[self.columns])
             if curve.up.ndim == 1
@@ -165,7 +164,5 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = self.loop.force
-        force = force if isinstance(force, np.ndarray) else force(shown)
-        both = self.loop.displacement(shown.displacement), force
+        both = self.loop.displacement.of(shown), self.loop.force(shown)
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))

@@ -199,7 +199,7 @@ def section(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dic
     core = rope.section.core
     stretched = core.young / rope.section.stiffness * rope.tension[columns]
     stress = stress_at(rope, cut, wire_stresses(rope, iterate.displacement, columns))
-    radii = [0.5 * rope.wires[number].diameter for number in cut.wire]
+    radii = [0.5 * rope.wires[number].made.diameter for number in cut.wire]
     return {
         "place": place,
         "wires": np.append(-1, cut.wire),

@@ -11,7 +11,6 @@ from app.messages import Needs
 from app.worker.geometry import floats
 from solver.arrays import Array
 from solver.latin import Iterate
-from solver.scenes import features_of
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
@@ -24,7 +23,7 @@ def thrust(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     the other, (n_joints, 3, 2, n_instants), m; on a support they end there. "forces" are their
     sizes, (n_joints, n_instants), N.
     """
-    if not features_of(sampler.settings).bricks:
+    if not sampler.settings.features.bricks:
         return None
     lines, forces = [], []
     for name, (places, above, below) in _joints(sampler).items():

@@ -195,7 +195,7 @@ class ForceChanges:
 
     def left(self, iterate: Iterate) -> Change:
         """The relative error that is left, if changes go on to fall as they did, or NaN."""
-        number, rows = iterate.number, iterate.problem.rubbing_rows
+        number, (rows, _) = iterate.number, iterate.problem.rubbing_rows
         outgoing, incoming = iterate.outgoing.T[:, rows], iterate.incoming.T[:, rows]
         force = np.ascontiguousarray(outgoing - incoming)
         force *= 0.5 * iterate.k[rows]
@@ -230,7 +230,7 @@ def _left(last: float, before: float, earlier: float) -> float:
 
 def _change(problem: Problem, change: Array, force: Array, least: float) -> Change:
     """A change relative to what `solver.reference.distance` divides an error by."""
-    normal = problem.rubbing_is_normal
+    _, normal = problem.rubbing_rows
     changes, squares = (np.einsum("ij,ij->j", field, field) for field in (change, force))
 
     def share(kind: Flags | slice, least: float) -> float:

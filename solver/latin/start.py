@@ -79,7 +79,7 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
         _apart(fine, fine_bodies), _apart(coarse, bodies), displacement[row_of_dof]
     )
     moved = inside[fine.row_dofs]
-    carried = np.zeros_like(moved)
+    carried, rests = np.zeros_like(moved), np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
         density = law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
@@ -88,10 +88,9 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
         )
         shared = spread[target.points] * target.weights[:, None]
         for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
-            carried[rows] = sign * shared
+            carried[rows], rests[rows] = sign * shared, False
     balance, needed = balance_of_rows(fine, inside)
-    rest = np.setdiff1d(np.arange(fine.n_rows), fine.sliding[0])
-    carried[rest] = (balance.T @ (needed - balance @ carried))[rest]
+    carried[rests] = (balance.T @ (needed - balance @ carried))[rests]
     return np.asfortranarray(moved + carried / k[:, None])
 
 

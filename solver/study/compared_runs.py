@@ -12,11 +12,10 @@ import param
 from scipy.optimize import least_squares
 
 from solver.arrays import Array
-from solver.definitions import SettingError, about
+from solver.definitions import SettingError, about, is_logarithmic
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.scenes import loop_of
 from solver.settings import Settings
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -100,11 +99,10 @@ def scale_of(settings: Settings, name: str) -> Scale:
         raise SettingError("fitted setting", name, can, f"choose another: {reason}")
     definition, value = settings.definitions()[name], getattr(settings, name)
     low, high = definition.bounds
-    is_logarithmic = about(definition).logarithmic
-    if low >= 0.0 and (is_logarithmic or high >= SPANS * low):
+    if low >= 0.0 and (is_logarithmic(definition) or high >= SPANS * low):
         if value > 0.0:
             return Scale(value, None, low, high)
-        if is_logarithmic:
+        if is_logarithmic(definition):
             can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
             raise SettingError(name, value, can, "set it")
     return Scale(value, abs(value) or float(np.ptp(definition.softbounds)), low, high)
@@ -183,7 +181,7 @@ class ComparedRuns:
             values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", values, "one that converges", status.advice)
         self._before = finished.states
-        loop = loop_of(settings, finished.problem)
+        loop = settings.structure().loop(finished.problem)
         finished, beside = (
             replace(finished, loop=loop),
             LoopComparison(self._measured, loop, finished.problem),

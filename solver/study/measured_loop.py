@@ -212,9 +212,7 @@ class LoopComparison:
 
     def both(self, fields: LoopFields) -> tuple[Array, Array]:
         """Displacement and force of an iterate, or of a reference, shape (n_instants,)."""
-        force = self.loop.force
-        force = force if isinstance(force, np.ndarray) else force(fields)
-        return self.loop.displacement(fields.displacement), force
+        return self.loop.displacement.of(fields), self.loop.force(fields)
 
     def of(self, fields: LoopFields) -> float:
         """Distance to an iterate, or to a reference."""

@@ -99,7 +99,7 @@ def settings_of(name: str, cycles: int) -> Settings:
         load = {"pressure_load": pressed, "top_load": [[0.0, 0.0], [0.1, 0.0], *path[1:]]}
     modes = {"pgd_modes": MODES[scene == "wall"], **changes}
     times = {"instants": INSTANTS * cycles + 1, "duration": float(cycles)}
-    return CATALOGUE[scene].settings.checked({**modes, **times, **load})
+    return CATALOGUE[scene].checked({**modes, **times, **load})
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -207,7 +207,7 @@ def print_overheads(repeats: int) -> None:
     print(f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}")
     print(f"{'scene':<8} {'method':<8} {'own, ms':>8} {'snapshot':>9} {'stop test':>9}")
     for scene, changes in OVERHEADS:
-        settings = CATALOGUE[scene].settings.checked(changes)
+        settings = CATALOGUE[scene].checked(changes)
         found = overhead(settings, repeats)
         print(
             f"{scene:<8} {settings.method:<8} {1e3 * found.own:8.3f} "

@@ -33,7 +33,7 @@ def print_whole_cost() -> None:
     print("expected beside measured; the reference apart")
     print(f"{'run':<40} {'s':>13} {'MB':>13} {'reference, s':>13}")
     for scene, changes in SIZES:
-        settings = CATALOGUE[scene].settings.checked(changes)
+        settings = CATALOGUE[scene].checked(changes)
         label = " ".join([scene, *(f"{name}={value}" for name, value in changes.items())])
         pairs = zip(expected(settings), measured(settings), strict=True)
         print(f"{label:<40}", *(f"{one:>6.2g} {other:>6.2g}" for one, other in pairs))

@@ -9,9 +9,7 @@ from typing import Any
 
 from solver.definitions import SettingError
 from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
-from solver.scenes import CATALOGUE
-from solver.scenes.entry import Emblem
-from solver.settings import Settings
+from solver.settings import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 
@@ -59,7 +57,7 @@ class Case:
     how: str
     change: str
     controls: tuple[str, ...]
-    picture: Emblem
+    picture: Icon
     views: tuple[str, ...] = ()
 
 
@@ -89,7 +87,7 @@ def all_cases() -> list[Case]:
 
 
 def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
-    picture = {"picture": CATALOGUE[settings.scene].emblem._asdict(), **entries}["picture"]
+    picture = {"picture": settings.icon._asdict(), **entries}["picture"]
     values = fields_in(Case, {**entries, "picture": picture}, quantity=str, picture=dict)
     tolerance, can = values["tolerance"], "a share above 0 and below 1"
     require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
@@ -97,6 +95,6 @@ def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
     for control in values["controls"]:
         remedy = "name a setting that does something here"
         require(control in working, "controls", control, ", ".join(working), remedy)
-    check_keys(picture, dict.fromkeys(Emblem._fields, str))
-    values |= {"quantity": reading(values["quantity"]), "picture": Emblem(**picture)}
+    check_keys(picture, dict.fromkeys(Icon._fields, str))
+    values |= {"quantity": reading(values["quantity"]), "picture": Icon(**picture)}
     return Case(name=name, settings=settings, **values)

@@ -10,10 +10,10 @@ from urllib.parse import urlencode
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields
+from solver.discrete.structure import Loop, LoopFields
 from solver.latin import Ending, Solution, solve
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, loop_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.cases.case import Case
 from solver.study.mesh import size_of
@@ -51,15 +51,19 @@ class Answer:
         return self.fields.contact("support").slip
 
     @property
+    def _loop(self) -> Loop:
+        loop: Loop = self.settings.structure().loop(self.problem)
+        return loop
+
+    @property
     def loop_displacement(self) -> Array:
         """Displacement of the scene's loop, shape (n_instants,)."""
-        return loop_of(self.settings, self.problem).displacement(self.fields.displacement)
+        return self._loop.displacement(self.fields.displacement)
 
     @property
     def loop_force(self) -> Array:
         """Force of that loop, shape (n_instants,)."""
-        force = loop_of(self.settings, self.problem).force
-        return force(self.fields) if callable(force) else force
+        return self._loop.force(self.fields)
 
 
 Number = tuple[str, str, float, float]
@@ -97,7 +101,7 @@ class KnownCase:
     @property
     def settings(self) -> Any:
         """Settings of the run."""
-        return CATALOGUE[self.scene].settings.checked(dict(self.values))
+        return CATALOGUE[self.scene].checked(dict(self.values))
 
     @property
     def mesh(self) -> str:

@@ -13,7 +13,6 @@ from solver.reference.closed_forms.pulled_bar import (
     pulled_changing_bar,
     pulled_compliant_bar,
 )
-from solver.scenes import structure_of
 from solver.study.proof.known_case import Answer, Number
 
 
@@ -92,7 +91,7 @@ def broken_wire(answer: Answer) -> Iterator[Number]:
 
 def bent_strand(answer: Answer) -> Iterator[Number]:
     """Moment at the peak of the curvature, and what a cycle takes."""
-    settings, rope = answer.settings, structure_of(answer.settings)
+    settings, rope = answer.settings, answer.settings.structure()
     assert isinstance(rope, Rope)
     strand, peak = (
         BentStrand(settings.section, settings.friction, settings.tension),

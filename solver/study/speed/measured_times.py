@@ -32,7 +32,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import discretise, entry_of
+from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 
@@ -244,7 +244,7 @@ def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSi
     large
         Whether to go on to sizes that take minutes.
     """
-    names = entry_of(settings).grows
+    names = settings.GROWS
     longest = LONGEST_OF_LARGE if large else LONGEST
     measured: dict[tuple[int, int], TimesAtSize] = {}
     for later, size in product(FACTORS, LARGE if large else FACTORS):

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from solver.definitions import about
-from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, Section, bullets, html_table, write_csv, write_page
@@ -89,7 +88,7 @@ def table(study: Study) -> list[Row]:
 def ratio_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
     """Time of LATIN over that of the other, a row for each number of instants."""
     sizes = sorted({times.size for times in measured})
-    rows = [[TIMES, *(f"{entry_of(settings).grows[0]} {size}" for size in sizes)]]
+    rows = [[TIMES, *(f"{settings.GROWS[0]} {size}" for size in sizes)]]
     for instants, ratios in _ratios(measured).items():
         texts = (f"{ratios.get(size, math.nan):.2g}".replace("nan", "-") for size in sizes)
         rows.append([f"{instants} instants", *texts])
@@ -125,7 +124,7 @@ def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
 def _titles(settings: Settings) -> list[str]:
     """Titles of the settings that grow together."""
     definitions = settings.definitions()
-    return [about(definitions[name]).title for name in entry_of(settings).grows]
+    return [about(definitions[name]).title for name in settings.GROWS]
 
 
 def error_panels(study: Study) -> list[Panel]:
@@ -198,7 +197,7 @@ def write_study(study: Study, measured: Sequence[TimesAtSize], folder: Path) -> 
     """
     settings = study.settings
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    rows = ((entry_of(settings).grows[0], *astuple(times)) for times in measured)
+    rows = ((settings.GROWS[0], *astuple(times)) for times in measured)
     write_csv(folder / "map.csv", head, rows)
     sections: list[Section] = [
         f"<h2>Time to an error of the friction force</h2>\n{html_table(table(study))}\n"
