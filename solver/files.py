@@ -18,6 +18,7 @@ from solver.curves import messages, read_tables
 from solver.definitions import SettingError, parse
 from solver.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
 from solver.latin import Iterate, Solution
+from solver.reduction.basis import modes_stored
 from solver.reference.distance import determinate_forces, held_instants
 from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
@@ -172,13 +173,13 @@ def scene_settings(scene: object) -> type[Settings]:
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
     last = solution.records[-1] if solution.records else None
-    reduction, bases = solution.iterate.reduction, {}
-    if reduction is not None:
-        bases = {
-            "modes_largest": max(entry.modes for entry in reduction.records),
-            "modes_stored": reduction.stored,
-            "modes_saved": reduction.saved,
-        }
+    counts = [basis.n_modes for basis in solution.iterate.bases]
+    stored = modes_stored(solution.iterate.bases)
+    bases = {
+        "modes_largest": max(counts, default=0),
+        "modes_stored": stored,
+        "modes_saved": sum(counts) - stored,
+    }
     return {
         "scene": settings.scene,
         "status": str(solution.status.ending),
@@ -190,7 +191,7 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "residual": solution.iterate.residual,
         **{name: getattr(last, name, None) for name in ERRORS},
         "seconds": last.seconds if last else solution.iterate.seconds,
-        **bases,
+        **(bases if counts else {}),
     }
 
 
@@ -212,7 +213,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         name: [getattr(entry, name) for entry in solution.records]
         for name in (*INDICATORS, *ERRORS, "seconds")
     }
-    if iterate.reduction is not None:
+    if iterate.bases:
         for name in OF_BASES:
             history[f"pgd_{name}"] = [
                 [getattr(part, name) for part in entry.reduction] for entry in solution.records

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from runs import assert_goes_on, distance_of, errors, iterates, solved
 
-from solver.latin import Ending, directions
-from solver.latin.automatic_k import sliding_share
-from solver.latin.directions import CALM, TRIAL
+from solver.latin import Ending, from_status
+from solver.latin.directions import sliding_share
+from solver.latin.from_status import CALM, TRIAL
 from solver.loads import PRESETS
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -98,13 +98,14 @@ def test_the_limit_is_the_same_once_k_is_updated(change):
 
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
-    monkeypatch.setattr(directions, "SLIDING", 1e-9)
+    monkeypatch.setattr(from_status, "SLIDING", 1e-9)
     chosen = updating(**{**FAST, "acceleration": acceleration})
     constant = iterates(chosen.replace(k_update="none"), CALM + 20)
     found = iterates(chosen, 600)
     phases = [iterate.course.phase for iterate in found]
     assert [phase for phase, _ in groupby(phases)] == ["first", "updated", "returned"]
-    start, back = phases.index("updated"), phases.index("returned")
+    # An iterate says what follows: the next is the first with the new k.
+    start, back = phases.index("updated") + 1, phases.index("returned") + 1
     assert (back - start) % TRIAL == 0
     assert np.array_equal(found[back].k, constant[0].k)
     if back - start == TRIAL:  # from the state before the update, as if it had never been
@@ -114,7 +115,7 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
 
 @pytest.mark.parametrize("harm", [1.0, 1e-9])
 def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, harm):
-    monkeypatch.setattr(directions, "SLIDING", harm * directions.SLIDING)
+    monkeypatch.setattr(from_status, "SLIDING", harm * from_status.SLIDING)
     chosen = updating(**{**FAST, "acceleration": "none"})
     for place in (2, CALM, CALM + 1, CALM + TRIAL):
         assert_goes_on(chosen, CALM + TRIAL + 20, place)

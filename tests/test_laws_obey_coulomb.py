@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
+from solver.latin.blocks import Blocks
 from solver.latin.local_stage import LocalStage
 from solver.laws.play import WALK_FROM_POINTS, play
 from solver.scenes import discretise
@@ -128,7 +129,7 @@ def test_the_local_stage_obeys_all_linear_laws_along_its_search_direction(substr
     k = method_of(options).direction.of(problem)
     incoming = np.random.default_rng(3).normal(size=(problem.n_rows, problem.n_instants))
     incoming *= problem.friction.tangential.bound.max() / k.min()
-    stage = LocalStage(problem, k)
+    stage = LocalStage(problem, k, Blocks(problem.n_rows, problem.n_instants))
     outgoing = stage(np.asfortranarray(incoming))
     displacement = stage.displacement
     force = k[:, None] * (displacement - incoming)

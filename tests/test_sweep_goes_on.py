@@ -24,9 +24,10 @@ from solver.definitions import SettingError
 from solver.executors import opened
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import finished_run
-from solver.study.sweep import Row, sweep
 from solver.study.sweep import run as runs
+from solver.study.sweep.plan import Row
 from solver.study.sweep.report import exponent_of, growth
+from solver.study.sweep.run import sweep
 
 
 def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:

@@ -23,7 +23,7 @@ from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantity import Quantity
-from solver.study.sweep import Plan, plan_of
+from solver.study.sweep.plan import Plan, plan_of
 
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
 LOG = ":log"

@@ -14,7 +14,7 @@ from solver.remarks import ends_of_tables
 from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.comparison import OtherResults, read_results
-from solver.study.measured_loop import Axes, MeasuredLoop, axes_of, columns_of, loop_in
+from solver.study.measured_loop import Axes, MeasuredLoop, columns_of, loop_in
 from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
@@ -142,4 +142,4 @@ def axes_on(state: PageState) -> Axes:
     frame, settings = state.frame, state.settings
     if frame is not None and frame.run.settings.scene == settings.scene:
         return frame.run.across, frame.run.up
-    return axes_of(settings.structure().loop(discretise(settings)))
+    return settings.structure().loop(discretise(settings)).axes

@@ -34,7 +34,6 @@ from solver.laws import (
     FrictionLaw,
     Interface,
     Perfect,
-    PointOfBody,
     Unilateral,
 )
 
@@ -449,7 +448,7 @@ class _Cut:
             points=np.zeros(1, dtype=np.intp),
             positions=np.array([stack.length]),
             weights=stack.length * self._traces[number]["spring"].weights(mesh),
-            around=PointOfBody(stack.modulus(0)),
+            around=Bodies(moduli=(stack.modulus(0), np.inf)),
         )
 
     def _prescribed(self, side: str, given: Side) -> Iterator[tuple[str, Dirichlet]]:

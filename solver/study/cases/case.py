@@ -16,24 +16,12 @@ from solver.study.quantities.quantity import Quantity
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case as its file says.
+    """A case as its file says, whose name it has.
 
     Attributes
     ----------
-    name
-        That of its file, without the ending.
-    order
-        Its place among the cases.
-    title, question
-        What it is called, and what its owner asks.
-    source
-        Where the question, or what is known, is from.
-    settings
-        Of the run.
-    quantity
-        That of the run which is known.
     known, tolerance
-        What is known, and how far the run may be from it, as a share.
+        The quantity of the run, and how far this may be from it, as a share.
     formula, how
         What it follows from, and how it is known.
     change, controls
