@@ -179,7 +179,8 @@ class Comparison:
             counts &= _interpolated(unknown.astype(float), at) == 0.0
         self.counted, self._at = int(counts.sum()), at[:, counts]
         self._values = results.values[counts]
-        self._weights = weights_of(x[counts], t[counts])
+        if self.counted >= FEWEST:
+            self._weights = weights_of(x[counts], t[counts])
 
     def of(self, fields: Fields) -> float:
         """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
@@ -230,8 +231,4 @@ def _interpolated(field: Array, at: Array) -> Array:
 
 def _halves(places: Array, joined: Flags | bool = True) -> Array:
     """Half of the distances to the neighbours, of places that rise where they are joined."""
-    steps = np.diff(places) * joined
-    halves = np.zeros(len(places))
-    halves[:-1] += 0.5 * steps
-    halves[1:] += 0.5 * steps
-    return halves
+    return np.convolve(np.diff(places) * joined, [0.5, 0.5])

@@ -13,7 +13,7 @@ from solver.definitions import about
 from solver.executors import machine
 from solver.scenes import entry_of
 from solver.settings import Settings
-from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.page import Panel, PanelAxis, PanelCurve
 from solver.study.page import (
     PlotSection,
     Section,

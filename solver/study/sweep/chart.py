@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.chart import Chart, Map, Panel, PanelAxis, PanelCurve, Runs
+from solver.study.page import Chart, Map, Panel, PanelAxis, PanelCurve, Runs
 from solver.study.sweep.plan import Plan, Row, Varied
 
 MOST_CURVES = 6
