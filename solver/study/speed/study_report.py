@@ -13,8 +13,10 @@ from solver.definitions import about
 from solver.executors import machine
 from solver.scenes import entry_of
 from solver.settings import Settings
-from solver.study.page import Panel, PanelAxis, PanelCurve
 from solver.study.page import (
+    Panel,
+    PanelAxis,
+    PanelCurve,
     PlotSection,
     Section,
     bullets,
