@@ -135,8 +135,8 @@ def _proof(chosen: argparse.Namespace) -> int:
         print(head_of(proof.SHOWN))
         for case in own or proof.cases():
             for row in proof.rows_of(case):
-                print(line_of(proof.entries(row), proof.SHOWN), flush=True)
+                print(line_of(row, proof.SHOWN), flush=True)
                 rows.append(row)
         proof.write_proof(rows, chosen.out)
     print(f"{proof.summary(rows)}\n{len(proof.FILES)} files in {chosen.out}")
-    return 0 if all(row.holds for row in rows) else 1
+    return 0 if all(map(proof.holds, rows)) else 1
