@@ -36,11 +36,10 @@ from solver.study.stability.report import (
     RANDOM_TITLE,
     SHOWN,
     TITLE,
-    entries,
     last_lines,
     write_stability,
 )
-from solver.study.stability.stability_case import JudgedRun, extreme_cases, judged_runs
+from solver.study.stability.stability_case import Row, extreme_cases, judged_runs, passed
 
 
 def add_reports(commands: Any) -> None:
@@ -112,20 +111,20 @@ def _stability(chosen: argparse.Namespace) -> int:
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
         title, notes = RANDOM_TITLE, RANDOM_NOTES
-    runs: list[JudgedRun] = []
+    runs: list[Row] = []
     with writing(chosen.out, *FILES):
         print(head_of(SHOWN))
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
             for run in judged_runs(cases):
-                print(line_of(entries(run), SHOWN), flush=True)
+                print(line_of(run, SHOWN), flush=True)
                 runs.append(run)
             is_whole = True
         write_stability(runs, title, notes, chosen.out)
     print("\n".join([*last_lines(runs, notes), f"{len(FILES)} files in {chosen.out}"]))
     if not is_whole:
         raise KeyboardInterrupt
-    return 0 if all(run.passed for run in runs) else 1
+    return 0 if all(map(passed, runs)) else 1
 
 
 def _proof(chosen: argparse.Namespace) -> int:

@@ -26,13 +26,14 @@ from solver.study.stability.stability_case import (
     METHODS,
     NOT_WRONG,
     PASSING,
-    JudgedRun,
     Outcome,
     StabilityCase,
     Verdict,
     extreme_cases,
     judge,
     judged_runs,
+    passed,
+    row_of,
 )
 
 GOOD = Outcome(
@@ -88,8 +89,8 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
         (GOOD, {"right", "unsolved", "unclear", NOT_WRONG}),
     ):
         for expected in PASSING:
-            row = JudgedRun(StabilityCase("a", "bar", {}, expected), found)
-            assert row.passed is (expected in passing)
+            row = row_of(StabilityCase("a", "bar", {}, expected), found)
+            assert passed(row) is (expected in passing)
 
 
 def test_a_warning_breaks_a_run(monkeypatch):
@@ -98,9 +99,9 @@ def test_a_warning_breaks_a_run(monkeypatch):
 
     monkeypatch.setattr("solver.study.stability.stability_case.reference_of", warns)
     (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
-    assert row.outcome.ending == BROKEN
-    assert "overflow" in row.outcome.advice
-    assert row.verdict is Verdict.WRONG
+    assert row["ending"] == BROKEN
+    assert "overflow" in row["advice"]
+    assert row["verdict"] == Verdict.WRONG
 
 
 @pytest.fixture
@@ -183,12 +184,12 @@ def test_random_runs_are_written_row_by_row(tmp_path, capsys):
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
     wrong, right = (
-        JudgedRun(random_case(draw("bar", 9, row), 9, row), nearly(error_force=error))
+        row_of(random_case(draw("bar", 9, row), 9, row), nearly(error_force=error))
         for row, error in ((4, 0.5), (5, 0.0))
     )
     text = "\n".join(last_lines([wrong, right], []))
-    assert wrong.case.command in text
-    assert right.case.command not in text
+    assert wrong["command"] in text
+    assert right["command"] not in text
     assert "1 of 2 runs pass" in text
     counted = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
     assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}
