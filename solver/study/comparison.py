@@ -186,17 +186,13 @@ class Comparison:
         """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
         if self.counted < FEWEST:
             return float("nan")
-        own = self.own(fields)
-        size = self._norm(self._values) or self._norm(own) or 1.0
-        return self._norm(own - self._values) / size
-
-    def own(self, fields: Fields) -> Array:
-        """Our field at the rows that both cover, shape (n_counted,)."""
         if self._places is None:
             field = self._problem.at_rest(fields.displacement)
         else:
             field = fields.contact_force[self._places] / self._sizes
-        return _interpolated(field[self._order], self._at)
+        own = _interpolated(field[self._order], self._at)
+        size = self._norm(self._values) or self._norm(own) or 1.0
+        return self._norm(own - self._values) / size
 
     def _norm(self, values: Array) -> float:
         return float(np.sqrt(self._weights @ values**2))
