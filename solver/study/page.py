@@ -238,17 +238,10 @@ def head_of(shown: Shown) -> str:
     return line_of({name: head for name, (head, _) in shown.items()}, shown)
 
 
-def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> Path:
-    """Write a table as CSV; its place.
-
-    Raises
-    ------
-    OSError
-        When the file cannot be written.
-    """
+def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+    """Write a table as CSV."""
     with whole_file(file) as open_file:
         csv.writer(open_file).writerows([head, *rows])
-    return file
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:
