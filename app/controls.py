@@ -16,8 +16,8 @@ from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, looks, mask_of
-from solver.definitions import CurveParameter, Parameter, about
-from solver.scenes import CATALOGUE, chief_of, ends_of
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
+from solver.scenes import CATALOGUE
 
 WIDTH = 286
 STEPS = 80
@@ -28,15 +28,6 @@ GROUPS = (
     *("Decomposition", "Method", "Stop"),
 )
 """Order of the groups: what the scene is, then how it is solved."""
-FIELD = {
-    "& .MuiInputBase-input": {"fontWeight": 600, "paddingBottom": "3px"},
-    "& .MuiInput-root::before": {"display": "none"},
-}
-ON_UNDERLINE = {
-    "& .MuiSlider-root": {"padding": "8px 0 !important"},
-    "& .MuiFormLabel-root": {"display": "none"},
-}
-"""A slider stands in place of the line under its field, whose label is its name too."""
 
 
 class SettingControl:
@@ -87,15 +78,18 @@ class SettingControl:
         if isinstance(definition, param.Selector):
             field = pmui.Select(options=list(definition.objects), variant="standard", **more)
             return field, field
-        more |= {"margin": 0, "variant": "standard", "sx": FIELD}
+        more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
+        self._is_logarithmic = is_logarithmic(definition)
         self.slider = self._make_slider()
         return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
 
     def _make_slider(self) -> pmui.FloatSlider:
         low, high = (self._to_slider(end) for end in self._definition.softbounds)
-        is_count = isinstance(self._definition, param.Integer) and not self._about.logarithmic
+        is_count = isinstance(self._definition, param.Integer) and not is_logarithmic(
+            self._definition
+        )
         slider = pmui.FloatSlider(
             label=self._about.title,
             start=low,
@@ -108,23 +102,23 @@ class SettingControl:
             width=WIDTH,
             height=20,
             margin=(-10, 0, 0, 0),
-            sx=ON_UNDERLINE,
+            **looks("under-number"),
         )
         slider.param.watch(lambda event: self._drag(event.new), "value")
         slider.param.watch(lambda event: self._release(event.new), "value_throttled")
         return slider
 
     def _to_slider(self, value: float) -> float:
-        if self._about.logarithmic:
+        if self._is_logarithmic:
             return math.log10(max(value, 1e-300))
         return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, place: float) -> float:
         """The value of a place, as round as a hand can mean it."""
-        value = 10.0**place if self._about.logarithmic else place * self._unit.factor
+        value = 10.0**place if self._is_logarithmic else place * self._unit.factor
         if isinstance(self._definition, param.Integer):
             return round(value)
-        return float(f"{value:.{3 if self._about.logarithmic else 10}g}")
+        return float(f"{value:.{3 if self._is_logarithmic else 10}g}")
 
     def _written(self, value: float) -> str:
         return f"{value / self._unit.factor:.10g}"
@@ -144,7 +138,7 @@ class SettingControl:
 
     def _show_on_slider(self, value: float) -> None:
         low, high = self._definition.softbounds
-        most = ends_of(self._state.settings).get(self.name, high)
+        most = self._state.settings.ends.get(self.name, high)
         self.slider.end = self._to_slider(max(min(most, high), low + 1) if most < high else high)
         place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
         if (self.slider.value, self.slider.value_throttled) == (place, place):
@@ -199,9 +193,9 @@ class SettingControl:
         if self._is_updating:
             return
         self._is_dragged = False
-        self._change(self._from_slider(place))
-        if self._state.is_dragged:
-            self._state.run()
+        self._state.release(self.name, self._from_slider(place))
+        self.update()
+        self._explain(self._state.refusal)
 
     def _edit(self) -> None:
         """Open the points of a path."""
@@ -222,8 +216,8 @@ class Controls:
         self._state, self._copy = state, copy
         self._controls: list[SettingControl] = []
         pictures = {
-            f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(entry.emblem)
-            for number, entry in enumerate(CATALOGUE.values(), start=1)
+            f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(kind.icon)
+            for number, kind in enumerate(CATALOGUE.values(), start=1)
         }
         self._scene = pmui.RadioButtonGroup(
             options={name.capitalize(): name for name in CATALOGUE},
@@ -262,7 +256,7 @@ class Controls:
     def _build(self) -> None:
         settings = self._state.settings
         self._built = self._scene.value = settings.scene
-        self._scene.label = CATALOGUE[settings.scene].title
+        self._scene.label = settings.title
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
@@ -289,7 +283,7 @@ class Controls:
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     """The chief settings of a scene, and all others by group; without those of a single value."""
     definitions = kind.definitions()
-    chief = [name for name in chief_of(kind) if name in definitions]
+    chief = [name for name in kind.CHIEF if name in definitions]
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}
     for name, definition in definitions.items():
         if name not in chief and len(getattr(definition, "objects", "any")) > 1:

@@ -11,7 +11,7 @@ import param
 
 from solver.columns import size_in
 from solver.definitions import Parameter, about
-from solver.scenes import CATALOGUE, points_of
+from solver.scenes import CATALOGUE
 
 PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad")
@@ -35,7 +35,8 @@ class Unit:
 
     def __call__(self, value: float, digits: int = 3) -> str:
         """A value in SI with this unit."""
-        return f"{number(value / self.factor, digits)} {self.name}".strip()
+        gap = "" if self.name == "°" else " "
+        return f"{number(value / self.factor, digits)}{gap}{self.name}".strip()
 
     def titled(self, title: str) -> str:
         """A title with the unit behind it."""
@@ -73,8 +74,8 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
 
     Those of SI are as the other settings have them (`Settings.curve_units`).
     """
-    default = CATALOGUE[scene].settings.checked({})
-    columns = zip(*points_of(default, name), strict=True)
+    default = CATALOGUE[scene].checked({})
+    columns = zip(*default.points(name), strict=True)
     sizes = [max(map(abs, column)) for column in columns]
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)

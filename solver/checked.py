@@ -10,7 +10,14 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.definitions import Parameter, SettingError, about, checked_value, unknown
+from solver.definitions import (
+    CurveParameter,
+    Parameter,
+    SettingError,
+    about,
+    checked_value,
+    unknown,
+)
 
 
 class Checked(param.Parameterized):
@@ -39,6 +46,13 @@ class Checked(param.Parameterized):
                 if "about" in (parameter.metadata or {})
             }
         )
+
+    @classmethod
+    def curve(cls, name: str) -> CurveParameter:
+        """Definition of a setting that is a curve."""
+        definition = cls.definitions()[name]
+        assert isinstance(definition, CurveParameter)
+        return definition
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
@@ -124,12 +138,6 @@ class Checked(param.Parameterized):
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
         """Refusal of the present value of a setting: what is allowed beside others, what to do."""
         return SettingError(name, getattr(self, name), allowed, remedy)
-
-    def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of the columns of a curve under the present values."""
-        # Of the class: param copies what is read of an instance to it, and no pipe takes that.
-        units: tuple[str, ...] = type(self).param[name].units
-        return units
 
     def applies(self, name: str) -> bool:
         """Whether a setting does anything under the present values."""

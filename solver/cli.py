@@ -224,8 +224,8 @@ def _distance(problem: Problem, limit: float) -> Distance | None:
 
 
 def _scenes(_chosen: argparse.Namespace) -> int:
-    for name, entry in CATALOGUE.items():
-        print(f"{name:<10} {entry.title} ({entry.source})")
+    for name, kind in CATALOGUE.items():
+        print(f"{name:<10} {kind.title} ({kind.source})")
     return 0
 
 

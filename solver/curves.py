@@ -18,8 +18,8 @@ from solver.tables import Table, read_table
 
 _SETTINGS = {
     name
-    for entry in CATALOGUE.values()
-    for name, definition in entry.settings.definitions().items()
+    for kind in CATALOGUE.values()
+    for name, definition in kind.definitions().items()
     if isinstance(definition, CurveParameter) and "_" in name
 }
 """Names of curves that are no common words: a column of another one is not taken."""

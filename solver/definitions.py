@@ -9,7 +9,7 @@ import copy
 import difflib
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeGuard
@@ -18,7 +18,6 @@ import param
 
 from solver.refusal import RefusedError, plain
 
-Pairs = tuple[tuple[float, float], ...]
 Rows = tuple[tuple[float, ...], ...]
 Parameter = param.Parameter[Any]
 ANY = -1e15, 1e15
@@ -42,8 +41,6 @@ class About:
         What a widget calls it.
     unit
         SI unit, empty for a pure number.
-    logarithmic
-        Whether a slider over it should be logarithmic.
     applies
         Whether it does anything, given all the settings.
     path
@@ -56,7 +53,6 @@ class About:
     group: str
     title: str
     unit: str = ""
-    logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
     path: str = ""
     places: tuple[str, ...] = ()
@@ -65,9 +61,18 @@ class About:
 class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
-    With more than two columns it is a table, whose rows stand in any order. `units` are those of
-    the columns, empty for a pure number; `bounds` their ends, of integers for whole numbers.
-    `is_positive` is whether no value may be below zero.
+    With more than two columns it is a table, whose rows stand in any order.
+
+    Attributes
+    ----------
+    presets
+        By name: a path over time is a `solver.loads.Preset`, others make the points of settings.
+    columns, units
+        Names of the columns, and their units, empty for a pure number.
+    bounds
+        Ends of the columns, of integers for whole numbers.
+    is_positive
+        Whether no value may be below zero.
     """
 
     __slots__ = ["bounds", "columns", "is_positive", "presets", "units"]
@@ -75,17 +80,15 @@ class CurveParameter(Parameter):
     def __init__(
         self,
         default: str,
-        presets: Iterable[str],
-        columns: Mapping[str, tuple[str, tuple[float, float]]],
-        *,
-        is_positive: bool = False,
+        presets: Mapping[str, Any],
+        units: Mapping[str, str],
+        bounds: Sequence[tuple[float, float]],
+        is_positive: bool,
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
-        self.presets = tuple(presets)
-        self.columns = tuple(columns)
-        self.units, self.bounds = zip(*columns.values(), strict=True)
-        self.is_positive = is_positive
+        self.presets, self.bounds, self.is_positive = presets, bounds, is_positive
+        self.columns, self.units = tuple(units), tuple(units.values())
 
     @property
     def abscissa(self) -> str:
@@ -107,6 +110,12 @@ def about(parameter: Parameter) -> About:
     """Record of a setting's definition."""
     record: About = parameter.metadata["about"]
     return record
+
+
+def is_logarithmic(definition: Any) -> bool:
+    """Whether a slider over a number is logarithmic: where it goes over far more than a decade."""
+    low, high = definition.softbounds
+    return bool(low > 0.0 and high >= (100 if isinstance(definition, param.Integer) else 20) * low)
 
 
 def _common(doc: str, record: Mapping[str, Any]) -> dict[str, Any]:
@@ -144,30 +153,17 @@ def choice(default: str, options: Iterable[str], doc: str, **record: Any) -> par
 
 def curve(
     default: str,
-    presets: Iterable[str],
-    abscissa: str,
-    ordinate: str,
-    units: tuple[str, str],
+    presets: Mapping[str, Any],
+    units: Mapping[str, str],
     doc: str,
     *,
+    bounds: Sequence[tuple[float, float]] = (),
     is_positive: bool = False,
     **record: Any,
 ) -> CurveParameter:
-    """Path: a preset's name or a table of points, with `is_positive` of none below zero."""
-    columns = {name: (unit, ANY) for name, unit in zip((abscissa, ordinate), units, strict=True)}
-    common = _common(doc, record)
-    return CurveParameter(default, presets, columns, is_positive=is_positive, **common)
-
-
-def table(
-    default: str,
-    presets: Iterable[str],
-    columns: Mapping[str, tuple[str, tuple[float, float]]],
-    doc: str,
-    **record: Any,
-) -> CurveParameter:
-    """Table: a preset's name or rows, with unit and bounds of each column."""
-    return CurveParameter(default, presets, columns, **_common(doc, record))
+    """Path or table: a preset's name or rows, with the unit of each column."""
+    bounds = bounds or [ANY] * len(units)
+    return CurveParameter(default, presets, units, bounds, is_positive, **_common(doc, record))
 
 
 def redefined(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.definitions import Pairs
+from solver.definitions import Rows
 
 RANDOM_POINTS = 12
 NO_LOAD = 1e-14
@@ -29,7 +29,7 @@ NO_KNOTS = np.zeros(0)
 Wave = Callable[[Array], Array]
 
 
-def interpolate(points: Pairs | Array, where: Array) -> Array:
+def interpolate(points: Rows | Array, where: Array) -> Array:
     """Values of a table of (abscissa, value), linear in between and held outside."""
     abscissae, values = np.array(points).T
     between: Array = np.interp(where, abscissae, values)
@@ -208,7 +208,7 @@ def turning_knots(knots: Array, values: Array) -> Array:
     return np.asarray(knots[moves[:-1][turns]])
 
 
-def thinned(points: Pairs | Array, allowed: float) -> Array:
+def thinned(points: Rows | Array, allowed: float) -> Array:
     """Numbers of the points of a table that the others do not tell, within an allowed error.
 
     The first and the last point stay, and the largest and the smallest value.

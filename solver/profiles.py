@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.definitions import Pairs
+from solver.definitions import Rows
 from solver.loads import interpolate
 from solver.refusal import plain
 
@@ -19,7 +19,7 @@ MOST_ELEMENTS = 5000
 """Of a body, as `elements` allows."""
 
 
-def _pieces(tables: list[Pairs], edges: Array) -> tuple[Array, list[Array], Indices]:
+def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
     """Cut shares at the points of tables.
 
     Returns
@@ -48,7 +48,7 @@ def shares_of(nodes: Array, order: int = 1) -> Array:
     return np.concatenate([nodes[:1], nodes[:-1] + shares * np.diff(nodes), nodes[-1:]])
 
 
-def means(tables: list[Pairs], edges: Array) -> Array:
+def means(tables: list[Rows], edges: Array) -> Array:
     """Mean of the product of one or two tables over every share.
 
     Parameters
@@ -67,7 +67,7 @@ def means(tables: list[Pairs], edges: Array) -> Array:
     return np.asarray(np.add.reduceat(whole, first) / np.diff(edges))
 
 
-def harmonic_means(table: Pairs, edges: Array) -> Array:
+def harmonic_means(table: Rows, edges: Array) -> Array:
     """Inverse of the mean of the inverse of a table over every share."""
     ends, (values,), first = _pieces([table], edges)
     change = np.diff(values) / values[:-1]
@@ -78,7 +78,7 @@ def harmonic_means(table: Pairs, edges: Array) -> Array:
     return np.asarray(np.diff(edges) / np.add.reduceat(whole, first))
 
 
-def gap_at(table: Pairs, nodes: Array) -> Array:
+def gap_at(table: Rows, nodes: Array) -> Array:
     """Gap at nodes; a point between two that is lower than both is put at the nearer.
 
     A slope or a curve that the nodes tell stays as it is: only what would touch first and lies
@@ -97,7 +97,7 @@ def gap_at(table: Pairs, nodes: Array) -> Array:
     return lowest
 
 
-def unseen(name: str, table: Pairs, length: float, elements: int, order: int) -> str | None:
+def unseen(name: str, table: Rows, length: float, elements: int, order: int) -> str | None:
     """What a mesh does not see of a gap that is a table, and how many elements would.
 
     Parameters
@@ -129,7 +129,7 @@ def unseen(name: str, table: Pairs, length: float, elements: int, order: int) ->
     )
 
 
-def _off_nodes(table: Pairs, length: float, pieces: int) -> Array:
+def _off_nodes(table: Rows, length: float, pieces: int) -> Array:
     """How far points are off the line through evenly spaced nodes, shape (n_points,)."""
     x, values = np.array(table).T
     nodes = np.linspace(0.0, length, pieces + 1)

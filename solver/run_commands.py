@@ -22,7 +22,7 @@ from solver.definitions import SettingError, about
 from solver.discrete.problem import Problem
 from solver.latin import Ending, Solution, solve
 from solver.lessons import check, lesson_from_file
-from solver.scenes import discretise, loop_of
+from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.compared_runs import ComparedRun
@@ -141,7 +141,7 @@ def _beside_results(
 def _beside_loop(
     chosen: argparse.Namespace, data: bytes, settings: Settings, problem: Problem
 ) -> Found:
-    loop = loop_of(settings, problem)
+    loop = settings.structure().loop(problem)
     measured = read_loop(data, chosen.file.name, loop.axes)
     print_tables({measured.source: measured.message})
     beside = LoopComparison(measured, loop, problem)
@@ -166,7 +166,7 @@ def _fit(chosen: argparse.Namespace) -> int:
     settings, tables = given(chosen)
     data, problem = read_brought(chosen, LOOP), discretise(settings)
     announce(settings, problem)
-    measured = read_loop(data, chosen.file.name, loop_of(settings, problem).axes)
+    measured = read_loop(data, chosen.file.name, settings.structure().loop(problem).axes)
     print_tables({measured.source: measured.message})
     names = [name.strip() for name in chosen.vary.split(",")]
     printed = 0.0

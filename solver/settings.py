@@ -1,264 +1,186 @@
-"""Settings of the method, common to all scenes; each is defined once here or in its scene.
+"""Settings of a scene: those that all have, and what is known of a scene by its settings alone.
 
 A settings object is checked once, at the edge, and cannot be changed; `replace` gives a new one.
 """
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Iterable, Iterator, Mapping
+from typing import ClassVar, Literal, NamedTuple, Self
 
+import numpy as np
 import param
 
-from solver.checked import Checked
-from solver.definitions import CurveParameter, choice, count, quantity, switch
+from solver.definitions import SettingError, about
+from solver.discrete.problem import Problem
+from solver.discrete.structure import LoopFields, Structure
+from solver.load_settings import LoadSettings
+from solver.reference.closed_forms import ExactCurve
+
+LARGEST_FIELD = 25_000_000
+"""Nodes times instants; a run keeps about ten fields over them."""
+COARSEST = 6
+"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 
 
-def _on_modes(settings: Settings) -> bool:
-    return bool(settings.linear_stage == "pgd")
+class Icon(NamedTuple):
+    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32.
+
+    Attributes
+    ----------
+    ground, body, load
+        What holds and supports it, what is deformed, and what acts on it.
+    """
+
+    ground: str
+    body: str
+    load: str
 
 
-def _on_fields(settings: Settings) -> bool:
-    return bool(settings.linear_stage == "full")
+class Features(NamedTuple):
+    """What a scene has under its present settings, for whoever shows or measures it.
+
+    Attributes
+    ----------
+    opens
+        Whether contact may open, so that what presses is an unknown.
+    has_spring
+        Whether a spring holds a body.
+    has_break
+        Whether a body is broken.
+    jumps
+        Components of all contacts, which a reference condenses; none on a rigid support of known
+        bound.
+    bricks
+        Bodies that touch each other at joints, 0 where a body lies on the next all along.
+    loop_is_over_displacement
+        Whether the force of its loop stands over a displacement, m.
+    """
+
+    opens: bool = False
+    has_spring: bool = False
+    has_break: bool = False
+    jumps: int = 0
+    bricks: int = 0
+    loop_is_over_displacement: bool = True
 
 
-class Settings(Checked):
-    """Settings of the method, verified by `checked` alone; a scene adds its own."""
+class Settings(LoadSettings):
+    """Settings of a scene: those of the method, of friction and of time, and its own."""
 
-    duration: param.Number[float]
-    instants: param.Integer[int]
     length: param.Number[float]
     friction: param.Number[float]
+    elements: param.Integer[int]
     """Every scene defines these, where it shows them."""
 
-    METHODS: ClassVar = {
-        "fast": {
-            "search_direction": "auto",
-            "acceleration": "anderson",
-            "start": "nested",
-            "relaxation": 0.8,
-            "finish": "at-once",
-            "tolerance": 1e-3,
-        },
-        "paper": {
-            "search_direction": "paper",
-            "acceleration": "none",
-            "start": "zero",
-            "relaxation": 0.8,
-            "finish": "none",
-            "tolerance": 1e-10,
-        },
-    }
-    """What `method` sets at once."""
+    title: ClassVar[str]
+    source: ClassVar[str]
+    """What it is called, and where it comes from."""
+    icon: ClassVar[Icon]
+    kind: ClassVar[Literal["rod", "wires", "helices", "plane"]]
+    """What there is to see: a rod on its support, wires beside each other, wires around a core, or
+    plane bodies."""
+    CHIEF: ClassVar[tuple[str, ...]]
+    """Settings that a scene is about, in the order in which one thinks of them."""
+    LOADS: ClassVar[tuple[str, ...]]
+    """Settings that say how much it is loaded; the first that applies counts."""
+    GROWS: ClassVar[tuple[str, ...]]
+    """Settings by which the structure becomes larger as it is, all of them together."""
+    MESH: ClassVar[tuple[str, ...]] = ("elements",)
+    """Numbers of elements: twice each is a mesh of half the size."""
+    PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
+    """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
 
-    substructures = count(
-        10,
-        (1, 20_000),
-        (1, 50),
-        "Number of pieces (substructures) that a body is cut into.",
-        group="Decomposition",
-        title="Substructures",
-    )
-    multiscale = switch(
-        True,
-        "Also balance the mean forces between substructures at every iteration, by a small coarse "
-        "problem. Without it, a load travels one substructure an iteration.",
-        group="Decomposition",
-        title="Multiscale (coarse problem)",
-        applies=lambda settings: settings.n_substructures > 1,
-    )
-    method = choice(
-        "fast",
-        ["fast", "paper"],
-        "fast: what reaches the accuracy soonest. paper: the iteration of the paper. Sets search "
-        "direction, acceleration, start, relaxation, finish and tolerance at once; each can be "
-        "changed afterwards.",
-        group="Method",
-        title="Method",
-    )
-    search_direction = choice(
-        "auto",
-        ["paper", "auto"],
-        "How k, the stiffness that joins the two stages of an iteration, is chosen. paper: from "
-        "the length of a substructure. auto: at points that may slip, from the length that is "
-        "expected to slide and that of an element; between bodies that turn out to slip nowhere, "
-        "from their depth.",
-        group="Method",
-        title="Search direction",
-    )
-    k_scale = quantity(
-        1.0,
-        (1e-6, 1e6),
-        (0.01, 100.0),
-        "Multiplies the search direction k: other iterations, the same solution.",
-        group="Method",
-        title="Factor on k",
-        logarithmic=True,
-    )
-    k_friction_scale = quantity(
-        1.0,
-        (1e-6, 1e6),
-        (0.01, 100.0),
-        "Multiplies k once more, at friction points alone.",
-        group="Method",
-        title="Friction k factor",
-        logarithmic=True,
-    )
-    relaxation = quantity(
-        0.8,
-        (0.01, 1.0),
-        (0.1, 1.0),
-        "How far an iteration goes towards its new result: 1 all the way (Peaceman-Rachford), 0.5 "
-        "half of it (Douglas-Rachford). Less is slower and safer.",
-        group="Method",
-        title="Relaxation",
-    )
-    linear_stage = choice(
-        "full",
-        ["full", "pgd"],
-        "full: a value for every point and instant. pgd: a sum of a few modes, each a shape in "
-        "space times a function of time (model reduction). That holds many cycles of a load in a "
-        "fraction of the memory; full fields come sooner to any error.",
-        group="Method",
-        title="Linear stage",
-    )
-    pgd_modes = count(
-        10,
-        (1, 1000),
-        (1, 20),
-        "Most modes kept for a substructure; the smallest are dropped. Many cycles of a load need "
-        "no more than one.",
-        group="Method",
-        title="Most PGD modes",
-        applies=_on_modes,
-    )
-    pgd_tolerance = quantity(
-        1e-7,
-        (1e-14, 1.0),
-        (1e-12, 1e-3),
-        "Share of a substructure's field that may be lost: so much is dropped with the smallest "
-        "modes, and no mode is added for a residual below it. Most of a field is displacement: "
-        "with 1e-4, 15 % of a contact force were lost.",
-        group="Method",
-        title="PGD tolerance",
-        logarithmic=True,
-        applies=_on_modes,
-    )
-    pgd_pairs = count(
-        2,
-        (1, 1000),
-        (1, 10),
-        "Most modes that one iteration adds to a substructure.",
-        group="Method",
-        title="PGD pairs per iteration",
-        applies=_on_modes,
-    )
-    pgd_sharing = quantity(
-        1e-5,
-        (0.0, 1.0),
-        (0.0, 0.5),
-        "Equal substructures use the same modes if these miss at most this share of each one's "
-        "field. 0: each has modes of its own.",
-        group="Method",
-        title="PGD basis sharing",
-        applies=lambda settings: _on_modes(settings) and settings.n_substructures > 1,
-    )
-    acceleration = choice(
-        "anderson",
-        ["none", "anderson"],
-        "anderson: combine the last iterates so that the two stages agree best, which saves "
-        "iterations. none: take the newest as it is.",
-        group="Method",
-        title="Acceleration",
-        applies=_on_fields,
-    )
-    start = choice(
-        "nested",
-        ["zero", "nested"],
-        "zero: start from nothing. nested: start from the solution on half the elements, which the "
-        "incremental solver finds; the run time includes that.",
-        group="Method",
-        title="Start",
-    )
-    k_update = choice(
-        "none",
-        ["none", "status"],
-        "none: k is as the search direction says. status: once stick and slip have settled, k "
-        "becomes smaller where points slip; taken back if that does not help.",
-        group="Method",
-        title="Update of k",
-        applies=_on_fields,
-    )
-    finish = choice(
-        "at-once",
-        ["none", "accuracy", "at-once"],
-        "When a status step ends the run: keep the present stick, slip and opening, solve the "
-        "linear problem that is left, and take its solution if it obeys all laws. at-once: as soon "
-        "as one holds. accuracy: once the iterates themselves are within the accuracy; the answer "
-        "is then put beside them. none: only iterate.",
-        group="Method",
-        title="Finish",
-    )
-    accuracy = quantity(
-        0.01,
-        (1e-12, 1.0),
-        (1e-6, 0.1),
-        "The run ends when friction, and pressure where it is not known, are each estimated to be "
-        "wrong by less than this share; 0.01 is 1 %.",
-        group="Stop",
-        title="Accuracy",
-        logarithmic=True,
-    )
-    tolerance = quantity(
-        1e-3,
-        (1e-30, 1.0),
-        (1e-16, 1e-2),
-        "Unless a status step ends it, a run also goes on until the LATIN indicator η is below "
-        "this. η is not an error.",
-        group="Stop",
-        title="Tolerance on η",
-        logarithmic=True,
-    )
-    max_iterations = count(
-        1000,
-        (1, 1_000_000),
-        (10, 5000),
-        "The run stops after so many iterations, converged or not.",
-        group="Stop",
-        title="Most iterations",
-        logarithmic=True,
-    )
-    threads = count(
-        1,
-        (1, 64),
-        (1, 4),
-        "Threads that share an iteration on a large structure, where the machine has nothing else "
-        "to do. The results are the same to the bit.",
-        group="Method",
-        title="Threads",
-    )
+    def structure(self) -> Structure:
+        """Bodies, with all that acts on them."""
+        raise NotImplementedError
+
+    def sentence(self) -> str:
+        """What there is, what acts on it, and what rubs, for whoever sees it for the first time."""
+        raise NotImplementedError
+
+    def coarser(self) -> Iterator[Structure]:
+        """Yield the same scene, uncut, on ever coarser meshes, as long as a front is seen.
+
+        Until it does not fit its mesh, as where the break of a wire, at the nearest node, leaves
+        less than the tension to friction, or where a mesh so coarse has more instants.
+        """
+        coarse = self
+        while (elements := coarse.elements // 2) >= COARSEST:
+            try:
+                coarse = coarse.replace(elements=elements, substructures=1)
+            except SettingError:
+                return
+            if not np.array_equal(coarse.times(), self.times()):
+                return
+            yield coarse.structure()
+
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
+        """What is known of the scene without a mesh; often that is nothing.
+
+        Parameters
+        ----------
+        problem
+            Its discrete problem.
+        solution
+            What an incremental solver found, if it did: closed forms of contact are for its forces.
+        """
+        return ()
 
     @property
-    def paths(self) -> tuple[str, ...]:
-        """Names of the curves over time that do something."""
-        return tuple(
-            name
-            for name, definition in self.definitions().items()
-            if isinstance(definition, CurveParameter)
-            and definition.abscissa == "time"
-            and self.applies(name)
-        )
+    def features(self) -> Features:
+        """What the scene has under its present settings."""
+        return Features()
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return self.substructures
+    def n_interfaces(self) -> int:
+        """Number of interfaces of which each may have its own mu."""
+        return 1
+
+    def behind(self) -> Mapping[str, str]:
+        """Settings that place or scale what acts on the scene, where any does.
+
+        By what they are behind: "right x" along a side, "body" throughout, "gap", "break". Of
+        several the last counts that is not 0.
+        """
+        settings: dict[str, str] = {}
+        for name, definition in self.definitions().items():
+            for place in about(definition).places:
+                if self.applies(name) and (place not in settings or getattr(self, name)):
+                    settings[place] = name
+        return settings
+
+    def with_change(self, name: str, value: object) -> Self:
+        """Change one setting; numbers of parts that exceed it come down with it."""
+        changes = {name: value}
+        for part, whole in self.PARTS.items():
+            if name == whole and isinstance(value, int) and value < getattr(self, part):
+                changes[part] = max(value, self.definitions()[part].bounds[0])
+        return self.replace(**changes)
 
     @property
-    def n_instants(self) -> int:
-        """Number of instants: at least as many as are set."""
-        return self.instants
+    def ends(self) -> dict[str, int]:
+        """Largest numbers of parts that there are to deal out, by the name of their setting."""
+        return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
 
-    @property
-    def k_factors(self) -> tuple[float, float]:
-        """Further factors on k of contacts, along and across them."""
-        return self.k_friction_scale, 1.0
+    def check_together(self) -> None:
+        """Refuse more parts than there is to deal out, fields beyond memory, and no law at all."""
+        super().check_together()
+        for part, whole in self.PARTS.items():
+            value, most = getattr(self, part), getattr(self, whole)
+            if value > most:
+                raise self.refusal(
+                    part,
+                    f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
+                    f"lower {part} or raise {whole}",
+                )
+        most = LARGEST_FIELD // self.n_nodes
+        if self.n_instants > most:
+            raise SettingError(
+                "instants",
+                self.n_instants,
+                f"at most {most} with {self.n_nodes} nodes",
+                "give fewer instants, or a coarser mesh"
+                if self.n_instants == self.instants
+                else "give paths with fewer points or cycles, or a coarser mesh",
+            )

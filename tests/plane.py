@@ -13,7 +13,7 @@ LOOK = 10
 
 def solved(scene, *, violation=1e-8, most=1500, **values):
     """Iterate until the k-free indicator, looked at now and then, is low enough."""
-    settings = CATALOGUE[scene].settings.checked(values)
+    settings = CATALOGUE[scene].checked(values)
     problem = discretise(settings)
     for iterate in islice(iterations(problem, method_of(settings)), LOOK - 1, most, LOOK):
         found = iterate.behaviour

@@ -25,7 +25,7 @@ from solver.reference.closed_forms.fluid_driven_slip import (
 )
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import discretise, exact_of
+from solver.scenes import discretise
 from solver.scenes.fault import FaultSettings
 
 SMALL = {"elements": 48, "elements_up": 24, "instants": 31}
@@ -129,7 +129,7 @@ def test_a_barrier_stops_the_front() -> None:
 )
 def test_no_closed_form_is_drawn_where_none_holds(changes: dict[str, Any]) -> None:
     settings = FaultSettings.checked({**SMALL, **changes})
-    assert exact_of(settings, discretise(settings)) == []
+    assert list(settings.exact(discretise(settings))) == []
 
 
 @pytest.mark.parametrize(

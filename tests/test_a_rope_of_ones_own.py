@@ -12,7 +12,7 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import solve
 from solver.files import settings_from_command
-from solver.scenes import discretise, points_of
+from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.scenes.rope import RopeSettings
 
@@ -23,10 +23,10 @@ OWN = [[1, 6e-3, 0.0, 1.1e11], [5, 5e-3, 15.0, 2e11], [12, 4e-3, -25.0, 7e10]]
 @pytest.mark.parametrize("preset", ["mooring", "seven-wire", "conductor"])
 def test_rows_of_a_named_construction_are_that_construction(preset: str) -> None:
     named = settings_of(construction=preset, tension=5e4)
-    rows = settings_of(construction=points_of(named, "construction"), tension=5e4)
+    rows = settings_of(construction=named.points("construction"), tension=5e4)
     for name in ("stiffness", "stuck_bending", "slipping_bending", "diameter", "wires"):
         assert getattr(rows.section, name) == pytest.approx(getattr(named.section, name), rel=1e-9)
-    bounds = [[float(wire.bound[0]) for wire in s.structure().wires] for s in (named, rows)]
+    bounds = [[float(wire.bound) for wire in s.structure().wires] for s in (named, rows)]
     assert bounds[1] == pytest.approx(bounds[0], rel=1e-9)
 
 

@@ -15,7 +15,7 @@ from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.definitions import CurveParameter
-from solver.scenes import CATALOGUE, points_of
+from solver.scenes import CATALOGUE
 from solver.study.comparison import read_results
 
 PARTS: dict[str, Any] = {
@@ -35,7 +35,7 @@ def test_an_address_says_every_setting_that_is_not_the_default(scene: str) -> No
     settings = default_settings(scene)
     for name, definition in settings.definitions().items():
         if isinstance(definition, CurveParameter):
-            settings = settings.replace(**{name: points_of(settings, name)})
+            settings = settings.replace(**{name: settings.points(name)})
     settings = settings.with_change("friction", 0.45).with_change("method", "paper")
     place, refusal = read(query_of(Place(settings)))
     assert not refusal

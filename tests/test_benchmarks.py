@@ -39,7 +39,7 @@ def test_iterations_beside_the_incremental_solver_are_those_of_runs(
 ) -> None:
     monkeypatch.setattr(ahead, "REPEATS", 1)
     *_, number, found_at, own, known = ahead.measure("bar", TINY)
-    settings = CATALOGUE["bar"].settings.checked(TINY)
+    settings = CATALOGUE["bar"].checked(TINY)
     problem = discretise(settings)
     distance = distance_to(reference_of(problem), problem)
     records = solve(problem, method_of(settings), distance=distance).records
@@ -72,7 +72,7 @@ def test_iterations_of_cycles_are_those_to_the_goal_and_slabs_hold_less(
 @pytest.mark.parametrize("bond", ["running", "stack"])
 def test_the_sparse_rival_on_a_wall_comes_to_the_same(bond: str) -> None:
     sizes = {"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "displacement": 5e-5}
-    problem = discretise(CATALOGUE["wall"].settings.checked({**sizes, "bond": bond}))
+    problem = discretise(CATALOGUE["wall"].checked({**sizes, "bond": bond}))
     found, reference = SparseNewton(problem).march(), reference_of(problem)
     assert found.solved.all()
     for name in ("displacement", "contact_force"):
@@ -103,6 +103,6 @@ def test_getfem_finds_the_same_at_all_nodes_and_instants() -> None:
     python = by_getfem.interpreter()
     if python is None:
         pytest.skip("GetFEM is not installed")
-    settings = CATALOGUE["block"].settings.checked({**by_getfem.SHEARED, "plane": "stress"})
+    settings = CATALOGUE["block"].checked({**by_getfem.SHEARED, "plane": "stress"})
     for name, difference in by_getfem.differences(settings, python).items():
         assert difference < 1e-9, name

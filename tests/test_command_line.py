@@ -86,7 +86,7 @@ def test_scenes_lists_all_scenes_with_their_source(capsys):
 def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, scene):
     assert main(["settings", scene]) == 0
     lines = capsys.readouterr().out.splitlines()
-    kind = CATALOGUE[scene].settings
+    kind = CATALOGUE[scene]
     definitions, paper = kind.definitions(), kind.of_method("paper")
     assert len(lines) == 2 * len(definitions)
     for head, text, (name, definition) in zip(

@@ -16,7 +16,7 @@ from app.units import Unit, typed, unit_of
 from solver.checked import dump
 from solver.definitions import CurveParameter
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, ends_of
+from solver.scenes import CATALOGUE
 
 
 @cache
@@ -150,10 +150,10 @@ def test_a_slider_ends_where_another_setting_has_it_end() -> None:
     state = of_scene("strand")
     control = SettingControl("broken", state)
     assert control.slider is not None
-    assert control.slider.end == ends_of(state.settings)["broken"]
+    assert control.slider.end == state.settings.ends["broken"]
     state.change(wires=7)
     control.update()
-    assert control.slider.end == ends_of(state.settings)["broken"]
+    assert control.slider.end == state.settings.ends["broken"]
 
 
 def test_controls_that_do_nothing_here_are_hidden() -> None:

@@ -18,7 +18,7 @@ LAYERS: dict[str, Any] = {"elements": 16, "instants": 17, "layers": 4}
 
 
 def layers_of(**changes: Any) -> Any:
-    return reference_of(discretise(CATALOGUE["layers"].settings.checked({**LAYERS, **changes})))
+    return reference_of(discretise(CATALOGUE["layers"].checked({**LAYERS, **changes})))
 
 
 def test_equal_factors_are_another_mu() -> None:
@@ -50,7 +50,7 @@ def test_layers_of_a_rope_that_rub_unequally_meet_the_closed_form() -> None:
 
 def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -> None:
     """Its force grows by mu p of both sides per length from the break on: 0.6 and 1.4 are 2."""
-    kind = CATALOGUE["strand"].settings
+    kind = CATALOGUE["strand"]
     changes: dict[str, Any] = {"load": "ramp", "instants": 11}
     uneven = kind.checked({**changes, "friction_factors": [[1, 0.6], [2, 1.4]]})
     runs = [reference_of(discretise(one)) for one in (kind.checked(changes), uneven)]
@@ -70,7 +70,7 @@ def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -
 @pytest.mark.parametrize("table", [[[1, 0.5]], [[1, 1.0], [2, 1.0], [4, 1.0]], [[0.5, 1.0]]])
 def test_a_table_that_lacks_an_interface_is_refused_with_their_number(table: Any) -> None:
     for scene, count in (("layers", 3), ("rope", 3), ("strand", 2)):
-        kind = CATALOGUE[scene].settings
+        kind = CATALOGUE[scene]
         text = refusal(lambda kind=kind: kind.checked({"friction_factors": table}))
         assert_names(text, "friction_factors", f"there are {len(table)}", f"{count} pairs")
 

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bars import SMALL, options, relative, sample, table
+from bars import SMALL, options, relative, table
+from runs import sample
 
 from solver.latin import Ending, iterations, solve
 from solver.reference.distance import distance_to
@@ -135,7 +136,7 @@ SCENES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("changes", [{"method": "paper"}, {"linear_stage": "pgd"}], ids=str)
 @pytest.mark.parametrize("scene", SCENES)
 def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(scene, changes):
-    settings = CATALOGUE[scene].settings.checked({**SCENES[scene], **changes})
+    settings = CATALOGUE[scene].checked({**SCENES[scene], **changes})
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
     assert solution.status.ending == "converged"

@@ -16,7 +16,7 @@ from solver.discrete.stack import Stack
 from solver.files import settings_from_command
 from solver.reference.closed_forms.elastic_bodies import TwoLeaves, cantilever, leaf_spring
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, exact_of, left_out, loop_of, structure_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 
@@ -27,23 +27,18 @@ LEAVES = {**LOOSE, "layer_lengths": "graduated"}
 
 
 def settings_of(**values: Any) -> Any:
-    return CATALOGUE["layers"].settings.checked(values)
+    return CATALOGUE["layers"].checked(values)
 
 
 def deflection(settings: Any) -> Array:
     """Deflection of the end over time."""
     problem = discretise(settings)
-    return np.asarray(loop_of(settings, problem).displacement(reference_of(problem).displacement))
+    loop = settings.structure().loop(problem)
+    return np.asarray(loop.displacement(reference_of(problem).displacement))
 
 
 def alone(height: float = 0.005) -> float:
     return cantilever(LENGTH, height, YOUNG, 0.3)
-
-
-@pytest.mark.parametrize("layers", [2, 3])
-def test_leaves_without_friction_share_a_force_as_beams(layers: int) -> None:
-    settings = settings_of(**LOOSE, layers=layers, force=100.0)
-    assert deflection(settings)[-1] == pytest.approx(100.0 / (layers * alone()), rel=3e-3)
 
 
 @pytest.mark.parametrize("layers", [2, 3, 4])
@@ -53,7 +48,7 @@ def test_a_graduated_spring_bends_as_beams_that_touch_at_their_ends(layers: int)
     assert factor is not None
     found = deflection(settings)
     assert found[-1] == pytest.approx(100.0 / (factor * alone()), rel=3e-3)
-    (exact,) = exact_of(settings, discretise(settings))
+    (exact,) = settings.exact(discretise(settings))
     np.testing.assert_allclose(found, exact.across, atol=3e-3 * found[-1])
 
 
@@ -88,13 +83,12 @@ def test_two_leaves_lose_the_energy_of_goodman_and_klumpp(share: float) -> None:
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     assert solution.is_certified
-    loop = loop_of(settings, problem)
-    bent, force = loop.displacement(solution.iterate.displacement), loop.force
-    assert isinstance(force, np.ndarray)
+    loop = settings.structure().loop(problem)
+    bent, force = loop.displacement.of(solution.iterate), loop.force(solution.iterate)
     cycle = settings.times() >= 0.4
     energy = abs(float(np.trapezoid(force[cycle], bent[cycle])))
     assert energy == pytest.approx(leaves.energy(peak), rel=0.005)
-    (exact,) = exact_of(settings, problem)
+    (exact,) = settings.exact(problem)
     np.testing.assert_allclose(bent, exact.across, atol=0.005 * bent.max())
 
 
@@ -114,7 +108,7 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     assert len(problem.substructures) == settings.n_substructures == 3 + 5 + 1
     assert problem.inside is not None
     assert len(problem.inside.nodes) == settings.n_nodes == (11 + 21 + 7) * 3
-    stack = structure_of(settings)
+    stack = settings.structure()
     assert isinstance(stack, Stack)
     assert stack.longest == 1
     acts = {act.where: act.places for act in stack.described().acts}
@@ -124,9 +118,9 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
 
 def test_a_run_says_where_leaves_end_elsewhere_than_given() -> None:
     table = [[1, 1.0], [2, 0.5]]
-    (remark,) = left_out(settings_of(layers=2, elements=5, layer_lengths=table))
+    (remark,) = settings_of(layers=2, elements=5, layer_lengths=table).left_out()
     assert "up to 10 % of the length" in remark
-    assert not left_out(settings_of(layers=2, elements=6, layer_lengths=table))
+    assert not list(settings_of(layers=2, elements=6, layer_lengths=table).left_out())
 
 
 def test_pressure_on_all_that_lies_open_presses_leaves_and_bends_none() -> None:

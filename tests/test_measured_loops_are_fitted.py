@@ -12,7 +12,7 @@ from bars import SMALL
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.files import scene_settings, settings_from_toml
-from solver.scenes import discretise, loop_of
+from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.fit import fit
 from solver.study.fit_report import messages
@@ -41,14 +41,14 @@ def run_of(scene: str) -> FinishedRun:
 
 def loop_from(run: FinishedRun, *, timed: bool = True, **changes: np.ndarray) -> MeasuredLoop:
     """Loop of a run as if it were measured, some of it changed."""
-    loop = loop_of(run.settings, run.problem)
+    loop = run.settings.structure().loop(run.problem)
     pair = {"displacement": run.displacement, "force": run.force} | changes
     times = run.problem.instants if timed else None
     return MeasuredLoop(*pair.values(), times, (loop.across[1], loop.up[1]), "made.csv", "")
 
 
 def beside(run: FinishedRun, measured: MeasuredLoop) -> LoopComparison:
-    return LoopComparison(measured, loop_of(run.settings, run.problem), run.problem)
+    return LoopComparison(measured, run.settings.structure().loop(run.problem), run.problem)
 
 
 def made(values: dict, settings: Settings, noise: float = 0.0, seed: int = 0) -> MeasuredLoop:
@@ -282,7 +282,7 @@ def test_the_commands_compare_and_fit_and_write_what_they_found(tmp_path, capsys
     far = 100.0 * found["distance"]
     told = capsys.readouterr().out
     assert told == f"End displacement: {far:.4g} % from measured.csv, at 41 of 41 rows\n"
-    axes = loop_of(saved, discretise(saved)).axes
+    axes = saved.structure().loop(discretise(saved)).axes
     fitted = read_loop((out / "loop.csv").read_text(), "loop.csv", axes)
     run = finished_run(saved, errors=False, indicators=False)
     assert beside(run, fitted).of(run.iterate) < 1e-6

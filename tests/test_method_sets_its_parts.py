@@ -48,7 +48,7 @@ def test_a_method_sets_all_its_parts_of_the_bar(method):
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_what_is_called_a_default_is_what_the_fast_method_sets(scene):
-    kind = CATALOGUE[scene].settings
+    kind = CATALOGUE[scene]
     assert kind.checked({}).method == "fast"
     assert kind().values() == kind.checked({}).values() == kind.checked({"method": "fast"}).values()
 

@@ -15,7 +15,7 @@ from solver.discrete.problem import Problem
 from solver.reference.distance import determinate_forces
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import CATALOGUE, discretise, exact_of
+from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 from solver.study.comparison import Comparison, read_results
 
@@ -29,7 +29,7 @@ SMALL: dict[str, dict[str, Any]] = {
 
 
 def settings_of(scene: str = "bar", **changes: Any) -> Settings:
-    return CATALOGUE[scene].settings.checked(SMALL[scene] | changes)
+    return CATALOGUE[scene].checked(SMALL[scene] | changes)
 
 
 @cache
@@ -82,7 +82,7 @@ def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
         settings = settings_of(load="ramp", elements=elements, instants=2 * elements + 1)
         fine = settings_of(load="ramp", elements=400, instants=401)
         grid = discretise(fine)
-        friction, _ = exact_of(fine, grid)
+        friction, _ = fine.exact(grid)
         where = np.sort(rng.choice(np.arange(1, 400), 150, replace=False))
         when = np.sort(rng.choice(np.arange(1, 401), 60, replace=False))
         x, t = grid.friction.positions[where], grid.instants[when]

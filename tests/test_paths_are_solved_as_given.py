@@ -9,21 +9,20 @@ import pytest
 
 from solver.definitions import SettingError
 from solver.latin import Ending, solve
-from solver.loads import PRESSURES
+from solver.load_settings import EVERY_POINT, THINNED
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.closed_forms.fluid_driven_slip import spread
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, left_out, structure_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
-from solver.scenes.base import EVERY_POINT, THINNED
 from solver.scenes.method import method_of
 
 SPIKE = [[0.0, 0.0], [0.5, 0.0], [0.503, 1200.0], [0.506, 0.0], [1.0, 0.0]]
 SCENES_AND_PATHS = [
     (scene, name)
-    for scene, entry in CATALOGUE.items()
-    for name in entry.settings.checked({}).paths
-    if hasattr(entry.settings.definitions()[name], "presets")
+    for scene, kind in CATALOGUE.items()
+    for name in kind.checked({}).paths
+    if hasattr(kind.definitions()[name], "presets")
 ]
 """Paths that may be tables, of scenes by default."""
 
@@ -32,7 +31,7 @@ def drawn(scene: str, name: str, seed: int) -> Any:
     """Settings with a table of wide and narrow swings, of which the instants know nothing."""
     random = np.random.default_rng([seed, *name.encode()])
     grip = {"grip": "displacement"} if scene == "strand" else {}
-    settings = CATALOGUE[scene].settings.checked(grip)
+    settings = CATALOGUE[scene].checked(grip)
     size = float(settings.size_of(name)) or 1e5
     middles = np.sort(random.uniform(0.02, 0.98, 5)) * settings.duration
     halves = 10.0 ** random.uniform(-6.0, -3.0, 5) * settings.duration
@@ -58,22 +57,22 @@ def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(s
     np.testing.assert_array_equal(turns(seen), turns(given))
     ends = [(0.0 - times[0]) * -given[0], (settings.duration - times[-1]) * given[-1]]
     assert np.trapezoid(seen, instants) == pytest.approx(np.trapezoid(given, times) + sum(ends))
-    assert left_out(settings) == []
+    assert list(settings.left_out()) == []
 
 
 def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
     """Settings with a preset; wires are gripped, so that no pull is too large."""
     grip = {"grip": "displacement"} if scene == "strand" else {}
-    return CATALOGUE[scene].settings.checked({name: preset, "seed": 3, **grip, **changes})
+    return CATALOGUE[scene].checked({name: preset, "seed": 3, **grip, **changes})
 
 
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
 def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scene, name):
-    for preset in CATALOGUE[scene].settings.definitions()[name].presets:
+    for preset in CATALOGUE[scene].definitions()[name].presets:
         for number in (1, 2, 7, 38, 41):
             settings = of_preset(scene, name, preset, instants=number)
             fine = np.linspace(0.0, settings.duration, 96_001)
-            path = settings.SHAPES.get(preset, PRESSURES.get(preset))
+            path = settings.curve(name).presets[preset]
             given = path.value(fine / settings.duration, 3) * settings.size_of(name)
             seen = settings.path(name)
             if number == 1:  # it begins at rest: what is between that and its end, is passed
@@ -89,7 +88,7 @@ def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scen
 
 def friction_of(changes: dict[str, Any]) -> float:
     """Solve the bar; give what friction takes, J."""
-    settings = CATALOGUE["bar"].settings.checked(changes)
+    settings = CATALOGUE["bar"].checked(changes)
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
@@ -115,14 +114,14 @@ def noisy(points: int) -> list[list[float]]:
 
 def test_a_large_problem_keeps_the_peaks_of_a_long_table_and_says_what_it_leaves_out():
     table = noisy(60_001)
-    settings = CATALOGUE["bar"].settings.checked({"load": table})
+    settings = CATALOGUE["bar"].checked({"load": table})
     times, given = np.array(table).T
     seen = settings.path("load")
     assert settings.n_nodes * settings.n_instants < EVERY_POINT
     assert (seen.max(), seen.min()) == (given.max(), given.min())
     off = np.abs(np.interp(times, settings.times(), seen) - given).max()
     assert 0.0 < off <= THINNED * np.ptp(given)
-    (message,) = left_out(settings)
+    (message,) = settings.left_out()
     assert message.startswith("load: 5")
     assert "of 60001 points are left out" in message
 
@@ -171,12 +170,10 @@ def test_all_friction_of_the_bar_is_there_whatever_the_mesh(seed):
     whole = 0.3 * 5000.0 * integral(mu, pressure, over=np.array([0.0, length]))
     for elements in (3, 50, 400):
         changes = {"friction_profile": mu, "pressure_profile": pressure, "length": length}
-        settings = CATALOGUE["bar"].settings.checked(
-            {**changes, "elements": elements, "substructures": 1}
-        )
+        settings = CATALOGUE["bar"].checked({**changes, "elements": elements, "substructures": 1})
         problem = discretise(settings)
         (law,) = problem.rubbing.values()
-        total = structure_of(settings).bound @ law.weights
+        total = settings.structure().bound @ law.weights
         assert total == pytest.approx(whole, rel=1e-4)
 
 
@@ -186,7 +183,7 @@ def test_all_strength_of_a_fault_is_there_whatever_the_mesh(interpolation):
     whole = 0.6 * 1e7 * integral(table, over=np.array([0.0, 600.0]))
     for elements in (12, 48):
         values = {"normal_profile": table, "elements": elements, "interpolation": interpolation}
-        settings = CATALOGUE["fault"].settings.checked({**values, "overpressure": 0.0})
+        settings = CATALOGUE["fault"].checked({**values, "overpressure": 0.0})
         (law,) = discretise(settings).rubbing.values()
         nodal = settings.strength_at_nodes()[:, 0]
         assert nodal @ law.by_point(law.weights[:, None])[:, 0] == pytest.approx(whole, rel=1e-4)
@@ -197,7 +194,7 @@ def test_a_notch_between_nodes_stretches_the_bar():
     ends = []
     for elements in (10, 1000):
         values = {"section_profile": notched, "friction": 0.0, "load": "ramp", "instants": 2}
-        settings = CATALOGUE["bar"].settings.checked({**values, "elements": elements})
+        settings = CATALOGUE["bar"].checked({**values, "elements": elements})
         ends.append(reference_of(discretise(settings)).displacement[-1, -1])
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
 
@@ -205,11 +202,11 @@ def test_a_notch_between_nodes_stretches_the_bar():
 def pressed(elements: int) -> tuple[float, list[str]]:
     """Press the block on an asperity; give the force, and what is said."""
     values = {**PRESSED, "gap": ASPERITY, "elements": elements}
-    settings = CATALOGUE["block"].settings.checked(values)
+    settings = CATALOGUE["block"].checked(values)
     solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
     force = solution.iterate.contact("support").normal_force[:, -1].sum()
-    return abs(float(force)), left_out(settings)
+    return abs(float(force)), list(settings.left_out())
 
 
 def test_an_asperity_between_nodes_touches_and_the_mesh_that_sees_it_is_named():

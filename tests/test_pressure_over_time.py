@@ -116,6 +116,4 @@ def test_foolish_pressures_are_refused_in_words():
         with pytest.raises(RefusedError, match=r"Rods\.bound"):
             replace(rod(), bound=bound)
     with pytest.raises(RefusedError, match="all that friction can hold"):
-        CATALOGUE["strand"].settings.checked(
-            {"load": "hold", "peak": 600.0, "pressure_load": "loosening"}
-        )
+        CATALOGUE["strand"].checked({"load": "hold", "peak": 600.0, "pressure_load": "loosening"})

@@ -11,8 +11,8 @@ import pytest
 from small_scenes import SMALL
 
 from solver.cli import main
-from solver.latin import cost as costs
-from solver.latin.cost import LARGE, LONG, RunCost, run_cost
+from solver.latin import run_cost as costs
+from solver.latin.run_cost import LARGE, LONG, RunCost, run_cost
 from solver.reference.incremental import reference_of
 from solver.remarks import (
     MOST_GROWTH,
@@ -21,7 +21,7 @@ from solver.remarks import (
     largest_strain,
     remarks_on,
 )
-from solver.scenes import CATALOGUE, discretise, structure_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.quantities.finished import FinishedRun, finished_run
 
@@ -38,7 +38,7 @@ PRESSED = {
 
 @cache
 def _ran(scene: str, given: tuple[tuple[str, Any], ...]) -> FinishedRun:
-    settings = CATALOGUE[scene].settings.checked(dict(given))
+    settings = CATALOGUE[scene].checked(dict(given))
     return finished_run(settings, errors=False, indicators=False)
 
 
@@ -100,10 +100,10 @@ SOFT = {
 
 
 def beyond(scene: str, changes: dict[str, object]) -> str | None:
-    settings = CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
+    settings = CATALOGUE[scene].checked({**SMALL[scene], **changes})
     problem = discretise(settings)
     displacement = reference_of(problem).displacement
-    return beyond_small_strain(structure_of(settings), problem, displacement)
+    return beyond_small_strain(settings.structure(), problem, displacement)
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
@@ -116,21 +116,21 @@ def test_scenes_by_default_are_within_small_strain_and_soft_ones_beyond(scene):
 
 def test_the_strain_of_a_bar_is_force_over_stiffness():
     values = {"friction": 0.0, "load": "ramp", "peak": 900.0}
-    settings = CATALOGUE["bar"].settings.checked(values)
+    settings = CATALOGUE["bar"].checked(values)
     problem = discretise(settings)
-    found = largest_strain(structure_of(settings), problem, reference_of(problem).displacement)
+    found = largest_strain(settings.structure(), problem, reference_of(problem).displacement)
     assert found == pytest.approx(900.0 / (210e9 * 3.14e-6))
 
 
 def test_the_slope_of_a_sheared_body_is_its_shear_and_sliding_is_none():
-    settings = CATALOGUE["block"].settings.checked(SMALL["block"])
-    structure, problem = structure_of(settings), discretise(settings)
+    settings = CATALOGUE["block"].checked(SMALL["block"])
+    structure, problem = settings.structure(), discretise(settings)
     along = np.where(problem.inside.components == 0, 1.0, 0.0)[:, None]
     ones = np.ones((1, problem.n_instants))
     assert largest_strain(structure, problem, along * ones) < 1e-12
-    settings = CATALOGUE["fault"].settings.checked({**SMALL["fault"], "friction": 10.0})
+    settings = CATALOGUE["fault"].checked({**SMALL["fault"], "friction": 10.0})
     problem = discretise(settings)
-    strain = largest_strain(structure_of(settings), problem, reference_of(problem).displacement)
+    strain = largest_strain(settings.structure(), problem, reference_of(problem).displacement)
     assert strain == pytest.approx(3.6e6 / (6e10 / 2.5), rel=1e-6)
 
 
@@ -151,7 +151,7 @@ LONG_ONES: dict[str, dict[str, Any]] = {
 
 
 def cost(scene: str, *, with_reference: bool = True, **values: Any) -> RunCost:
-    settings = CATALOGUE[scene].settings.checked(values)
+    settings = CATALOGUE[scene].checked(values)
     most = settings.max_iterations
     return run_cost(discretise(settings), method_of(settings), most, with_reference=with_reference)
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from solver.scenes import CATALOGUE, words_of
+from solver.scenes import CATALOGUE
 
 
 def words(scene: str, changes: dict[str, Any]) -> str:
-    return words_of(CATALOGUE[scene].settings.checked(changes))
+    return CATALOGUE[scene].checked(changes).sentence()
 
 
 @pytest.mark.parametrize(

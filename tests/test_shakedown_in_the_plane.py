@@ -42,7 +42,7 @@ def path(swing: float, first: float = 0.0) -> tuple[tuple[float, float], ...]:
 
 @cache
 def _ran(scene: str, swing: float, first: float, given: tuple[tuple[str, Any], ...]) -> FinishedRun:
-    settings = CATALOGUE[scene].settings.checked({**dict(given), LOADS[scene]: path(swing, first)})
+    settings = CATALOGUE[scene].checked({**dict(given), LOADS[scene]: path(swing, first)})
     return finished_run(settings, errors=False, indicators=False)
 
 
@@ -111,7 +111,7 @@ def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> No
 )
 def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> None:
     given = {**FREE, "elements": 4, "elements_up": 2, **changes}
-    settings = CATALOGUE["block"].settings.checked({**given, LOADS["block"]: path(1e-6)})
+    settings = CATALOGUE["block"].checked({**given, LOADS["block"]: path(1e-6)})
     assert not QUANTITIES["shakedown_factor"].applies(settings)
     with pytest.raises(NoReferenceError):
         largest_swing(slip_space(discretise(settings)), last_of(settings))
@@ -123,11 +123,11 @@ def last_of(settings: Any) -> slice:
 
 
 def test_a_spring_that_catches_a_block_and_too_many_points_are_refused() -> None:
-    incline = CATALOGUE["incline"].settings.checked({"elements": 4, "elements_up": 2, "cycles": 3})
+    incline = CATALOGUE["incline"].checked({"elements": 4, "elements_up": 2, "cycles": 3})
     assert not QUANTITIES["shakedown_factor"].applies(incline)
     many = {"layers": 7, "elements": 100, "elements_up": 1, "substructures": 10}
     with pytest.raises(NoReferenceError, match=str(MOST_POINTS)):
-        slip_space(discretise(CATALOGUE["layers"].settings.checked(many)))
+        slip_space(discretise(CATALOGUE["layers"].checked(many)))
     with pytest.raises(NoReferenceError):
         slip_space(discretise(incline))
 

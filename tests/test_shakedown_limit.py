@@ -19,14 +19,14 @@ GIVES_WAY = {"friction_law": "compliant", "contact_stiffness": 100.0}
 
 
 def limit(scene: str, **changes: Any) -> float:
-    settings = CATALOGUE[scene].settings.checked(changes)
+    settings = CATALOGUE[scene].checked(changes)
     ends = ends_of(settings)
     return shakedown_limit(discretise(settings), slice(ends[0], ends[-1] + 1))
 
 
 def slips(scene: str, **changes: Any) -> bool:
     """Tell whether anything slips in the last cycle."""
-    settings = CATALOGUE[scene].settings.checked(changes)
+    settings = CATALOGUE[scene].checked(changes)
     run = finished_run(settings, errors=False, indicators=False)
     return bool(cycles_of(settings, run.iterate).slip[:, -1].any())
 
@@ -99,7 +99,7 @@ def test_what_the_theorem_does_not_cover_is_refused() -> None:
 def test_where_slip_presses_nothing_the_program_of_the_plane_gives_it_too(
     scene: str, changes: dict[str, Any]
 ) -> None:
-    rods = CATALOGUE[scene].settings.checked({**SMALL, **changes})
+    rods = CATALOGUE[scene].checked({**SMALL, **changes})
     ends = ends_of(rods)
     some = slice(ends[-2], ends[-1] + 1)
     theorem = shakedown_limit(discretise(rods), some)

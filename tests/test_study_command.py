@@ -149,8 +149,8 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("scene", ["bar", "layers"])
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
-    settings = CATALOGUE[scene].settings.checked(SMALL_ONES[scene])
-    measured, name = times_at_sizes(settings), CATALOGUE[scene].grows[0]
+    settings = CATALOGUE[scene].checked(SMALL_ONES[scene])
+    measured, name = times_at_sizes(settings), CATALOGUE[scene].GROWS[0]
     sizes = [round(factor * getattr(settings, name)) for factor in FACTORS]
     instants = [round(factor * (settings.instants - 1)) + 1 for factor in FACTORS]
     at = {(times.size, times.instants): times for times in measured}
@@ -162,7 +162,7 @@ def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
 def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    settings = CATALOGUE["strand"].settings.checked({**SMALL_ONES["strand"], "wires": 2})
+    settings = CATALOGUE["strand"].checked({**SMALL_ONES["strand"], "wires": 2})
     monkeypatch.setattr(measuring, "LONGEST", 0.0)
     found = times_at_sizes(settings)
     said = {one.size: one.message for one in found}

@@ -77,7 +77,7 @@ def files(draw: st.DrawFn) -> Written:
 
 
 def read(data: bytes | str, name: str = "load", scene: str = "bar", **changes: Any) -> GivenCurve:
-    values = CATALOGUE[scene].settings.checked(changes)
+    values = CATALOGUE[scene].checked(changes)
 
     def refuse(remedy: str) -> SettingError:
         return SettingError(name, "file.csv", "a table", remedy)

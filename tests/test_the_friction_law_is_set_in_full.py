@@ -14,7 +14,7 @@ from solver.latin import solve
 from solver.laws import FrictionLaw
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, exact_of, features_of, law_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.quantities.cycle_measures import has_a_limit
 
@@ -24,7 +24,7 @@ PEAK = ((0.0, 1.0), (1e-5, 1.3), (1e-4, 0.5))
 
 
 def chosen(scene, **values):
-    return CATALOGUE[scene].settings.checked({**SMALL[scene], **values})
+    return CATALOGUE[scene].checked({**SMALL[scene], **values})
 
 
 def run(scene, **values):
@@ -35,7 +35,7 @@ def run(scene, **values):
 
 @pytest.mark.parametrize("scene", list(SMALL))
 def test_with_nothing_given_it_is_coulombs(scene):
-    assert law_of(chosen(scene, **GENERAL)) == FrictionLaw()
+    assert chosen(scene, **GENERAL).law == FrictionLaw()
 
 
 @pytest.mark.parametrize("scene", list(SMALL))
@@ -106,7 +106,7 @@ def test_cohesion_and_cap_of_a_bar_are_a_bound_as_known_as_that_of_its_pressure(
     settings = chosen("bar", **given, friction=0.0, cohesion=1000.0)
     assert settings.sentence().startswith("A steel bar lies on a rough table")
     problem = discretise(settings)
-    loop = next(curve for curve in exact_of(settings, problem) if curve.of == "loop")
+    loop = next(curve for curve in settings.exact(problem) if curve.of == "loop")
     moved = one.iterate.displacement[-1]
     np.testing.assert_allclose(loop.across, moved, atol=0.05 * np.abs(moved).max())
 
@@ -186,7 +186,7 @@ def test_stiffnesses_without_digits_are_refused_with_what_is_possible():
 
 @pytest.mark.parametrize("scene", list(SMALL))
 def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_show(scene):
-    definitions = CATALOGUE[scene].settings.definitions()
+    definitions = CATALOGUE[scene].definitions()
     is_plane = CATALOGUE[scene].kind == "plane"
     stiffness, pressure = ("N/m^3", "Pa") if is_plane else ("N/m^2", "N/m")
     assert about(definitions["tangential_stiffness"]).unit == stiffness
@@ -199,7 +199,7 @@ def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_s
         assert not plain.applies(name)
         assert ("per length" in definitions[name].doc) is (name != "strength" and not is_plane)
     has_across = "normal_stiffness" in definitions and given.applies("normal_stiffness")
-    assert has_across is features_of(given).opens
+    assert has_across is given.features.opens
     assert not given.applies("friction_ratio")
     assert given.replace(strength="linear").applies("friction_ratio")
 
@@ -228,7 +228,7 @@ def test_layers_on_soft_joints_are_not_called_as_stiff_as_one_beam():
         problem = discretise(settings)
         reference = reference_of(problem)
         assert not reference.contact("contact 1-2").status.any()
-        assert bool(exact_of(settings, problem, reference)) is known
+        assert bool(list(settings.exact(problem, reference))) is known
 
 
 @pytest.mark.parametrize("scene", PLANE)

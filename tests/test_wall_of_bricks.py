@@ -78,7 +78,7 @@ def test_the_weight_over_an_opening_goes_round_it():
 
 
 def test_an_opening_leaves_bricks_beside_and_above_it():
-    settings = CATALOGUE["wall"].settings
+    settings = CATALOGUE["wall"]
     for values, name in (
         ({"opening": 11}, "opening"),
         ({"opening": 2, "opening_height": 6}, "opening_height"),

@@ -17,7 +17,7 @@ from app.files.link import read as read_address
 from solver.cli import main
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study.proof import report
@@ -107,7 +107,7 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
     settings = settings_of(title)
     problem = discretise(settings)
     found = reference_of(problem)
-    curves = exact_of(settings, problem, found)
+    curves = list(settings.exact(problem, found))
     assert [one.of for one in curves] == known
     for curve in curves:
         assert np.abs(curve.up).max() > 0.0
@@ -121,9 +121,11 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
             assert np.abs(curve.across - last).max() <= 1.1 * places[1]
             continue
         if curve.of == "loop":
-            loop = loop_of(settings, problem)
-            force = loop.force if isinstance(loop.force, np.ndarray) else loop.force(found)
-            pairs = [(curve.up, force), (curve.across, loop.displacement(found.displacement))]
+            loop = settings.structure().loop(problem)
+            pairs = [
+                (curve.up, loop.force(found)),
+                (curve.across, loop.displacement(found.displacement)),
+            ]
         else:
             (name, law), *_ = problem.rubbing.items()
             contact = found.contact(name)
@@ -165,4 +167,4 @@ def test_traction_of_a_shear_that_turns_begins_as_cattaneos_and_carries_the_forc
 )
 def test_nothing_is_drawn_where_no_closed_form_is_known(settings):
     problem = discretise(settings)
-    assert exact_of(settings, problem, reference_of(problem)) == []
+    assert list(settings.exact(problem, reference_of(problem))) == []

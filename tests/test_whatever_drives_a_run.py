@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.latin import solve
+from solver.loads import PRESETS
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -71,7 +72,7 @@ def test_a_run_is_certified_whatever_drives_it_and_however_little(
     scene, values = driven(size)[name]
     if scene == "block":
         values = {**values, "friction": friction}
-    chosen = CATALOGUE[scene].settings.checked(values)
+    chosen = CATALOGUE[scene].checked(values)
     problem = discretise(chosen)
     assert reference_of(problem).converged.all()
     assert solve(problem, method_of(chosen)).is_certified
@@ -84,7 +85,7 @@ def test_an_overlap_between_rollers_presses_as_uniaxial_strain_does(
 ) -> None:
     held = dict.fromkeys(("left", "right", "top"), "roller")
     values = {**PLANE, **held, "gap": gap(-size, -size), "friction": friction}
-    problem = discretise(CATALOGUE["block"].settings.checked(values))
+    problem = discretise(CATALOGUE["block"].checked(values))
     found = reference_of(problem)
     modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
     pressed = found.contact("support").normal_force.sum(axis=0)
@@ -99,12 +100,12 @@ def test_a_body_that_falls_or_rises_onto_its_support_presses_with_its_weight(
     size: float, tilt: float, friction: float
 ) -> None:
     values = {**PLANE, "top": "free", "body_force_y": -WEIGHT, "friction": friction}
-    chosen = CATALOGUE["block"].settings.checked({**values, "gap": gap(size, tilt * size)})
+    chosen = CATALOGUE["block"].checked({**values, "gap": gap(size, tilt * size)})
     problem = discretise(chosen)
     found = reference_of(problem)
     pressed = found.contact("support").normal_force
     assert found.converged.all()
-    weight = WEIGHT * 0.1 * 0.05 * chosen.path("body_load")
+    weight = WEIGHT * 0.1 * 0.05 * PRESETS[chosen.body_load].value(chosen.times(), 1)
     # Of how far it moves, rounding leaves a deformation.
     left = 1e-14 * YOUNG * abs(tilt * size)
     np.testing.assert_allclose(pressed.sum(axis=0), weight, rtol=1e-9, atol=left)
@@ -114,5 +115,5 @@ def test_a_body_that_falls_or_rises_onto_its_support_presses_with_its_weight(
 def test_forces_that_rounding_of_a_fall_hides_are_not_called_found() -> None:
     """A body of steel that falls by 1000 km: a double has no digits left of how it deforms."""
     values = {**PLANE, "top": "free", "body_force_y": -WEIGHT, "gap": gap(1e6, 1e6)}
-    found = reference_of(discretise(CATALOGUE["block"].settings.checked(values)))
+    found = reference_of(discretise(CATALOGUE["block"].checked(values)))
     assert not found.converged[1:].any()

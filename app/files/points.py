@@ -19,7 +19,6 @@ from app.views.colors import LATIN
 from app.widgets import dialog
 from solver.definitions import about
 from solver.refusal import RefusedError
-from solver.scenes import points_of
 
 MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""
@@ -67,7 +66,7 @@ class CurveDialog:
         """Show the points that hold, those of the preset where there are none yet."""
         settings = self._state.settings
         value = getattr(settings, self._name)
-        points = points_of(settings, self._name) if isinstance(value, str) else value
+        points = settings.points(self._name) if isinstance(value, str) else value
         units = settings.curve_units(self._name)
         self._units = units_of_points(settings.scene, self._name, units)
         table = pd.DataFrame(np.array(points) / [unit.factor for unit in self._units])

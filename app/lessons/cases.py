@@ -16,7 +16,6 @@ from app.state import PageState
 from app.units import number, unit_for
 from app.widgets import button, looks, mask_of
 from solver.definitions import about
-from solver.scenes import mesh_of
 from solver.study.cases.case import Case
 from solver.study.quantities.quantity import Quantity
 
@@ -70,7 +69,7 @@ class CasePanel(Guide):
     def _is_known(self, case: Case) -> bool:
         """Whether what is known is of these settings, however they are solved."""
         settings = self._state.settings
-        definitions, mesh = settings.definitions(), {*mesh_of(settings), "instants"}
+        definitions, mesh = settings.definitions(), {*settings.MESH, "instants"}
         return all(
             name in mesh or about(definitions[name]).group in ANSWERS_STAY
             for name in settings.changed(settings_of(case))

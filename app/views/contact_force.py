@@ -8,7 +8,6 @@ from app.frame import Floats, Frame, InterfaceFields, Run, Selection
 from app.views.axis import extent
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
 from app.views.view import View, hover, joined, key_of
-from solver.scenes import kind_of
 
 ROOM, MOST = 1.15, 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
@@ -57,7 +56,7 @@ class ContactForce(View):
         if fields is None:
             return
         column, reference = run.column(selection.phase), run.reference.get(name)
-        is_plane, has_pressure = kind_of(run.settings) == "plane", fields.pressure is not None
+        is_plane, has_pressure = run.settings.kind == "plane", fields.pressure is not None
         self.y.rename("traction" if is_plane else "force", "Pa" if is_plane else "N/m")
         curves = run.known("friction") + (run.known("pressure") if has_pressure else [])
         exact = [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
@@ -81,7 +80,7 @@ class ContactForce(View):
         self.fill("place", x=self.x([] if selection.place is None else [selection.place]))
         self.draw("exact", *joined([(c.across, c.up[:, column]) for c in exact]))
         past = None
-        if ghost is not None and (kind_of(ghost.run.settings) == "plane") == is_plane:
+        if ghost is not None and (ghost.run.settings.kind == "plane") == is_plane:
             other = selection.interface_of(ghost.run)
             past = ghost.contact.get(other)
             places = ghost.run.interfaces[other].positions
@@ -98,12 +97,11 @@ class ContactForce(View):
             ends = [known.friction, *exact, *([] if known.pressure is None else [known.pressure])]
             self._known = extent([*ends, *([] if bound is None else [bound, -bound])])
             self._scaled_for = key
-            self.x.hold(key, *extent([run.interfaces[name].positions]))
+            self.x.hold(key, run.interfaces[name].positions)
         low, high = self._known
         most = MOST * max(abs(low), abs(high))
         least, largest = extent([f for f in (fields.friction, fields.pressure) if f is not None])
-        low, high = min(ROOM * low, max(least, -most)), max(ROOM * high, min(largest, most))
-        self.y.hold(key, low, high)
+        self.y.hold(key, [ROOM * low, ROOM * high], [max(least, -most), min(largest, most)])
 
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its nearest instant, and name it."""

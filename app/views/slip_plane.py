@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, Selection
-from app.views.axis import extent
 from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE, UNSEEN
 from app.views.view import View
 from solver.laws import FrictionLaw
-from solver.scenes import features_of, law_of
 
 FAR = 10.0
 """Times the plot by which a line goes beyond it."""
@@ -24,9 +22,9 @@ class SlipPlane(View):
     # Two points rub, whose friction follows from what presses them.
     applies = staticmethod(
         lambda settings: (
-            features_of(settings).opens
-            and features_of(settings).jumps == 4
-            and law_of(settings) == FrictionLaw()
+            settings.features.opens
+            and settings.features.jumps == 4
+            and settings.law == FrictionLaw()
         )
     )
 
@@ -54,7 +52,7 @@ class SlipPlane(View):
         slip, corners = slips["slip"], slips["room"].T
         both = np.concatenate([slip, corners], axis=1)
         for axis, values in zip((self.x, self.y), both, strict=True):
-            axis.hold(frame.run.number, *extent([values]), 0.1)
+            axis.hold(frame.run.number, values, margin=0.1)
         self.draw("room", *corners)
         self.draw("path", *slip[:, : column + 1])
         self.draw("now", *slip[:, [column]])

@@ -11,7 +11,6 @@ from solver.discrete import Problem
 from solver.reference.condensation import NoReferenceError
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference, fingerprint
-from solver.scenes import features_of
 from solver.settings import Settings
 
 MOST_JUMPS = 1500
@@ -22,7 +21,7 @@ ENTRIES = 8
 
 def has_reference(settings: Settings) -> bool:
     """Whether a run is compared with an incremental solver."""
-    return features_of(settings).jumps <= MOST_JUMPS
+    return settings.features.jumps <= MOST_JUMPS
 
 
 class ReferenceCache:

@@ -10,20 +10,18 @@ import numpy as np
 
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
-from app.worker.extras import EXTRAS, OF_ROPE
+from app.worker.extras import EXTRAS
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
-from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.status import CANCELLED
 from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Reference
 from solver.remarks import remarks_on
-from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun
@@ -42,7 +40,7 @@ class Sampler:
 
     `run` is what all frames share, to which `complete` adds the reference. Of what is solved,
     `columns` are the instants, and `rows` the points by interface, that are shown; `drawn` is the
-    bodies as they are drawn, and `rope` the strand if it is one that is bent.
+    bodies as they are drawn.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
@@ -51,19 +49,13 @@ class Sampler:
         self.rows = {
             name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
         }
-        self.loop = loop_of(settings, problem)
-        structure = structure_of(settings)
-        self.rope = structure if isinstance(structure, Rope) else None
-        self.drawn: DrawnRods | DrawnMesh | DrawnRope
-        if self.rope is not None:
-            self.drawn = DrawnRope(self.rope, self.columns)
-        else:
-            kind = DrawnRods if problem.inside is None else DrawnMesh
-            self.drawn = kind(problem, structure.described(), self.columns)
+        self.loop = settings.structure().loop(problem)
+        kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
+        self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(problem, settings, self.columns)
         self.run = Run(
             number=number,
             settings=settings,
-            sentence=words_of(settings),
+            sentence=settings.sentence(),
             instants=floats(problem.instants[self.columns]),
             interfaces={name: self._interface(name) for name in problem.rubbing},
             geometry=self.drawn.geometry,
@@ -74,7 +66,7 @@ class Sampler:
 
     def complete(self, reference: Reference | None) -> None:
         """Add what is known without the search: the reference, and closed forms."""
-        curves = exact_of(self.settings, self.problem, reference)
+        curves = self.settings.exact(self.problem, reference)
         exact = tuple(
             replace(curve, across=curve.across[self.columns], up=curve.up[self.columns])
             if curve.up.ndim == 1
@@ -119,12 +111,9 @@ class Sampler:
         )
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        names, rope = needs.extras, self.rope
+        names, drawn = needs.extras, self.drawn.extras
         extras = {name: EXTRAS[name](self, iterate, needs) for name in names & EXTRAS.keys()}
-        if rope is not None:
-            of_rope = names & OF_ROPE.keys()
-            extras |= {name: OF_ROPE[name](rope, self, iterate, needs) for name in of_rope}
-        return extras
+        return extras | {name: drawn[name](iterate, needs) for name in names & drawn.keys()}
 
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Interfaces whose contact a frame has."""

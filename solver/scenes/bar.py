@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import ClassVar
 
 import numpy as np
 
@@ -15,18 +14,19 @@ from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
+from solver.friction_settings import STIFFNESSES
 from solver.loads import interpolate
 from solver.profiles import harmonic_means, means, shares_of
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_bar
-from solver.scenes.friction_law import STIFFNESSES
 from solver.scenes.words import acting, is_steel
+from solver.settings import Features, Icon, Settings
 
-SECTIONS = ("uniform", "rising", "falling")
-"""Of `shared.PROFILES`, those that leave no element without a section."""
+SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falling")}
+"""Those that leave no element without a section."""
+SETTLEMENTS = {"linear": ((0.0, 0.0), (1.0, 1.0)), **shared.PROFILES}
+"""The first is nothing at the left end."""
 FACTORS = 1e-8, 1e8
 LARGEST_CONTRAST = 1e8
 DONE = {
@@ -39,11 +39,29 @@ SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
 
 
-class BarSettings(SceneSettings):
+class BarSettings(Settings):
     """Settings of the friction bar; the defaults are Table 1 under a sine of 900 N."""
 
     scene = "bar"
-    LOADS: ClassVar = (
+    title = "Bar on a rough support"
+    source = "paper, section 3, Table 1"
+    icon = Icon(
+        ground="M5 9V28M5 23H46M12 23l-3 4M19 23l-3 4M26 23l-3 4M33 23l-3 4M40 23l-3 4",
+        body="M5 14H36V22H5Z",
+        load="M37 18H46M42 14L46 18L42 22",
+    )
+    kind = "rod"
+    CHIEF = (
+        "load",
+        "seed",
+        "peak",
+        "right_displacement",
+        "friction",
+        "substructures",
+        "k_scale",
+    )
+    GROWS = ("elements",)
+    LOADS = (
         "peak",
         "right_displacement",
         "left_force",
@@ -51,7 +69,6 @@ class BarSettings(SceneSettings):
         "temperature",
         "settlement",
     )
-    PROFILES: ClassVar = {**shared.PROFILES, **bar_ends.RISING}
 
     peak, load = shared.sized_path(
         "load",
@@ -122,7 +139,6 @@ class BarSettings(SceneSettings):
         title="Thermal expansion",
         unit="1/K",
         applies=lambda settings: settings.acts("temperature_load"),
-        logarithmic=True,
     )
     settlement, settlement_load = shared.sized_path(
         "settlement_load",
@@ -139,7 +155,7 @@ class BarSettings(SceneSettings):
     settlement_profile = shared.profile(
         "the settlement",
         "the bar",
-        ("linear", *shared.PROFILES),
+        SETTLEMENTS,
         "a preset (linear: nothing at the left end), or points (m, factor).",
         group="Load",
         applies=lambda settings: settings.acts("settlement_load"),
@@ -167,12 +183,6 @@ class BarSettings(SceneSettings):
         "is as stiff as all that lies in it.",
         group="Bar",
     )
-
-    @classmethod
-    def chief(cls) -> tuple[str, ...]:
-        """Settings that the bar is about: what is done to its right end first."""
-        ends = cls.PATH, "seed", "peak", "right_displacement"
-        return (*ends, "friction", "substructures", "k_scale")
 
     @property
     def n_nodes(self) -> int:
@@ -303,11 +313,7 @@ class BarSettings(SceneSettings):
                 "hold an end, lower the forces, or raise friction or pressure",
             )
 
-    def coarser(self) -> Iterator[Rods]:
-        """Yield the same bar, uncut, on ever coarser meshes."""
-        return self.structure().coarser()
-
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Friction along the bar and the loop of its end, where closed forms are known."""
         return exact_bar(self.structure(), problem)
 
@@ -318,7 +324,7 @@ class BarSettings(SceneSettings):
         ends = np.linspace(0.0, self.length, self.elements + 1)
         table = self.section_profile
         if isinstance(table, str):
-            factors = interpolate(self.PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
+            factors = interpolate(SECTIONS[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
         else:
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))
@@ -331,17 +337,3 @@ class BarSettings(SceneSettings):
         if all(isinstance(getattr(self, name), str) for name in names):
             return interpolate(mu, nodes) * interpolate(pressure, nodes)
         return means(tables, shares_of(nodes))
-
-
-BAR = Entry(
-    title="Bar on a rough support",
-    source="paper, section 3, Table 1",
-    emblem=Emblem(
-        ground="M5 9V28M5 23H46M12 23l-3 4M19 23l-3 4M26 23l-3 4M33 23l-3 4M40 23l-3 4",
-        body="M5 14H36V22H5Z",
-        load="M37 18H46M42 14L46 18L42 22",
-    ),
-    settings=BarSettings,
-    kind="rod",
-    grows=("elements",),
-)

@@ -21,8 +21,6 @@ PATHS = {
     "right": {"force": "load", "displacement": "right_load"},
 }
 """Settings of the paths of both ends."""
-RISING = {"linear": ((0.0, 0.0), (1.0, 1.0))}
-"""A profile over shares of the length that is nothing at the left end."""
 
 
 def is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
@@ -53,7 +51,6 @@ def spring(side: str) -> param.Number[float]:
         title=f"Spring at the {side} end",
         unit="N/m",
         applies=is_end(side, "spring"),
-        logarithmic=True,
     )
 
 

@@ -4,43 +4,57 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, choice, count, curve, quantity, redefined
+from solver.definitions import Rows, choice, count, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
+from solver.load_settings import POINTS, as_points
 from solver.loads import PRESETS
 from solver.profiles import gap_at, unseen
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.base import POINTS, as_points
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_on_spring, exact_parabola
 from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
+from solver.settings import Features, Icon
 
-GAPS = ("flat", "parabola")
+
+def _gap_points(settings: BlockSettings) -> Rows:
+    x = np.linspace(0.0, settings.length, POINTS)
+    return as_points(x, settings.gap_at(x))
 
 
 class BlockSettings(SideSettings):
     """Settings of the block; by default it is pressed from above, then sheared to and fro."""
 
     scene = "block"
-    LOADS: ClassVar = ("top_tangential_displacement",)
-    PATH = "top_tangential_load"
+    title = "Block pressed and sheared"
+    source = "Johnson, Contact Mechanics, 1985, ch. 4 and 7"
+    icon = Icon(
+        ground="M4 25H44M11 25l-3 4M18 25l-3 4M25 25l-3 4M32 25l-3 4M39 25l-3 4",
+        body="M12 11H36V24H12Z",
+        load="M24 1V9M20 5L24 9L28 5M32 7H44M40 3L44 7L40 11",
+    )
+    CHIEF = (
+        "top_tangential_load",
+        "seed",
+        "top_tangential_displacement",
+        "friction",
+        "substructures",
+        "k_scale",
+    )
+    LOADS = ("top_tangential_displacement",)
 
     gap = curve(
         "parabola",
-        GAPS,
-        "position",
-        "gap",
-        ("m", "m"),
+        dict.fromkeys(("flat", "parabola"), _gap_points),
+        {"position": "m", "gap": "m"},
         "Opening between the undeformed body and its support: a preset, or points (m, m).",
         group="Contact",
         title="Gap",
@@ -53,7 +67,6 @@ class BlockSettings(SideSettings):
         group="Contact",
         title="Radius R",
         unit="m",
-        logarithmic=True,
         applies=lambda settings: settings.gap == "parabola",
         places=("gap",),
     )
@@ -126,13 +139,6 @@ class BlockSettings(SideSettings):
         force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
         return {**super().behind(), "body": force}
 
-    def points(self, name: str) -> Pairs:
-        """Points of the preset that a curve setting has at present."""
-        if name != "gap" or not isinstance(self.gap, str):
-            return super().points(name)
-        x = np.linspace(0.0, self.length, POINTS)
-        return as_points(x, self._gap(x))
-
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, the gap among them."""
         yield from super().left_out()
@@ -158,7 +164,7 @@ class BlockSettings(SideSettings):
         sides = {side: self.side(side) for side in ("left", "right", "top")}
         nodes = np.linspace(0.0, self.length, self.nodes[0])
         table = self.gap
-        gap = self._gap(nodes) if isinstance(table, str) else gap_at(table, nodes)
+        gap = self.gap_at(nodes) if isinstance(table, str) else gap_at(table, nodes)
         return replace(
             self.stack(),
             support=Support(gap, self.friction_at_nodes()),
@@ -190,7 +196,7 @@ class BlockSettings(SideSettings):
         block = "A steel block" if is_steel(self.young) else "An elastic block"
         return f"{block} lies on a {support} {rough} support; it is {does}."
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterable[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
         """Tractions on a parabola, once there are forces for them, or the slide on a spring."""
         body = self.structure()
         if self.gap != "parabola":
@@ -199,7 +205,7 @@ class BlockSettings(SideSettings):
             return ()
         return exact_parabola(body, self.radius, problem, solution)
 
-    def _gap(self, x: Array) -> Array:
+    def gap_at(self, x: Array) -> Array:
         """Gap of a preset at places along the lowest side, m."""
         if self.gap == "flat":
             return np.zeros_like(x)
@@ -207,18 +213,7 @@ class BlockSettings(SideSettings):
 
     def _body_force(self) -> Array | None:
         sizes = np.array([self.body_force_x, self.body_force_y])
-        return sizes[:, None] * self.path("body_load") if sizes.any() else None
-
-
-BLOCK = Entry(
-    title="Block pressed and sheared",
-    source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
-    emblem=Emblem(
-        ground="M4 25H44M11 25l-3 4M18 25l-3 4M25 25l-3 4M32 25l-3 4M39 25l-3 4",
-        body="M12 11H36V24H12Z",
-        load="M24 1V9M20 5L24 9L28 5M32 7H44M40 3L44 7L40 11",
-    ),
-    settings=BlockSettings,
-    kind="plane",
-    grows=shared.PLANE_GROWS,
-)
+        if not sizes.any():
+            return None
+        phases = self.times() / self.duration
+        return sizes[:, None] * PRESETS[self.body_load].value(phases, self.seed, self.cycles)

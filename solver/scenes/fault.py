@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -18,15 +17,15 @@ from solver.definitions import SettingError, quantity, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of, interpolate
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
+from solver.settings import Features, Icon
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -98,18 +97,31 @@ class Fault:
     def _acts(self) -> Iterator[Act]:
         along = (1.0, 0.0)
         stress = np.full_like(self.fluid, self.stress)
-        yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, OUTWARD["top"], stress, "Pa")
-        yield Act("left x", "p", np.zeros((1, 2)), along, OUTWARD["left"], self.fluid, "Pa")
+        yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, stress, "Pa")
+        yield Act("left x", "p", np.zeros((1, 2)), along, self.fluid, "Pa")
 
 
 class FaultSettings(PlaneSettings):
     """Settings of the fault; by default the fluid's pressure stays, and the front runs on."""
 
     scene = "fault"
-    LOADS: ClassVar = ("overpressure", "shear_stress")
-    PROFILES: ClassVar = PROFILES
-    PATH = "injection_load"
-    SHAPES: ClassVar = INJECTIONS
+    title = "Fault driven by a fluid"
+    source = "R. C. Viesca, J. Fluid Mech. 928, A29, 2021"
+    icon = Icon(
+        ground="M4 25H44M30 29H18M21 27L18 29L21 31",
+        body="M4 8H44V24H4Z",
+        load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
+    )
+    CHIEF = (
+        "injection_load",
+        "seed",
+        "overpressure",
+        "shear_stress",
+        "friction",
+        "substructures",
+        "k_scale",
+    )
+    LOADS = ("overpressure", "shear_stress")
 
     overpressure, injection_load = shared.sized_path(
         "injection_load",
@@ -150,7 +162,6 @@ class FaultSettings(PlaneSettings):
         group="Contact",
         title="Normal stress σ",
         unit="Pa",
-        logarithmic=True,
     )
     normal_profile = shared.profile("σ", "the fault", PROFILES, is_positive=True)
     diffusivity = quantity(
@@ -161,7 +172,6 @@ class FaultSettings(PlaneSettings):
         group="Contact",
         title="Diffusivity α",
         unit="m^2/s",
-        logarithmic=True,
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
     friction_profile = shared.profile("μ", "the fault", PROFILES, is_positive=True)
@@ -183,8 +193,8 @@ class FaultSettings(PlaneSettings):
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
         if self.instants == 1:  # a fluid needs all of the time before
-            start = instants_of(self.duration, 2, self._knots(self.injection_load), times)
-        fluid = spread(place, start, self._along("injection_load", start), self.diffusivity)
+            start = instants_of(self.duration, 2, self.knots("injection_load"), times)
+        fluid = spread(place, start, self.path_at("injection_load", start), self.diffusivity)
         return fluid if start is times else fluid[:, np.searchsorted(start, times)]
 
     def strength_along(self, place: Array) -> Array:
@@ -229,7 +239,7 @@ class FaultSettings(PlaneSettings):
 
     def _check_work(self) -> None:
         """Refuse a fluid whose pressure would take minutes to spread."""
-        bends = len(self._knots(self.injection_load))
+        bends = len(self.knots("injection_load"))
         if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
             raise SettingError(
                 "injection_load",
@@ -269,7 +279,7 @@ class FaultSettings(PlaneSettings):
             "a quarter is seen."
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Front of slip and the friction, as long as slip spreads in an infinite body.
 
         It does where strength falls with time, everywhere, and grows away from the well.
@@ -296,17 +306,3 @@ class FaultSettings(PlaneSettings):
             friction[ahead, instant] += added
             friction[~ahead, instant] = strength[~ahead, instant]
         yield ExactCurve("friction", nodes, -friction)
-
-
-FAULT = Entry(
-    title="Fault driven by a fluid",
-    source="R. C. Viesca, J. Fluid Mech. 928, A29, 2021",
-    emblem=Emblem(
-        ground="M4 25H44M30 29H18M21 27L18 29L21 31",
-        body="M4 8H44V24H4Z",
-        load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
-    ),
-    settings=FaultSettings,
-    kind="plane",
-    grows=shared.PLANE_GROWS,
-)

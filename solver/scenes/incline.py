@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -21,19 +20,25 @@ from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_slope
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
+from solver.settings import Features, Icon
 
 
 class InclineSettings(PlaneSettings):
     """Settings of the block on a slope; by default the spring catches it, and pulls it back."""
 
     scene = "incline"
-    LOADS: ClassVar = ("slope",)
-    PATH = "slope_load"
-    SHAPES: ClassVar = PULLS
+    title = "Block on an inclined plane"
+    source = "closed form: Coulomb, Théorie des machines simples, 1785"
+    icon = Icon(
+        ground="M3 29L45 10V29Z",
+        body="M15 22L28 16L25 8L12 14Z",
+        load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
+    )
+    CHIEF = ("slope_load", "seed", "slope", "friction", "substructures", "k_scale")
+    LOADS = ("slope",)
 
     slope, slope_load = shared.sized_path(
         "slope_load",
@@ -75,7 +80,6 @@ class InclineSettings(PlaneSettings):
         group="Contact",
         title="Spring stiffness",
         unit="N/m",
-        logarithmic=True,
     )
     length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", "Body")
     height = shared.size(
@@ -117,7 +121,7 @@ class InclineSettings(PlaneSettings):
             tilt=angle,
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Force of the spring over the angle."""
         return exact_slope(self.structure())
 
@@ -127,17 +131,3 @@ class InclineSettings(PlaneSettings):
         moves = acting(path, "rises", "falls", "rises and falls", "rises and falls")
         slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
         return f"A block lies on a {slope}; a spring catches it when it slides down."
-
-
-INCLINE = Entry(
-    title="Block on an inclined plane",
-    source="closed form: Coulomb, Théorie des machines simples, 1785",
-    emblem=Emblem(
-        ground="M3 29L45 10V29Z",
-        body="M15 22L28 16L25 8L12 14Z",
-        load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
-    ),
-    settings=InclineSettings,
-    kind="plane",
-    grows=shared.PLANE_GROWS,
-)

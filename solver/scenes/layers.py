@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import (
-    Pairs,
+    Rows,
     choice,
     count,
     curve,
@@ -25,18 +24,41 @@ from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import UNSEEN
 from solver.reference.closed_forms import ExactCurve
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted, is_steel
+from solver.settings import Features, Icon
+
+
+def _graduated(settings: LayersSettings) -> Rows:
+    count = settings.layers
+    return tuple((layer + 1.0, 1.0 - layer / count) for layer in range(count))
 
 
 class LayersSettings(PlaneSettings):
     """Settings of the stack; by default it is pressed, then its end is bent up and down."""
 
     scene = "layers"
-    LOADS: ClassVar = ("deflection", "moment", "force")
-    PATH = "bend_load"
+    title = "Stack of layers, bent"
+    source = "a leaf spring, or the section of a cable laid flat"
+    icon = Icon(
+        ground="M5 3V27",
+        body="M5 6C18 6 28 8 40 14L38 18C28 12 18 11 5 11ZM5 11C18 11 28 12 38 18L36 22"
+        "C28 17 18 16 5 16ZM5 16C18 16 28 17 36 22L34 26C28 22 18 21 5 21Z",
+        load="M44 6V20M40 16L44 20L48 16",
+    )
+    CHIEF = (
+        "bend_load",
+        "seed",
+        "deflection",
+        "moment",
+        "force",
+        "friction",
+        "substructures",
+        "k_scale",
+    )
+    GROWS = ("layers",)
+    LOADS = ("deflection", "moment", "force")
     across = "thickness"
 
     pressure, pressure_load = shared.sized_path(
@@ -109,9 +131,7 @@ class LayersSettings(PlaneSettings):
     bend_load = curve(
         "delayed",
         PRESETS,
-        "time",
-        "value",
-        ("s", "m or N·m/m or N/m"),
+        {"time": "s", "value": "m or N·m/m or N/m"},
         "Deflection, moment or force over time: a preset, or points (s, m or N·m/m or N/m).",
         group="Load",
         title="Path of the bending",
@@ -131,10 +151,8 @@ class LayersSettings(PlaneSettings):
     )
     layer_lengths = curve(
         "equal",
-        ("equal", "graduated"),
-        "layer",
-        "share",
-        ("", ""),
+        {"equal": lambda settings: shared.same_for(settings.layers), "graduated": _graduated},
+        {"layer": "", "share": ""},
         "Length of each layer, from the lowest on, as a share of the length, to the nearest "
         "element. equal: 1. graduated: each is shorter than the one below it by the same step, as "
         "in a leaf spring. Or points (layer, share), one for each. What is given at the right end "
@@ -149,7 +167,6 @@ class LayersSettings(PlaneSettings):
         "Young's modulus of every second layer over that of the others, the lowest among them.",
         group="Body",
         title="Stiffness contrast",
-        logarithmic=True,
     )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
     substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)
@@ -172,13 +189,6 @@ class LayersSettings(PlaneSettings):
             return None
         shares = np.array([share for _, share in self.points("layer_lengths")])
         return tuple(np.maximum(np.rint(shares * self.elements), 1).astype(int).tolist())
-
-    def points(self, name: str) -> Pairs:
-        """Points of a curve setting, or those that stand for its preset."""
-        if name != "layer_lengths" or not isinstance(self.layer_lengths, str):
-            return super().points(name)
-        count, falls = self.layers, self.layer_lengths == "graduated"
-        return tuple((layer + 1.0, 1.0 - falls * layer / count) for layer in range(count))
 
     @property
     def n_nodes(self) -> int:
@@ -265,7 +275,7 @@ class LayersSettings(PlaneSettings):
             },
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Force that bends the layers, where they act apart or as one."""
         return exact_layers(self.structure(), problem, solution)
 
@@ -280,18 +290,3 @@ class LayersSettings(PlaneSettings):
         if pull.any():
             ends = f"{ends}, and {acting(pull, 'pulled', 'pushed')}"
         return f"{layers}, held at the left, {pressed}; the right end is {ends}."
-
-
-LAYERS = Entry(
-    title="Stack of layers, bent",
-    source="a leaf spring, or the section of a cable laid flat",
-    emblem=Emblem(
-        ground="M5 3V27",
-        body="M5 6C18 6 28 8 40 14L38 18C28 12 18 11 5 11ZM5 11C18 11 28 12 38 18L36 22"
-        "C28 17 18 16 5 16ZM5 16C18 16 28 17 36 22L34 26C28 22 18 21 5 21Z",
-        load="M44 6V20M40 16L44 20L48 16",
-    ),
-    settings=LayersSettings,
-    kind="plane",
-    grows=("layers",),
-)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from solver.discrete.problem import Problem
 from solver.latin import (
     PGD,
     Anderson,
@@ -17,7 +18,6 @@ from solver.latin import (
     Stop,
 )
 from solver.latin.directions import SearchDirection
-from solver.scenes import coarser_problems
 from solver.settings import Settings
 
 
@@ -30,11 +30,15 @@ def method_of(settings: Settings) -> Latin:
         multiscale=settings.multiscale,
         relaxation=settings.relaxation,
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
-        start=Nested(partial(coarser_problems, settings)) if settings.start == "nested" else None,
+        start=Nested(partial(_coarser_problems, settings)) if settings.start == "nested" else None,
         finish=None if settings.finish == "none" else StatusStep(at_once=at_once),
         stop=Stop(settings.accuracy, settings.tolerance, settings.max_iterations),
         threads=settings.threads,
     )
+
+
+def _coarser_problems(settings: Settings) -> list[Problem]:
+    return [structure.discretise() for structure in settings.coarser()]
 
 
 def _direction(settings: Settings) -> SearchDirection | FromStatus:

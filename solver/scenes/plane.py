@@ -17,9 +17,7 @@ from solver.laws import FrictionLaw
 from solver.loads import interpolate
 from solver.profiles import means, shares_of
 from solver.refusal import plain
-from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Features
-from solver.settings import Settings
+from solver.settings import Features, Settings
 
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
@@ -29,19 +27,25 @@ FLATTEST = 1e4
 3e9 no digit of a substructure's is left, at 1e5 none beside a k of a millionth (measured)."""
 
 
-class PlaneSettings(SceneSettings):
+class PlaneSettings(Settings):
     """Settings of elastic rectangles with frictional contact; one metre thick."""
 
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
-    MESH: ClassVar = ("elements", "elements_up")
-    PROFILES: ClassVar = shared.PROFILES
+    MESH = ("elements", "elements_up")
+    GROWS: ClassVar[tuple[str, ...]] = (
+        "elements",
+        "elements_up",
+        "substructures",
+        "substructures_up",
+    )
+    kind = "plane"
 
-    instants = redefined(SceneSettings.param["instants"], 81)
+    instants = redefined(Settings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
     friction_profile = shared.profile("μ", "the body", is_positive=True)
     tangential_stiffness = redefined(
-        SceneSettings.param["tangential_stiffness"],
+        Settings.param["tangential_stiffness"],
         0.0,
         (1e8, 1e14),
         doc="Stiffness of a spring along the interface, in series with friction, per area: a "
@@ -57,11 +61,10 @@ class PlaneSettings(SceneSettings):
         group="Contact",
         title="Normal stiffness",
         unit="N/m^3",
-        logarithmic=True,
         applies=lambda settings: settings.is_general and settings.features.opens,
     )
     cohesion = redefined(
-        SceneSettings.param["cohesion"],
+        Settings.param["cohesion"],
         0.0,
         (0.0, 1e7),
         doc="Friction per area without any pressure, beside μ times that. It is gone for good "
@@ -69,7 +72,7 @@ class PlaneSettings(SceneSettings):
         unit="Pa",
     )
     friction_cap = redefined(
-        SceneSettings.param["friction_cap"],
+        Settings.param["friction_cap"],
         0.0,
         (0.0, 1e8),
         doc="Largest friction per area that pressure and cohesion make, before slip. 0: none.",
@@ -146,7 +149,6 @@ class PlaneSettings(SceneSettings):
         "Multiplies k once more, along the normals of contacts alone.",
         group="Method",
         title="Normal k factor",
-        logarithmic=True,
     )
     start = choice(
         "zero",
@@ -182,7 +184,7 @@ class PlaneSettings(SceneSettings):
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
-        if self.friction_profile == "uniform":
+        if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
         return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
 
@@ -199,7 +201,7 @@ class PlaneSettings(SceneSettings):
     @property
     def order(self) -> int:
         """Order of the elements: 1 bilinear, 2 biquadratic."""
-        return 2 if self.interpolation == "biquadratic" else 1
+        return 2 if self.interpolation == "biquadratic" and self.applies("interpolation") else 1
 
     @property
     def nodes(self) -> tuple[int, int]:

@@ -4,26 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Rows, SettingError, choice, count, quantity, redefined, table
+from solver.definitions import Rows, SettingError, choice, count, curve, quantity, redefined
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
-from solver.discrete.helical_wire import HelicalWire, RopeWire
+from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.problem import Problem
-from solver.discrete.rope import Rope
+from solver.discrete.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.refusal import plain
-from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.words import acting, counted
+from solver.settings import Features, Icon, Settings
 
 TIGHT = 1.01
 """Radius that wires beside each other need, over that of their helix, up to which they fit: those
@@ -34,26 +32,42 @@ MOST_WIRES = 1000
 """Of a construction of one's own."""
 
 
-class RopeSettings(SceneSettings):
+class RopeSettings(Settings):
     """Settings of the strand; by default 37 wires near a clamp, bent up, down and up again."""
 
     scene = "rope"
-    LOADS: ClassVar = ("curvature",)
+    title = "Spiral strand, bent"
+    source = "closed form: slip spreads from the neutral axis (Papailiou 1997)"
+    icon = Icon(
+        ground="M5 3V29",
+        body="M5 8C18 8 28 9 42 14L40 24C28 19 18 18 5 18ZM11 8L15 18M18 8L22 19M25 9L29 20"
+        "M32 11L35 22",
+        load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
+    )
+    kind = "helices"
+    CHIEF = (
+        "construction",
+        "layers",
+        "bending",
+        "load",
+        "curvature",
+        "tension",
+        "friction",
+        "k_scale",
+    )
+    GROWS = ("layers",)
+    LOADS = ("curvature",)
 
-    construction = table(
+    construction = curve(
         "mooring",
-        CONSTRUCTIONS,
-        {
-            "wires": ("", (1, 500)),
-            "diameter": ("m", (1e-6, 1.0)),
-            "lay angle": ("°", (-75.0, 75.0)),
-            "modulus": ("Pa", (1.0, 1e18)),
-        },
+        dict.fromkeys(CONSTRUCTIONS, lambda settings: settings.section.rows),
+        {"wires": "", "diameter": "m", "lay angle": "°", "modulus": "Pa"},
         "mooring: a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire. "
         "seven-wire: prestressing strand of 15.7 mm. conductor: an overhead conductor of 28 mm, 26 "
         "aluminium wires on 7 of steel (Drake). Or rows, inside out: wires, their diameter (m), "
         "lay angle (°, negative the other way round) and Young's modulus (Pa); the first row is "
         "the core, 1 wire of 0°.",
+        bounds=((1, 500), (1e-6, 1.0), (-75.0, 75.0), (1.0, 1e18)),
         group="Strand",
         title="Construction",
     )
@@ -96,7 +110,7 @@ class RopeSettings(SceneSettings):
         is_positive=True,
         places=("right x",),
     )
-    instants = redefined(SceneSettings.param["instants"], 61)
+    instants = redefined(Settings.param["instants"], 61)
     bending = choice(
         "clamp",
         ["uniform", "clamp"],
@@ -125,7 +139,6 @@ class RopeSettings(SceneSettings):
         title="Length L",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
-        logarithmic=True,
     )
     friction = shared.friction(
         "mu of the wires on what they lie on; those beside each other do not rub"
@@ -143,17 +156,11 @@ class RopeSettings(SceneSettings):
         title="Elements per wire",
     )
     substructures = redefined(
-        SceneSettings.param["substructures"],
+        Settings.param["substructures"],
         10,
         doc="Number of pieces (substructures) that a wire is cut into, all alike.",
         title="Substructures per wire",
     )
-
-    @classmethod
-    def chief(cls) -> tuple[str, ...]:
-        """Settings that it is about: what is bent, how far, how taut, and how rough."""
-        own = "construction", "layers", "bending", "load", "curvature", "tension", "friction"
-        return (*own, "k_scale")
 
     @cached_property
     def section(self) -> CrossSection:
@@ -161,10 +168,6 @@ class RopeSettings(SceneSettings):
         if isinstance(self.construction, str):
             return CONSTRUCTIONS[self.construction](self.layers)
         return _section_of(self.construction)
-
-    def rows(self, name: str) -> Rows:
-        """Rows of the construction, or points of a curve, or those that stand for its preset."""
-        return self.section.rows if name == "construction" else super().rows(name)
 
     @property
     def is_clamped(self) -> bool:
@@ -231,7 +234,7 @@ class RopeSettings(SceneSettings):
         curvature, tension = self.path("load"), self.path("tension_load")
         bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
         if self.tension_load == "steady":
-            bounds = bounds[:, :1]
+            bounds = bounds[:, 0]
         wires = [
             self._wire(layer, number, bounds[layer], curvature, tension)
             for layer, own in enumerate(self.section.layers)
@@ -266,7 +269,7 @@ class RopeSettings(SceneSettings):
             layer=layer,
             number=number,
             helix=helix,
-            diameter=own.diameter,
+            made=own,
             length=self._length_of(helix),
             bound=bound,
             curvature=np.outer(share, curvature),
@@ -282,10 +285,6 @@ class RopeSettings(SceneSettings):
         wires = counted(self.section.wires)
         return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
 
-    def coarser(self) -> Iterator[Rope]:
-        """Yield the same strand, uncut, on ever coarser meshes."""
-        return self.structure().coarser()
-
     def bent_strand(self) -> BentStrand | None:
         """Closed form of a strand that is bent alike all along, under a tension that stays."""
         tension = self.path("tension_load")
@@ -296,7 +295,7 @@ class RopeSettings(SceneSettings):
             return None
         return BentStrand(self.section, self.friction, float(tension[0]), factors)
 
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Moment over the curvature, where a closed form is known."""
         strand = self.bent_strand()
         if strand is not None:
@@ -337,18 +336,3 @@ def _section_of(rows: Rows) -> CrossSection:
                 f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more inside"
             )
     return section
-
-
-ROPE = Entry(
-    title="Spiral strand, bent",
-    source="closed form: slip spreads from the neutral axis (Papailiou 1997)",
-    emblem=Emblem(
-        ground="M5 3V29",
-        body="M5 8C18 8 28 9 42 14L40 24C28 19 18 18 5 18ZM11 8L15 18M18 8L22 19M25 9L29 20"
-        "M32 11L35 22",
-        load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
-    ),
-    settings=RopeSettings,
-    kind="helices",
-    grows=("layers",),
-)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, curve, quantity
-from solver.loads import PRESETS, PRESSURES
+from solver.definitions import CurveParameter, Rows, curve, quantity
+from solver.loads import PRESETS, PRESSURES, Preset
 from solver.settings import Settings
 
 PROFILES = {
@@ -33,7 +34,6 @@ BY_UNIT = {
     "Pa": "traction",
 }
 """What a path without a word of its own has, by its unit; else it is a force."""
-PLANE_GROWS = ("elements", "elements_up", "substructures", "substructures_up")
 
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
@@ -49,7 +49,7 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
 
 
 def profile(
-    what: str, body: str, presets: Iterable[str] = PROFILES, doc: str = "", **others: Any
+    what: str, body: str, presets: Mapping[str, Rows] = PROFILES, doc: str = "", **others: Any
 ) -> CurveParameter:
     """Define a factor along a body; its default is the first preset.
 
@@ -58,33 +58,33 @@ def profile(
     what, body
         On what, and along what.
     presets
-        By name.
+        Points over shares of the length, by name.
     doc
         Of a factor that is more than a preset or points.
     others
         Of a curve, and entries of `About`.
     """
-    presets, name = tuple(presets), what.removeprefix("the ")
+    name = what.removeprefix("the ")
     title = name if name == what else name.capitalize()
     return curve(
-        presets[0],
-        presets,
-        "position",
-        "factor",
-        ("m", ""),
+        next(iter(presets)),
+        {preset: partial(_over_length, points) for preset, points in presets.items()},
+        {"position": "m", "factor": ""},
         f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
         **{"group": "Contact", "title": f"{title} along {body}"} | others,
     )
+
+
+def _over_length(shares: Rows, settings: Settings) -> Rows:
+    return tuple((share * settings.length, factor) for share, factor in shares)
 
 
 def friction_factors(which: str) -> CurveParameter:
     """Define how mu varies from interface to interface."""
     return curve(
         "same",
-        ("same",),
-        "interface",
-        "factor",
-        ("", ""),
+        {"same": lambda settings: same_for(settings.n_interfaces)},
+        {"interface": "", "factor": ""},
         f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
         "each, numbered from 1 on.",
         is_positive=True,
@@ -102,7 +102,7 @@ def sized_path(
     slider: tuple[float, float],
     doc: str,
     preset: str,
-    presets: Iterable[str] = PRESETS,
+    presets: Mapping[str, Preset] = PRESETS,
     *,
     path_doc: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
@@ -136,9 +136,7 @@ def sized_path(
     over_time = curve(
         preset,
         presets,
-        "time",
-        next(named, BY_UNIT.get(unit, "force")),
-        ("s", unit),
+        {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
         f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
         is_positive=is_positive,
         group=record["group"],
@@ -181,6 +179,11 @@ def factors_of(settings: Any) -> Array | None:
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
+def same_for(count: int) -> Rows:
+    """Table of as many ones."""
+    return tuple((float(number), 1.0) for number in range(1, count + 1))
+
+
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
     """Values of a table that has one for each of so many, shape (count,).
 
@@ -211,9 +214,7 @@ def size(
     default: float, slider: tuple[float, float], title: str, doc: str, group: str
 ) -> param.Number[float]:
     """Define a length of a body."""
-    return quantity(
-        default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m", logarithmic=True
-    )
+    return quantity(default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m")
 
 
 def young(
@@ -228,7 +229,6 @@ def young(
         group=group,
         title="Young's modulus E",
         unit="Pa",
-        logarithmic=True,
     )
 
 
@@ -242,5 +242,4 @@ def section(doc: str, group: str) -> param.Number[float]:
         group=group,
         title="Cross section S",
         unit="m^2",
-        logarithmic=True,
     )

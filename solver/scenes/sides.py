@@ -84,9 +84,7 @@ def _settings_of(side: str, component: str) -> dict[str, Parameter]:
         f"{name}_load": curve(
             "hold" if component == "normal" else "delayed",
             PRESETS,
-            "time",
-            "value",
-            ("s", "Pa or m"),
+            {"time": "s", "value": "Pa or m"},
             f"{title} value over time: a preset that reaches the mean, or points (s, Pa or m).",
             group=group,
             title=f"{title} path",

@@ -9,30 +9,37 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, quantity, redefined
-from solver.discrete.cut_rods import COARSEST
+from solver.definitions import choice, count, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods, neighbours
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
+from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain
-from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Emblem, Entry, Features
-from solver.scenes.exact import exact_strand
 from solver.scenes.words import acting, counted, is_steel
+from solver.settings import Features, Icon, Settings
 
 
-class StrandSettings(SceneSettings):
+class StrandSettings(Settings):
     """Settings of the strand; by default the wire in the middle is broken, and pulled to and fro.
 
     The broken wire then regains its force over 0.2 m on either side of the break.
     """
 
     scene = "strand"
-    LOADS: ClassVar = ("peak",)
+    title = "Parallel wires, one broken"
+    source = "closed form: force regained over T / (mu p)"
+    icon = Icon(
+        ground="M5 3V29",
+        body="M5 6H37V11H5ZM5 14H18V19H5ZM23 14H37V19H23ZM5 22H37V27H5Z",
+        load="M38 16H47M43 12L47 16L43 20",
+    )
+    kind = "wires"
+    CHIEF = ("load", "seed", "peak", "friction", "substructures", "k_scale")
+    GROWS = ("wires",)
+    LOADS = ("peak",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
-    SHAPES: ClassVar = PULLS
 
     peak, load = shared.sized_path(
         "load",
@@ -44,6 +51,7 @@ class StrandSettings(SceneSettings):
         "Largest tension of a wire that the preset reaches.",
         "cycle",
         PULLS,
+        is_positive=True,
         title="Peak tension",
         places=("right x",),
     )
@@ -93,7 +101,7 @@ class StrandSettings(SceneSettings):
         title="Elements per wire",
     )
     substructures = redefined(
-        SceneSettings.param["substructures"],
+        Settings.param["substructures"],
         6,
         doc="Number of pieces (substructures) that a wire is cut into, at least two where one is "
         "broken: all wires are cut at the break, and alike.",
@@ -133,14 +141,7 @@ class StrandSettings(SceneSettings):
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
         shared.factors_of(self)
-        tension = self.path("load")
-        if tension.min() < 0.0:
-            raise self.refusal(
-                "load",
-                "tensions of at least 0 N",
-                "wires cannot be pushed: raise the negative values",
-            )
-        self._check_equilibrium(tension)
+        self._check_equilibrium(self.path("load"))
 
     def structure(self) -> Rods:
         """Make the strand.
@@ -170,22 +171,13 @@ class StrandSettings(SceneSettings):
             friction_law=self.law,
         )
 
-    def coarser(self) -> Iterator[Rods]:
-        """Yield the same strand, uncut, on ever coarser meshes.
-
-        Until its break, at the nearest node, left less than the tension to friction.
-        """
-        coarse = self
-        while (elements := coarse.elements // 2) >= COARSEST:
-            try:
-                coarse = coarse.replace(elements=elements, substructures=1)
-            except SettingError:
-                return
-            yield coarse.structure()
-
-    def exact(self, problem: Problem, solution: LoopFields | None) -> Iterator[ExactCurve]:
+    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, where they are known."""
-        return exact_strand(self.structure())
+        strand = self.structure()
+        exact = broken_wire(strand)
+        if exact is not None:
+            for force in (exact.force, exact.neighbour_force):
+                yield ExactCurve("axial force", strand.nodes, force)
 
     def sentence(self) -> str:
         """The strand in a sentence."""
@@ -230,17 +222,3 @@ class StrandSettings(SceneSettings):
                 "pull less, raise friction or pressure, move the break to the left, or take the "
                 "grip of given displacement",
             )
-
-
-STRAND = Entry(
-    title="Parallel wires, one broken",
-    source="closed form: force regained over T / (mu p)",
-    emblem=Emblem(
-        ground="M5 3V29",
-        body="M5 6H37V11H5ZM5 14H18V19H5ZM23 14H37V19H23ZM5 22H37V27H5Z",
-        load="M38 16H47M43 12L47 16L43 20",
-    ),
-    settings=StrandSettings,
-    kind="wires",
-    grows=("wires",),
-)

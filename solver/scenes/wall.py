@@ -14,9 +14,9 @@ from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.bricks import Brick, bonded, grouped, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS
-from solver.scenes.entry import Emblem, Entry, Features
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted
+from solver.settings import Features, Icon
 
 MOST_BRICKS = 1500
 """Bricks at most: with their joints they take some 2 GB."""
@@ -26,8 +26,26 @@ class WallSettings(PlaneSettings):
     """Settings of the wall; by default it is pressed from above, and its top moves to and fro."""
 
     scene = "wall"
-    LOADS: ClassVar = ("displacement", "traction")
-    PATH = "top_load"
+    title = "Wall of bricks"
+    source = "R. K. Livesley, Int. J. Numer. Meth. Eng. 12, 1978: blocks that only touch"
+    icon = Icon(
+        ground="M3 29H45",
+        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 17H41V22H34Z"
+        "M7 11H23V16H7ZM25 11H41V16H25Z",
+        load="M14 6H34M30 3L34 6L30 9",
+    )
+    CHIEF = (
+        "top_load",
+        "displacement",
+        "traction",
+        "pressure",
+        "friction",
+        "bricks",
+        "courses",
+        "multiscale",
+    )
+    GROWS = ("bricks", "courses")
+    LOADS = ("displacement", "traction")
     PARTS: ClassVar = {}
 
     bricks = count(12, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
@@ -105,9 +123,7 @@ class WallSettings(PlaneSettings):
     top_load = curve(
         "delayed",
         PRESETS,
-        "time",
-        "value",
-        ("s", "m or Pa"),
+        {"time": "s", "value": "m or Pa"},
         "Displacement or traction of the top over time: a preset, or points (s, m or Pa).",
         group="Load",
         title="Path of the top",
@@ -160,11 +176,6 @@ class WallSettings(PlaneSettings):
     interpolation = redefined(
         PlaneSettings.param["interpolation"], "bilinear", applies=lambda _: False
     )
-
-    @classmethod
-    def chief(cls) -> tuple[str, ...]:
-        """Settings that the scene is about; its substructures are the bricks."""
-        return (cls.PATH, *cls.LOADS, "pressure", "friction", "bricks", "courses", "multiscale")
 
     @property
     def n_substructures(self) -> int:
@@ -263,18 +274,3 @@ class WallSettings(PlaneSettings):
         rubs = bool(self.friction or self.law.cohesion)
         touch = "and rub on" if rubs else "and slide freely on"
         return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."
-
-
-WALL = Entry(
-    title="Wall of bricks",
-    source="R. K. Livesley, Int. J. Numer. Meth. Eng. 12, 1978: blocks that only touch",
-    emblem=Emblem(
-        ground="M3 29H45",
-        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 17H41V22H34Z"
-        "M7 11H23V16H7ZM25 11H41V16H25Z",
-        load="M14 6H34M30 3L34 6L30 9",
-    ),
-    settings=WallSettings,
-    kind="plane",
-    grows=("bricks", "courses"),
-)

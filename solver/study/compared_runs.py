@@ -12,7 +12,7 @@ import param
 from scipy.optimize import least_squares
 
 from solver.arrays import Array
-from solver.definitions import SettingError, about
+from solver.definitions import SettingError, about, is_logarithmic
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
@@ -71,7 +71,7 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
     low, high = definition.bounds
     if low >= 0.0 and value > 0.0:
         return value, 0.0, low, high
-    if about(definition).logarithmic:
+    if is_logarithmic(definition):
         can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
         raise SettingError(name, value, can, "set it")
     return value, abs(value) or float(np.ptp(definition.softbounds)), low, high

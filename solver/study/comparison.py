@@ -30,7 +30,6 @@ from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.disk import Refuse
 from solver.reference.distance import Fields, determinate_forces
-from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.tables import Table, read_table
 
@@ -85,7 +84,7 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
     """
     refuse = partial(SettingError, "the results", source, CAN)
     table = read_table(data, refuse)
-    kind = kind_of(settings)
+    kind = settings.kind
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
         raise refuse("displacements are compared along a single rod: give the friction force here")

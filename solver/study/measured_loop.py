@@ -166,7 +166,7 @@ class LoopComparison:
         if measured.units != (x, y):
             can = f"a loop of {across} ({x}) and {up} ({y})"
             raise self._refusal(can, "load one of this scene")
-        self.finds_force = bool(np.isin(loop.displacement.dofs, problem.prescribed[0]).all())
+        self.finds_force = loop.finds_force(problem)
         self.given, self.quantity = (across, up) if self.finds_force else (up, across)
         self.counted = np.ones(len(measured.force), dtype=bool)
         if measured.times is not None:

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from solver.definitions import SettingError
-from solver.scenes import mesh_of
 from solver.settings import Settings
 from solver.study.quantities.finished import finished_run
 from solver.study.quantities.quantity import Quantity
@@ -100,7 +99,7 @@ def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
     SettingError
         Where the finest has more elements than a scene takes.
     """
-    return _three(settings, {name: getattr(settings, name) for name in mesh_of(settings)}, 0)
+    return _three(settings, {name: getattr(settings, name) for name in settings.MESH}, 0)
 
 
 def instants_around(settings: Settings) -> tuple[list[Settings], int]:
@@ -136,7 +135,7 @@ def value_on(settings: Settings, asked: Quantity) -> float:
 
 def size_of(settings: Settings) -> str:
     """Numbers of elements and instants, in words."""
-    elements = " x ".join(str(getattr(settings, name)) for name in mesh_of(settings))
+    elements = " x ".join(str(getattr(settings, name)) for name in settings.MESH)
     return f"{elements} elements, {settings.values()['instants']} instants"
 
 

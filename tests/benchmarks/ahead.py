@@ -80,7 +80,7 @@ LARGE: dict[str, list[Problem]] = {
 
 def measure(scene: str, changes: dict[str, Any]) -> list[str]:
     """Cells of a row: LATIN's time and the other's, and LATIN's own way."""
-    settings = CATALOGUE[scene].settings.checked(changes)
+    settings = CATALOGUE[scene].checked(changes)
     has_reference, own_at, known_at, known_by = _course(settings)
     solution = latin(settings)
     number, found_at = len(solution.records), "-"

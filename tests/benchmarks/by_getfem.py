@@ -19,7 +19,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.elements import elastic_matrix
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise, structure_of
+from solver.scenes import CATALOGUE, discretise
 
 PROGRAM = Path(__file__).with_name("getfem_block.py")
 VERSION = "import getfem; print(getfem.getfem_env('version'))"
@@ -59,7 +59,7 @@ def interpreter() -> str | None:
 
 def by_getfem(settings: Any, python: str) -> BlockFields:
     """Have it solve a block of bilinear elements on a support, moved at its top alone."""
-    body = structure_of(settings)
+    body = settings.structure()
     assert body.support is not None
     top = body.sides["top"]
     asked = {
@@ -113,7 +113,5 @@ if __name__ == "__main__":
     python = interpreter()
     if python is None:
         sys.exit("GetFEM is not installed: apt-get install python3-getfem")
-    for name, difference in differences(
-        CATALOGUE["block"].settings.checked(SHEARED), python
-    ).items():
+    for name, difference in differences(CATALOGUE["block"].checked(SHEARED), python).items():
         print(f"{name.replace('_', ' ')}, all nodes and instants: {difference:.1e}")

@@ -1,4 +1,4 @@
-"""What whole runs take beside what `solver.latin.cost` expects of them.
+"""What whole runs take beside what `solver.latin.run_cost` expects of them.
 
 `python tests/benchmarks/whole_cost.py`
 """
@@ -9,7 +9,7 @@ import time
 from typing import Any
 
 from solver.executors import machine
-from solver.latin.cost import run_cost
+from solver.latin.run_cost import run_cost
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -33,7 +33,7 @@ def print_whole_cost() -> None:
     print("expected beside measured; the reference apart")
     print(f"{'run':<40} {'s':>13} {'MB':>13} {'reference, s':>13}")
     for scene, changes in SIZES:
-        settings = CATALOGUE[scene].settings.checked(changes)
+        settings = CATALOGUE[scene].checked(changes)
         label = " ".join([scene, *(f"{name}={value}" for name, value in changes.items())])
         pairs = zip(expected(settings), measured(settings), strict=True)
         print(f"{label:<40}", *(f"{one:>6.2g} {other:>6.2g}" for one, other in pairs))

@@ -8,30 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.files import check_keys, placed, read_toml, require, scene_settings
-from solver.scenes import CATALOGUE
-from solver.scenes.entry import Emblem
-from solver.settings import Settings
+from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
+from solver.settings import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
-
-KEYS = {
-    "order": int,
-    "title": str,
-    "question": str,
-    "source": str,
-    "quantity": str,
-    "known": (int, float),
-    "tolerance": (int, float),
-    "formula": str,
-    "how": str,
-    "change": str,
-    "controls": list,
-    "views": list,
-    "picture": dict,
-}
-"""Keys of the table `case`, and the type of each; `OPTIONAL` may be left out."""
-OPTIONAL = "views", "picture"
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +26,10 @@ class Case:
         What it follows from, and how it is known.
     change, controls
         What to change first, and the names of its settings.
-    views
-        Names of the plots that come to the front.
     picture
         By which it is found; without one that of the scene.
+    views
+        Names of the plots that come to the front.
     """
 
     name: str
@@ -65,8 +45,8 @@ class Case:
     how: str
     change: str
     controls: tuple[str, ...]
-    views: tuple[str, ...]
-    picture: Emblem
+    picture: Icon
+    views: tuple[str, ...] = ()
 
 
 def case_from_file(path: Path) -> Case:
@@ -95,15 +75,14 @@ def all_cases() -> list[Case]:
 
 
 def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
-    check_keys(entries, KEYS, optional=OPTIONAL)
-    tolerance, can = entries["tolerance"], "a share above 0 and below 1"
+    picture = {"picture": settings.icon._asdict(), **entries}["picture"]
+    values = fields_in(Case, {**entries, "picture": picture}, quantity=str, picture=dict)
+    tolerance, can = values["tolerance"], "a share above 0 and below 1"
     require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
     working = [own for own in settings.definitions() if settings.applies(own)]
-    for control in entries["controls"]:
+    for control in values["controls"]:
         remedy = "name a setting that does something here"
         require(control in working, "controls", control, ", ".join(working), remedy)
-    paths = entries.get("picture", CATALOGUE[settings.scene].emblem._asdict())
-    check_keys(paths, dict.fromkeys(Emblem._fields, str))
-    read = dict(entries) | {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
-    read |= {"quantity": reading(entries["quantity"]), "picture": Emblem(**paths)}
-    return Case(name=name, settings=settings, **read)
+    check_keys(picture, dict.fromkeys(Icon._fields, str))
+    values |= {"quantity": reading(values["quantity"]), "picture": Icon(**picture)}
+    return Case(name=name, settings=settings, **values)

@@ -20,7 +20,6 @@ from solver.reference.closed_forms.fluid_driven_slip import (
     slip_under_growing_strength,
 )
 from solver.reference.closed_forms.pulled_bar import broken_wire
-from solver.scenes import exact_of, loop_of, structure_of
 from solver.study.quantities.cycles import turning_points
 
 WORKS = {"m": "J", "1/m": "J/m"}
@@ -51,7 +50,8 @@ class Answer:
     @property
     def loop(self) -> Loop:
         """Loop that the scene shows."""
-        return loop_of(self.settings, self.problem)
+        loop: Loop = self.settings.structure().loop(self.problem)
+        return loop
 
 
 Number = tuple[str, str, float, float]
@@ -59,19 +59,22 @@ Number = tuple[str, str, float, float]
 
 
 def loop(answer: Answer) -> Iterator[Number]:
-    """Largest value that the loop of a scene finds, and the work that it encloses from there on.
+    """Largest and last value that a loop finds, and the work that it encloses from the first on.
 
     Both beside the closed form over the same path.
     """
-    curves = exact_of(answer.settings, answer.problem, answer.fields)
+    curves = answer.settings.exact(answer.problem, answer.fields)
     (exact,) = [curve for curve in curves if curve.of == "loop"]
     loop = answer.loop
     across, up = loop.along(answer.fields)
     known, found, given, named = exact.across, across, up, loop.across
-    if callable(loop.force):
+    if loop.finds_force(answer.problem):
         known, found, given, named = exact.up, up, across, loop.up
-    most = int(np.argmax(np.abs(known)))
-    yield f"largest {named[0].lower()}", named[1], float(known[most]), float(found[most])
+    sizes = np.abs(known)
+    places = {"largest": int(sizes.argmax()), "last": len(sizes) - 1}
+    for word, place in places.items():
+        if word == "largest" or 0.01 < sizes[place] / sizes.max() < 0.99:
+            yield f"{word} {named[0].lower()}", named[1], float(known[place]), float(found[place])
     if turning_points(given) and (unit := WORKS.get(loop.across[1])):
         start = int(np.argmax(given))
         exact_work, work = (
@@ -83,7 +86,7 @@ def loop(answer: Answer) -> Iterator[Number]:
 
 def opening(answer: Answer) -> Iterator[Number]:
     """Opening of the break of a wire."""
-    strand = structure_of(answer.settings)
+    strand = answer.settings.structure()
     assert isinstance(strand, Rods)
     exact = broken_wire(strand)
     assert exact is not None

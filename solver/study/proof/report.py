@@ -119,7 +119,7 @@ def cases() -> list[KnownCase]:
     known = []
     for group in tomllib.loads(CASES.read_text(encoding="utf-8"))["known"]:
         for title, settings in group["cases"].items():
-            kind = CATALOGUE[group["scene"]].settings
+            kind = CATALOGUE[group["scene"]]
             case = KnownCase(
                 title,
                 group["source"],

@@ -15,7 +15,6 @@ from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
-from solver.scenes import features_of, kind_of, law_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import FinishedRun
@@ -30,21 +29,21 @@ UNLOADED = 1e-3
 
 
 def _opens(settings: Settings) -> bool:
-    return features_of(settings).opens
+    return settings.features.opens
 
 
 def _rubs_by_mu(settings: Settings) -> bool:
     """Whether friction before slip is mu N."""
-    law = law_of(settings)
+    law = settings.law
     return law.cohesion == 0.0 and math.isinf(law.cap)
 
 
 def _in_the_plane(settings: Settings) -> bool:
-    return kind_of(settings) == "plane"
+    return settings.kind == "plane"
 
 
 def _over_a_displacement(settings: Settings) -> bool:
-    return features_of(settings).loop_is_over_displacement
+    return settings.features.loop_is_over_displacement
 
 
 def largest_load(run: FinishedRun) -> int:
@@ -78,7 +77,7 @@ def _most_axial_force(run: FinishedRun, at: float | None) -> int:
     "Largest axial force",
     "N",
     parameter=AT,
-    applies=lambda settings: kind_of(settings) in ("rod", "wires"),
+    applies=lambda settings: settings.kind in ("rod", "wires"),
     when=_most_axial_force,
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
@@ -91,10 +90,10 @@ def _force_at(side: str) -> Quantity:
     """Largest force that holds a side, or pulls the end of a rod there."""
 
     def force(run: FinishedRun) -> float:
-        problem, structure = run.problem, structure_of(run.settings)
+        problem, structure = run.problem, run.settings.structure()
         if isinstance(structure, Rods):
-            given = structure.end_force(problem, "right" if side == "right" else "left")
-            values = given if isinstance(given, np.ndarray) else given(run.iterate)
+            end = structure.end_force(problem, "right" if side == "right" else "left")
+            values = end.of(run.iterate)
             return float(values[np.abs(values).argmax()])
         moved = run.iterate.displacement
         return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
@@ -106,9 +105,9 @@ def _force_at(side: str) -> Quantity:
 
 def holding_sides(settings: Settings) -> Collection[str]:
     """Sides that have a force to tell: ends of a rod, and sides of prescribed displacement."""
-    if kind_of(settings) == "rod":
+    if settings.kind == "rod":
         return "left", "right"
-    structure = structure_of(settings)
+    structure = settings.structure()
     sides = structure.sides.items() if isinstance(structure, Stack) else ()
     return [side for side, given in sides if any(each.prescribed for each in given)]
 
@@ -211,9 +210,7 @@ def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
     return largest, place
 
 
-@quantity(
-    "Largest force in the spring", "N", applies=lambda settings: features_of(settings).has_spring
-)
+@quantity("Largest force in the spring", "N", applies=lambda settings: settings.features.has_spring)
 def spring_force(run: FinishedRun) -> float:
     """Largest force in the spring, N."""
     return float(run.force.max())

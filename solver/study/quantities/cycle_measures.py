@@ -13,7 +13,6 @@ from solver.discrete.wire_forces import stress_ranges
 from solver.laws import OPEN, FrictionLaw
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
-from solver.scenes import features_of, kind_of, law_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, instants_of, slips_of
 from solver.study.quantities.finished import FinishedRun
@@ -36,15 +35,15 @@ def has_a_limit(settings: Settings) -> bool:
 
     Contacts stay closed where surfaces without a gap rub by Coulomb's law.
     """
-    law = law_of(settings)
+    law = settings.law
     if not has_cycles(settings) or law.strength is not None:
         return False
-    if kind_of(settings) != "plane":
+    if settings.kind != "plane":
         return True
-    features = features_of(settings)
+    features = settings.features
     if not features.opens or features.has_spring or law != FrictionLaw():
         return False
-    gaps = [hold.gap for hold in structure_of(settings).described().holds if hold.gap is not None]
+    gaps = [hold.gap for hold in settings.structure().described().holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
 
@@ -109,11 +108,11 @@ def shakedown_factor(run: FinishedRun) -> float:
 
 def is_rope(settings: Settings) -> bool:
     """Whether there are wires around a core."""
-    return kind_of(settings) == "helices"
+    return settings.kind == "helices"
 
 
 def _rope(settings: Settings) -> Rope:
-    rope = structure_of(settings)
+    rope = settings.structure()
     assert isinstance(rope, Rope)
     return rope
 
@@ -196,7 +195,7 @@ def wire_work(run: FinishedRun) -> float:
 @quantity(
     "Length over which a broken wire regains its force",
     "m",
-    applies=lambda settings: features_of(settings).has_break,
+    applies=lambda settings: settings.features.has_break,
     when=lambda run: int(np.argmax(run.force)),
 )
 def recovery_length(run: FinishedRun, instant: int) -> float:
@@ -204,7 +203,7 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
 
     NaN without a broken wire, or without tension; infinite if it does so on neither side.
     """
-    described = structure_of(run.settings).described()
+    described = run.settings.structure().described()
     if described.broken is None or not run.force[instant]:
         return math.nan
     wire, place = described.broken

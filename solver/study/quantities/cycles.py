@@ -19,7 +19,6 @@ import numpy as np
 from solver.arrays import Array
 from solver.latin import Iterate
 from solver.laws import Contact
-from solver.scenes import structure_of
 from solver.settings import Settings
 
 SMALLEST_SWING = 0.05
@@ -163,7 +162,7 @@ def turning_points(path: Array) -> list[int]:
 
 def _paths(settings: Settings) -> Iterator[Array]:
     """What acts over time; of what varies along a side, the place that changes most."""
-    described = structure_of(settings).described()
+    described = settings.structure().described()
     if described.tilt is not None:
         yield described.tilt
     for act in described.acts:

@@ -21,7 +21,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.rules import States
-from solver.scenes import CATALOGUE, discretise, loop_of
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import slips_of
@@ -69,7 +69,7 @@ class FinishedRun:
     @cached_property
     def loop(self) -> Loop:
         """Loop that the scene shows."""
-        return self.made_loop or loop_of(self.settings, self.problem)
+        return self.made_loop or self.settings.structure().loop(self.problem)
 
     @property
     def states(self) -> States:
@@ -101,7 +101,7 @@ class FinishedRun:
 def settle() -> None:
     """Make tiny runs, once in a process, after which a run brings in no code any more."""
     for scene, tiny in TINY.items():
-        finished_run(CATALOGUE[scene].settings.checked(tiny))
+        finished_run(CATALOGUE[scene].checked(tiny))
 
 
 def finished_run(

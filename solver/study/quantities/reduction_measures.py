@@ -10,7 +10,6 @@ from solver.latin import Iterate
 from solver.reduction.clips import Clips, clips_of
 from solver.reduction.sizes import Sizes, of_clips, of_products
 from solver.reduction.svd import InterfaceField, decompose, decompositions
-from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import WITHIN, quantity
@@ -21,7 +20,7 @@ LOADED = "right x"
 
 def on_rods(settings: Settings) -> bool:
     """Whether points rub on rods; in the plane most substructures do not rub."""
-    return kind_of(settings) != "plane"
+    return settings.kind != "plane"
 
 
 def can_be_clipped(settings: Settings) -> bool:
@@ -29,7 +28,7 @@ def can_be_clipped(settings: Settings) -> bool:
 
     Wires of a strand that is bent slip as its curvature has them, which is no force at an end.
     """
-    return kind_of(settings) in ("rod", "wires")
+    return settings.kind in ("rod", "wires")
 
 
 def clips_in(settings: Settings, iterate: Iterate) -> Clips:
@@ -44,7 +43,7 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
     bounds = [law.by_point(law.tangential.highest) * problem.scales.force for law in laws]
     widest = max(bound.shape[1] for bound in bounds)
     bound = np.concatenate([np.broadcast_to(own, (len(own), widest)) for own in bounds])
-    acts = structure_of(settings).described().acts
+    acts = settings.structure().described().acts
     pulls = (act.values for act in acts if act.where == LOADED)
     load = next(pulls, iterate.friction_force.sum(axis=0))
     return clips_of(
@@ -68,8 +67,7 @@ def products_in(clips: Clips) -> Sizes:
 )
 def modes(run: FinishedRun) -> float:
     """Modes of the largest separated basis of a substructure at the end; NaN without bases."""
-    reduction = run.iterate.reduction
-    return math.nan if reduction is None else max(basis.modes for basis in reduction.records)
+    return max((basis.n_modes for basis in run.iterate.bases), default=math.nan)
 
 
 @quantity("Singular vectors of the displacement for an error of", parameter=WITHIN, applies=on_rods)

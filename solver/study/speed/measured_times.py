@@ -26,12 +26,12 @@ import numpy as np
 from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.latin import Ending, Solution, judged, solve
-from solver.latin.cost import run_cost
+from solver.latin.run_cost import run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import discretise, entry_of
+from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 
@@ -202,7 +202,7 @@ def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSi
 
     The method is the fast one; large are sizes that take minutes.
     """
-    names = entry_of(settings).grows
+    names = settings.GROWS
     longest = LONGEST_OF_LARGE if large else LONGEST
     measured: dict[tuple[int, int], TimesAtSize] = {}
     for later, size in product(FACTORS, LARGE if large else FACTORS):

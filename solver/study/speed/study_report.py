@@ -11,7 +11,6 @@ import numpy as np
 
 from solver.definitions import about
 from solver.executors import machine
-from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.page import (
     Panel,
@@ -122,7 +121,7 @@ def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
 def _titles(settings: Settings) -> list[str]:
     """Titles of the settings that grow together."""
     definitions = settings.definitions()
-    return [about(definitions[name]).title for name in entry_of(settings).grows]
+    return [about(definitions[name]).title for name in settings.GROWS]
 
 
 def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
@@ -185,7 +184,7 @@ def write_study(
 ) -> str:
     """Write `map.csv` and `study.html`; what whoever asked for them is to be told, if anything."""
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    rows = ((entry_of(settings).grows[0], *astuple(times)) for times in measured)
+    rows = ((settings.GROWS[0], *astuple(times)) for times in measured)
     write_csv(folder / "map.csv", head, rows)
     sections: list[Section] = [
         f"<h2>Time to an error of the friction force</h2>\n{html_table(table(curves))}\n"

@@ -16,8 +16,8 @@ import param
 from numpy.random import Generator
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, SettingError, about
-from solver.scenes import CATALOGUE, points_of
+from solver.definitions import CurveParameter, SettingError, about, is_logarithmic
+from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.stability.stability_case import NOT_WRONG, StabilityCase
 
@@ -80,7 +80,7 @@ def draw(scene: str, seed: int, row: int) -> Settings:
         If the settings refused every draw.
     """
     generator = np.random.default_rng([seed, row, *scene.encode()])
-    kind = CATALOGUE[scene].settings
+    kind = CATALOGUE[scene]
     last = SettingError(scene, row, f"up to {LARGEST_FIELD} nodes times instants", "draw smaller")
     for _ in range(TRIALS):
         try:
@@ -143,7 +143,7 @@ def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> No
     """Change what was drawn to what fits the mesh."""
     if "friction_factors" in values:
         some = {n: values[n] for n in ("layers", "wires", "construction") if n in values}
-        each = points_of(kind.checked(some), "friction_factors")
+        each = kind.checked(some).points("friction_factors")
         values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
     if "layer_lengths" in values and generator.random() < 0.5:
         shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
@@ -226,7 +226,7 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
         make = TABLES.get(definition.abscissa)
         if make and generator.random() < 0.4:
             return make(name, generator)
-        return str(generator.choice(definition.presets))
+        return str(generator.choice(list(definition.presets)))
     if isinstance(definition, param.Boolean):
         return bool(generator.random() < 0.5)
     if isinstance(definition, param.Selector):
@@ -234,7 +234,7 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
     low, high = WIDE.get(name, definition.softbounds)
     if isinstance(definition, param.Integer):
         return int(generator.integers(low, high + 1))
-    if about(definition).logarithmic:
+    if is_logarithmic(definition):
         return log_uniform(generator, low, high)
     return float(generator.uniform(low, high))
 

@@ -161,7 +161,7 @@ def run(scene: str, values: Mapping[str, object]) -> Outcome:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            settings = CATALOGUE[scene].settings.checked(values)
+            settings = CATALOGUE[scene].checked(values)
             return _measured(finished_run(settings, errors=False, indicators=False).solution)
         except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))

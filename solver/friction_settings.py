@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.definitions import Pairs, about, choice, curve, quantity
+from solver.definitions import Rows, about, choice, curve, quantity
 from solver.laws import FrictionLaw, Strength
+from solver.method_settings import MethodSettings
 from solver.refusal import plain
-from solver.settings import Settings
 
 SHORTEST_SLIP = 1e-12
 """Between points of a strength, m."""
@@ -17,7 +17,7 @@ STIFFNESSES = 1e-9, 1e9
 """Of contact, over the unit of `contact_stiffness`: softer or stiffer, no digits are left."""
 
 
-class FrictionSettings(Settings):
+class FrictionSettings(MethodSettings):
     """Settings of the law of friction, beside the coefficient."""
 
     friction_law = choice(
@@ -41,7 +41,6 @@ class FrictionSettings(Settings):
         group="Contact",
         title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",
-        logarithmic=True,
     )
     tangential_stiffness = quantity(
         0.0,
@@ -53,7 +52,6 @@ class FrictionSettings(Settings):
         title="Tangential stiffness",
         unit="N/m^2",
         applies=lambda settings: settings.is_general,
-        logarithmic=True,
     )
     cohesion = quantity(
         0.0,
@@ -78,10 +76,8 @@ class FrictionSettings(Settings):
     )
     strength = curve(
         "constant",
-        ("constant", "linear"),
-        "slip",
-        "factor",
-        ("m", ""),
+        dict.fromkeys(("constant", "linear"), lambda settings: settings.strength_points()),
+        {"slip": "m", "factor": ""},
         "Factor on the largest friction force over the accumulated slip of a point. constant: 1. "
         "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
         "peak, softening and a residual; the last one stays.",
@@ -108,7 +104,6 @@ class FrictionSettings(Settings):
         title="Slip length",
         unit="m",
         applies=lambda settings: settings.is_linear_in_slip,
-        logarithmic=True,
     )
 
     @property
@@ -147,9 +142,9 @@ class FrictionSettings(Settings):
     def _changes_with_slip(self) -> bool:
         return self.is_linear_in_slip or (self.is_general and self.strength != "constant")
 
-    def strength_points(self) -> Pairs:
+    def strength_points(self) -> Rows:
         """Points of the strength over the slip, or those that stand for its preset."""
-        table: str | Pairs = self.strength
+        table: str | Rows = self.strength
         if not (self.is_linear_in_slip or isinstance(table, str)):
             return table
         last = self.friction_ratio if self.is_linear_in_slip else 1.0
