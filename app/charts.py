@@ -18,8 +18,7 @@ from bokeh.resources import Resources
 from app.units import unit_for
 from app.views.colors import FORCE, REFERENCE
 from solver.arrays import Array
-from solver.study.chart import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, Runs
-from solver.study.page import PlotSection
+from solver.study.page import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, PlotSection, Runs
 
 hv.extension("bokeh")
 

@@ -20,7 +20,7 @@ from solver.study.speed import study_report as study
 from solver.study.speed.measured_times import error_against_time, times_at_sizes
 from solver.study.stability import report as stability
 from solver.study.stability.draws import random_cases
-from solver.study.stability.stability_case import JudgedRun, extreme_cases, judged_runs
+from solver.study.stability.stability_case import Row, extreme_cases, judged_runs, passed
 
 
 def add_reports(commands: Any) -> None:
@@ -84,13 +84,13 @@ def _stability(chosen: argparse.Namespace) -> int:
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
         title, notes = stability.RANDOM_TITLE, stability.RANDOM_NOTES
-    runs: list[JudgedRun] = []
+    runs: list[Row] = []
     with writing(chosen.out, *stability.FILES):
         print(head_of(stability.SHOWN))
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
             for run in judged_runs(cases):
-                print(line_of(stability.entries(run), stability.SHOWN), flush=True)
+                print(line_of(run, stability.SHOWN), flush=True)
                 runs.append(run)
             is_whole = True
         stability.write_stability(runs, title, notes, chosen.out)
@@ -101,7 +101,7 @@ def _stability(chosen: argparse.Namespace) -> int:
     )
     if not is_whole:
         raise KeyboardInterrupt
-    return 0 if all(run.passed for run in runs) else 1
+    return 0 if all(map(passed, runs)) else 1
 
 
 def _proof(chosen: argparse.Namespace) -> int:
@@ -111,8 +111,8 @@ def _proof(chosen: argparse.Namespace) -> int:
         print(head_of(proof.SHOWN))
         for case in own or proof.cases():
             for row in proof.rows_of(case):
-                print(line_of(proof.entries(row), proof.SHOWN), flush=True)
+                print(line_of(row, proof.SHOWN), flush=True)
                 rows.append(row)
         proof.write_proof(rows, chosen.out)
     print(f"{proof.summary(rows)}\n{len(proof.FILES)} files in {chosen.out}")
-    return 0 if all(row.holds for row in rows) else 1
+    return 0 if all(map(proof.holds, rows)) else 1

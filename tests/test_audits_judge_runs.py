@@ -23,13 +23,13 @@ from solver.study.stability.report import COLUMNS, counts, last_lines
 from solver.study.stability.stability_case import (
     AT_ROUNDING,
     METHODS,
-    JudgedRun,
     Outcome,
     StabilityCase,
     Verdict,
     extreme_cases,
     judge,
     judged_runs,
+    row_of,
 )
 
 GOOD = Outcome(
@@ -80,9 +80,9 @@ def test_a_warning_breaks_a_run(monkeypatch):
 
     monkeypatch.setattr("solver.study.stability.stability_case.reference_of", warns)
     (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
-    assert row.outcome.ending == BROKEN
-    assert "overflow" in row.outcome.advice
-    assert row.verdict is Verdict.WRONG
+    assert row["ending"] == BROKEN
+    assert "overflow" in row["advice"]
+    assert row["verdict"] == Verdict.WRONG
 
 
 def rows_in(folder):
@@ -140,12 +140,12 @@ def test_the_equations_alone_tell_a_solution_from_what_is_near_it(scene):
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
     wrong, right = (
-        JudgedRun(random_case(draw("bar", 9, row), 9, row), changed(error_force=error))
+        row_of(random_case(draw("bar", 9, row), 9, row), changed(error_force=error))
         for row, error in ((4, 0.5), (5, 0.0))
     )
     text = "\n".join(last_lines([wrong, right], []))
-    assert wrong.case.command in text
-    assert right.case.command not in text
+    assert wrong["command"] in text
+    assert right["command"] not in text
     assert "1 of 2 runs pass" in text
     counted = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
     assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}

@@ -16,8 +16,7 @@ from sweeps import tiny
 
 from app.charts import contours, in_units, keys, overlay, render
 from solver.study import page
-from solver.study.chart import Chart, Panel, PanelAxis, PanelCurve
-from solver.study.page import PlotSection, write_page
+from solver.study.page import Chart, Panel, PanelAxis, PanelCurve, PlotSection, write_page
 from solver.study.sweep.chart import chart_of, charts
 from solver.study.sweep.plan import Row
 

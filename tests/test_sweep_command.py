@@ -23,8 +23,7 @@ from solver.arrays import Array
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
-from solver.study.chart import Map
-from solver.study.page import write_page
+from solver.study.page import Map, write_page
 from solver.study.sweep.adaptive import Chooser
 from solver.study.sweep.chart import chart_of
 from solver.study.sweep.plan import Plan, Row, axis_of, plan_of

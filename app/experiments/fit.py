@@ -22,11 +22,11 @@ from solver.checked import dump
 from solver.definitions import about
 from solver.files import settings_from_toml
 from solver.settings import Settings
-from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP
 from solver.study.measured_loop import MeasuredLoop
+from solver.study.page import Panel, PanelAxis, PanelCurve
 
 MEASURED = "measured.csv"
 NO_LOOP = (

@@ -31,8 +31,8 @@ from app.widgets import button, changing_text, download
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
-from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
+from solver.study.page import Chart, Map
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep.chart import chart_of, is_map
 from solver.study.sweep.plan import Plan

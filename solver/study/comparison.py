@@ -178,23 +178,20 @@ class Comparison:
             counts &= _interpolated(unknown.astype(float), at) == 0.0
         self.counted, self._at = int(counts.sum()), at[:, counts]
         self._values = results.values[counts]
-        self._weights = weights_of(x[counts], t[counts])
+        if self.counted >= FEWEST:
+            self._weights = weights_of(x[counts], t[counts])
 
     def of(self, fields: Fields) -> float:
         """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
         if self.counted < FEWEST:
             return float("nan")
-        own = self.own(fields)
-        size = self._norm(self._values) or self._norm(own) or 1.0
-        return self._norm(own - self._values) / size
-
-    def own(self, fields: Fields) -> Array:
-        """Our field at the rows that both cover, shape (n_counted,)."""
         if self._places is None:
             field = self._problem.at_rest(fields.displacement)
         else:
             field = fields.contact_force[self._places] / self._sizes
-        return _interpolated(field[self._order], self._at)
+        own = _interpolated(field[self._order], self._at)
+        size = self._norm(self._values) or self._norm(own) or 1.0
+        return self._norm(own - self._values) / size
 
     def _norm(self, values: Array) -> float:
         return float(np.sqrt(self._weights @ values**2))
@@ -229,8 +226,4 @@ def _interpolated(field: Array, at: Array) -> Array:
 
 def _halves(places: Array, joined: Flags | bool = True) -> Array:
     """Half of the distances to the neighbours, of places that rise where they are joined."""
-    steps = np.diff(places) * joined
-    halves = np.zeros(len(places))
-    halves[:-1] += 0.5 * steps
-    halves[1:] += 0.5 * steps
-    return halves
+    return np.convolve(np.diff(places) * joined, [0.5, 0.5])

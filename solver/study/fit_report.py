@@ -13,10 +13,12 @@ from solver.checked import dump
 from solver.definitions import about
 from solver.disk import write
 from solver.scenes.words import listed
-from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.fit import Fit
 from solver.study.measured_loop import ALIKE, MeasuredLoop, csv_of, rms
 from solver.study.page import (
+    Panel,
+    PanelAxis,
+    PanelCurve,
     PlotSection,
     Section,
     aligned,

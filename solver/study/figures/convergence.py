@@ -6,9 +6,9 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.reference.distance import Fields
-from solver.study.chart import Line, Panel, PanelAxis, PanelCurve
 from solver.study.figures.figure import Finding, PaperFigure, paper_figure
 from solver.study.figures.paper_runs import EARLY, LONG, PaperRuns
+from solver.study.page import Line, Panel, PanelAxis, PanelCurve
 
 SHOWN = 300
 """Iterations that Fig. 3 shows."""

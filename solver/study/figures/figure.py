@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from solver.study.chart import Panel
-from solver.study.page import PlotSection, Section, bullets, write_page
+from solver.study.page import Panel, PlotSection, Section, bullets, write_page
 
 WORDS = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
 LOAD = (

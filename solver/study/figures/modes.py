@@ -9,10 +9,10 @@ import numpy as np
 from solver.arrays import Array
 from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, against_front, front_decay
-from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.figures.convergence import figure_3, figure_4
 from solver.study.figures.figure import Finding, PaperFigure, paper_figure
 from solver.study.figures.paper_runs import PaperRuns
+from solver.study.page import Panel, PanelAxis, PanelCurve
 
 ALIKE = 0.9
 """Correlation from which two modes count as alike."""

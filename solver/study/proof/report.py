@@ -8,10 +8,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlencode
 
-from solver.latin import Ending, solve
+from solver.discrete.structure import LoopFields
+from solver.latin import Ending, Solution, solve
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -30,6 +33,9 @@ SHOWN = {
     **{"quantity": ("quantity", 52), "deviation": ("deviation", 9), "allowed": ("allowed", 8)},
 }
 """Columns of a console."""
+Row = dict[str, Any]
+"""A number of a case by a solver, as it is written."""
+HOLDS, FAILS = "holds", "FAILS"
 NUMBERS = "holds", "quantity", "unit", "known", "solver", "ours", "deviation", "allowed"
 """Columns of the page."""
 CASES = Path(__file__).with_name("cases.toml")
@@ -70,44 +76,29 @@ class KnownCase:
         return f"?{urlencode({'scene': self.settings.scene, **texts})}"
 
 
-@dataclass(frozen=True)
-class ProofRow:
-    """One number of one case by one solver, as it is known and as that has it.
+def rows_of(case: KnownCase) -> Iterator[Row]:
+    """Solve a case by LATIN and, unless it is of the trade, by the incremental solver too.
 
-    `ended` is whether the run came to its end; a number of one that did not proves nothing.
+    A number of a run that did not come to its end proves nothing.
     """
-
-    case: KnownCase
-    solver: str
-    ended: bool
-    quantity: str
-    unit: str
-    exact: float
-    found: float
-
-    @property
-    def deviation(self) -> float:
-        """Distance of the two over what is known."""
-        return float(abs(self.found - self.exact) / abs(self.exact))
-
-    @property
-    def holds(self) -> bool:
-        """Whether it is as it has to be."""
-        return self.ended and self.deviation <= self.case.allowed
-
-
-def rows_of(case: KnownCase) -> Iterator[ProofRow]:
-    """Solve a case by LATIN and, unless it is of the trade, by the incremental solver too."""
     settings = case.settings
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
-    ended = solution.status.ending is Ending.CONVERGED
-    for number in case.numbers(Answer(settings, problem, solution.iterate, solution)):
-        yield ProofRow(case, "LATIN", ended, *number)
+    answers: list[tuple[str, bool, LoopFields, Solution | None]]
+    answers = [("LATIN", solution.status.ending is Ending.CONVERGED, solution.iterate, solution)]
     if case.part != TRADE:
         reference = reference_of(problem)
-        for number in case.numbers(Answer(settings, problem, reference)):
-            yield ProofRow(case, "incremental", bool(reference.converged.all()), *number)
+        answers.append(("incremental", bool(reference.converged.all()), reference, None))
+    for solver, has_ended, fields, run in answers:
+        for quantity, unit, known, ours in case.numbers(Answer(settings, problem, fields, run)):
+            deviation = float(abs(ours - known) / abs(known))
+            holds = has_ended and deviation <= case.allowed
+            yield {
+                **{"holds": HOLDS if holds else FAILS, "part": case.part, "case": case.title},
+                **{"solver": solver, "quantity": quantity, "unit": unit, "known": float(known)},
+                **{"ours": float(ours), "deviation": deviation, "allowed": case.allowed},
+                **{"mesh": size_of(settings), "source": case.source, "address": case.address},
+            }
 
 
 def known_case(case: Case) -> KnownCase:
@@ -141,39 +132,28 @@ def cases() -> list[KnownCase]:
     return [*known, *map(known_case, all_cases())]
 
 
-def entries(row: ProofRow) -> dict[str, object]:
-    """Entries of a row by column."""
-    case = row.case
-    return {
-        **{"holds": "holds" if row.holds else "FAILS", "part": case.part, "case": case.title},
-        **{"solver": row.solver, "quantity": row.quantity, "unit": row.unit},
-        **{"known": float(row.exact), "ours": float(row.found), "deviation": row.deviation},
-        **{"allowed": case.allowed, "mesh": size_of(case.settings)},
-        **{"source": case.source, "address": case.address},
-    }
+def holds(row: Row) -> bool:
+    """Whether a number is as it has to be."""
+    return bool(row["holds"] == HOLDS)
 
 
-def summary(rows: Sequence[ProofRow]) -> str:
+def summary(rows: Sequence[Row]) -> str:
     """How many rows hold."""
-    return f"{sum(row.holds for row in rows)} of {len(rows)} numbers hold."
+    return f"{sum(map(holds, rows))} of {len(rows)} numbers hold."
 
 
-def write_proof(rows: Sequence[ProofRow], folder: Path) -> None:
+def write_proof(rows: Sequence[Row], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
-    written = [entries(row) for row in rows]
-    write_csv(folder / FILES[0], list(written[0]), [entry.values() for entry in written])
+    write_csv(folder / FILES[0], list(rows[0]), [row.values() for row in rows])
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
-    ordered = sorted(rows, key=lambda row: PARTS.index(row.case.part))
-    for part, of_part in groupby(ordered, lambda row: row.case.part):
+    digits = {"known": 6, "ours": 6}
+    for part in PARTS:
         lines = [list(NUMBERS)]
-        for case, own in groupby(of_part, lambda row: row.case):
-            address, title = escape(PAGE + case.address), escape(case.title)
-            link = f'<a class="run" href="{address}"><b>{title}</b></a>'
-            lines.append(
-                [f"{link} · {size_of(case.settings)}<br><small>{escape(case.source)}</small>"]
-            )
-            for entry in map(entries, own):
-                digits = {"known": 6, "ours": 6}
-                lines.append([text_of(entry[name], digits.get(name, 2)) for name in NUMBERS])
-        sections.append(f"<h2>{part}</h2>{html_table(lines)}")
+        of_part = (row for row in rows if row["part"] == part)
+        for head, own in groupby(of_part, itemgetter("address", "case", "mesh", "source")):
+            address, title, mesh, source = map(escape, head)
+            link = f'<a class="run" href="{escape(PAGE)}{address}"><b>{title}</b></a>'
+            lines.append([f"{link} · {mesh}<br><small>{source}</small>"])
+            lines += [[text_of(row[name], digits.get(name, 2)) for name in NUMBERS] for row in own]
+        sections += [f"<h2>{part}</h2>{html_table(lines)}"] * (len(lines) > 1)
     write_page(folder / FILES[1], TITLE, sections)

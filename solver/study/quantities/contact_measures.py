@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +27,8 @@ EQUAL = 1e-6
 """Relative difference up to which two loads count as equally large."""
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
-
-
-def _opens(settings: Settings) -> bool:
-    return settings.features.opens
+_opens = attrgetter("features.opens")
+_over_a_displacement = attrgetter("features.loop_is_over_displacement")
 
 
 def _rubs_by_mu(settings: Settings) -> bool:
@@ -40,10 +39,6 @@ def _rubs_by_mu(settings: Settings) -> bool:
 
 def _in_the_plane(settings: Settings) -> bool:
     return settings.kind == "plane"
-
-
-def _over_a_displacement(settings: Settings) -> bool:
-    return settings.features.loop_is_over_displacement
 
 
 def largest_load(run: FinishedRun) -> int:

@@ -222,8 +222,5 @@ def _reached(share: Array, level: float) -> float:
     Linear between the middles, and nothing at the break; infinite if it is not reached.
     """
     places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
-    values = np.concatenate([[0.0], share])
-    above = int(np.argmax(values >= level))
-    if above == 0:
-        return math.inf
-    return float(np.interp(level, values[above - 1 : above + 1], places[above - 1 : above + 1]))
+    values = np.maximum.accumulate(np.concatenate([[0.0], share]))
+    return float(np.interp(level, values, places)) if values[-1] >= level else math.inf

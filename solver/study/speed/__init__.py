@@ -1,1 +1,0 @@
-"""What a study shows: errors against time, and who is first at which size."""

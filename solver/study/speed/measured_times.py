@@ -97,12 +97,10 @@ class ErrorCurve:
         return float(np.median(np.diff(self.seconds)))
 
     def reached(self, level: float) -> tuple[float, float] | None:
-        """Least time at which the friction force is so near, and the step it was."""
-        near = np.flatnonzero(self.error_force <= level)
-        if not len(near):
-            return None
-        first = near[self.seconds[near].argmin()]
-        return float(self.seconds[first]), float(self.steps[first])
+        """Time from which on the friction force has been so near, and the step it was."""
+        near = self.error_force <= level
+        first = near.argmax()
+        return (float(self.seconds[first]), float(self.steps[first])) if near[first] else None
 
 
 def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:

@@ -12,8 +12,10 @@ import numpy as np
 from solver.definitions import about
 from solver.executors import machine
 from solver.settings import Settings
-from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.page import (
+    Panel,
+    PanelAxis,
+    PanelCurve,
     PlotSection,
     Section,
     bullets,

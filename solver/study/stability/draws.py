@@ -126,21 +126,7 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
             continue
         if generator.random() < often:
             values[name] = _drawn(name, definition, generator)
-    if "friction_factors" in values:
-        some = {n: values[n] for n in ("layers", "wires", "construction") if n in values}
-        each = kind.checked(some).points("friction_factors")
-        values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
-    if "layer_lengths" in values and generator.random() < 0.5:
-        shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
-        values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
-    if "elements_up" in definitions:  # elements up to a hundred times as long as high, or as wide
-        length = values.setdefault("length", definitions["length"].default)
-        power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
-        aspect = 10.0 ** generator.uniform(-power, power)
-        values[kind.across] = length * values["elements_up"] / (values["elements"] * aspect)
-    if "cycles" in values:
-        # Every cycle takes instants of its own.
-        values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))
+    _fit_together(kind, values, generator)
     values |= _loads(kind, values, generator)
     # Where the top of a wall is moved before anything presses, where bricks lie is not determinate.
     if kind.scene != "wall":
@@ -151,6 +137,25 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
                 turns = size * generator.uniform(least, 1.0, int(generator.integers(1, 8)))
                 values[path] = _table(turns, size, settings.duration, generator)
     return values
+
+
+def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> None:
+    """Change what was drawn to what fits the mesh."""
+    if "friction_factors" in values:
+        some = {n: values[n] for n in ("layers", "wires", "construction") if n in values}
+        each = kind.checked(some).points("friction_factors")
+        values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
+    if "layer_lengths" in values and generator.random() < 0.5:
+        shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
+        values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
+    if "elements_up" in values:  # elements up to a hundred times as long as high, or as wide
+        length = values.setdefault("length", kind.definitions()["length"].default)
+        power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
+        aspect = 10.0 ** generator.uniform(-power, power)
+        values[kind.across] = length * values["elements_up"] / (values["elements"] * aspect)
+    if "cycles" in values:
+        # Every cycle takes instants of its own.
+        values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))
 
 
 def _loads(kind: Any, values: Mapping[str, Any], generator: Generator) -> dict[str, Any]:
@@ -192,10 +197,8 @@ def _scales(kind: Any, given: Mapping[str, Any], generator: Generator) -> dict[s
     if "construction" in given:
         names = {"construction", "layers"} & given.keys()
         section = kind.checked({name: given[name] for name in names}).section
-        helix, strain = (
-            section.helix(len(section.layers) - 1),
-            10.0 ** generator.uniform(-4.0, -2.0),
-        )
+        helix = section.helix(len(section.layers) - 1)
+        strain = 10.0 ** generator.uniform(-4.0, -2.0)
         bent = strain * abs(math.sin(helix.lay)) / helix.radius
         return {"N": section.stiffness * strain, "1/m": bent}
     length = given["length"]

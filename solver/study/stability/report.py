@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from html import escape
 from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from statistics import median_high
 
 from solver.study.page import aligned, bullets, html_table, line_of, text_of, write_csv, write_page
-from solver.study.stability.stability_case import MEANING, JudgedRun, Verdict
+from solver.study.stability.stability_case import MEANING, Row, Verdict, passed
 
 FILES = "stability.csv", "stability.html"
 COLUMNS = (
@@ -40,65 +40,47 @@ NOTES = (
 RANDOM_NOTES = ("Right are errors of the contact force of at most the accuracy.", ERRORS)
 
 
-def entries(run: JudgedRun) -> dict[str, object]:
-    """Entries of a row by column."""
-    return {
-        **{**vars(run.case), **vars(run.outcome)},
-        "case": run.case.title,
-        "verdict": str(run.verdict),
-        "passed": "pass" if run.passed else "FAIL",
-        "status": str(run.outcome.ending),
-        "settings": json.dumps(run.case.values),
-    }
-
-
-def summary(runs: Sequence[JudgedRun]) -> str:
+def summary(runs: Sequence[Row]) -> str:
     """How many runs came to what they have to."""
-    return f"{sum(run.passed for run in runs)} of {len(runs)} runs pass."
+    return f"{sum(map(passed, runs))} of {len(runs)} runs pass."
 
 
-def counts(runs: Sequence[JudgedRun]) -> list[list[str]]:
+def counts(runs: Sequence[Row]) -> list[list[str]]:
     """Numbers of runs by verdict, and what each means; with a head."""
-    numbers = Counter(run.verdict for run in runs)
+    numbers = Counter(run["verdict"] for run in runs)
     rows = ([name, str(numbers[Verdict(name)]), text] for name, text in MEANING.items())
     return [["verdict", "runs", "what it means"], *rows]
 
 
-def counts_by_method(runs: Sequence[JudgedRun]) -> list[list[str]]:
+def counts_by_method(runs: Sequence[Row]) -> list[list[str]]:
     """Numbers of runs by scene, method and verdict, and of those certified; with a head."""
-
-    def key(run: JudgedRun) -> tuple[str, str]:
-        return run.case.scene, run.case.method
-
+    key = itemgetter("scene", "method")
     rows = [["scene", "method", "runs", *Verdict, "certified", "median iterations"]]
     for names, each in groupby(sorted(runs, key=key), key):
         group = list(each)
-        verdicts = Counter(run.verdict for run in group)
-        certified = sum(run.outcome.certified for run in group)
-        middle = median_high(run.outcome.iterations for run in group)
+        verdicts = Counter(run["verdict"] for run in group)
+        certified = sum(run["certified"] for run in group)
+        middle = median_high(run["iterations"] for run in group)
         numbers = [len(group), *(verdicts[verdict] for verdict in Verdict), certified, middle]
         rows.append([*names, *map(str, numbers)])
     return rows
 
 
-def last_lines(runs: Sequence[JudgedRun], notes: Sequence[str]) -> list[str]:
+def last_lines(runs: Sequence[Row], notes: Sequence[str]) -> list[str]:
     """What a console ends with; what did not pass, with the command that repeats it."""
     lines = ["", summary(runs), aligned(counts(runs)), "", *notes]
     lines += ["", "By scene and method:", aligned(counts_by_method(runs))]
     for run in runs:
-        if not run.passed:
-            lines += ["", line_of(entries(run), SHOWN)]
-            lines += [f"      {run.outcome.advice}", f"      {run.case.command}"]
+        if not passed(run):
+            lines += ["", line_of(run, SHOWN), f"      {run['advice']}", f"      {run['command']}"]
     return lines
 
 
-def write_stability(
-    runs: Sequence[JudgedRun], title: str, notes: Sequence[str], folder: Path
-) -> None:
+def write_stability(runs: Sequence[Row], title: str, notes: Sequence[str], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
     short = [column for column in COLUMNS if column not in LONG]
     cells, every = [], [[column.replace("_", " ") for column in short]]
-    for row in map(entries, runs):
+    for row in runs:
         cells.append([row[column] for column in COLUMNS])
         words = " · ".join(str(row[column]) for column in LONG if row[column])
         every += [[text_of(row[column]) for column in short], [escape(words)]]

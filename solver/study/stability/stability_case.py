@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -64,6 +65,7 @@ APART = 1e-6
 """Distance from which on two fields that solve the equations are two solutions."""
 RIGHT_UP_TO = 1e-6
 """Error of displacement and contact force up to which an answer is right."""
+Row = dict[str, Any]
 METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
 
 
@@ -234,24 +236,25 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Ver
     return Verdict.WRONG
 
 
-@dataclass(frozen=True)
-class JudgedRun:
-    """A case, what it came to, and what that is worth."""
-
-    case: StabilityCase
-    outcome: Outcome
-
-    @property
-    def verdict(self) -> Verdict:
-        """What it is worth."""
-        return judge(self.outcome, self.case.error_force, self.case.error_displacement)
-
-    @property
-    def passed(self) -> bool:
-        """Whether it came to what it has to."""
-        return self.verdict in PASSING[self.case.expected]
+def row_of(case: StabilityCase, outcome: Outcome) -> Row:
+    """A run as it is written: a case, what it came to, and what that is worth."""
+    verdict = judge(outcome, case.error_force, case.error_displacement)
+    return {
+        **{**vars(case), **vars(outcome)},
+        "case": case.title,
+        "verdict": str(verdict),
+        "passed": "pass" if verdict in PASSING[case.expected] else "FAIL",
+        "status": str(outcome.ending),
+        "settings": json.dumps(case.values),
+        "command": case.command,
+    }
 
 
-def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[JudgedRun]:
+def passed(row: Row) -> bool:
+    """Whether a run came to what it has to."""
+    return bool(row["passed"] == "pass")
+
+
+def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[Row]:
     """Run cases, and yield each as soon as it is done."""
-    return (JudgedRun(case, run(case.scene, case.values)) for case in cases)
+    return (row_of(case, run(case.scene, case.values)) for case in cases)

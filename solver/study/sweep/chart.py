@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.chart import Chart, Map, Panel, PanelAxis, PanelCurve, Runs
+from solver.study.page import Chart, Map, Panel, PanelAxis, PanelCurve, Runs
 from solver.study.sweep.plan import Plan, Row, Varied
 
 MOST_CURVES = 6
@@ -27,8 +27,7 @@ Text = Callable[[float, str], str]
 
 def charts(plan: Plan, rows: Sequence[Row]) -> list[Chart]:
     """Charts of all readings, of runs to which no others are to come."""
-    made = [chart_of(plan, rows, place) for place in range(len(plan.of))]
-    return [_filled(one) if isinstance(one, Map) and _is_sampled(one.z) else one for one in made]
+    return [_filled(chart_of(plan, rows, place)) for place in range(len(plan.of))]
 
 
 def plainly(value: float, unit: str) -> str:
@@ -98,18 +97,18 @@ def is_wide(values: Array) -> bool:
     return bool(values.size and values.min() > 0.0 and values.max() > DECADES * values.min())
 
 
-def _is_sampled(good: Array) -> bool:
-    """Whether runs are few and enclose the others; those of a stopped sweep do not."""
-    known = np.isfinite(good)
-    return bool(known.sum() < SAMPLED * good.size and known[[0, 0, -1, -1], [0, -1, 0, -1]].all())
-
-
-def _filled(chart: Map) -> Map:
-    """Map with what lies on the facets between runs."""
+def _filled(chart: Chart) -> Chart:
+    """Map of few runs that enclose the others, with what lies on the facets between them."""
+    if not isinstance(chart, Map):
+        return chart
+    known = np.isfinite(chart.z)
+    # Those of a stopped sweep enclose nothing.
+    if known.sum() >= SAMPLED * known.size or not known[[0, 0, -1, -1], [0, -1, 0, -1]].all():
+        return chart
     # Here and not above: every page would load it, and none samples.
     from scipy.interpolate import LinearNDInterpolator
 
-    shape, places = chart.z.shape, np.argwhere(np.isfinite(chart.z))
+    shape, places = chart.z.shape, np.argwhere(known)
     to, back = (np.log, np.exp) if chart.scale.logarithmic else (np.asarray, np.asarray)
     facets = LinearNDInterpolator(places / shape, to(chart.z[tuple(places.T)]))
     filled = back(facets(np.moveaxis(np.indices(shape), 0, -1) / shape))

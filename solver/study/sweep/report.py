@@ -17,8 +17,9 @@ from solver.arrays import Array
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.study.page import PlotSection, Section, bullets, html_table, text_of
+from solver.study.quantities.quantity import Quantity
 from solver.study.sweep.chart import charts, grid
-from solver.study.sweep.plan import Plan, Row
+from solver.study.sweep.plan import Plan, Row, Varied
 
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN, NEIGHBOURS = "own", "neighbour's"
@@ -127,18 +128,14 @@ def lines_of(plan: Plan, rows: Sequence[Row]) -> str:
 
 def head(plan: Plan) -> list[str]:
     """What the columns are, with all values of what varies, and what is fixed, in SI units."""
-
-    def column(name: str, title: str, unit: str) -> str:
-        return f"{name}: {title} ({unit})" if unit else f"{name}: {title}"
-
+    shown: list[Varied | Quantity] = [*plan.axes, *plan.readings]
+    columns = [f"{c.name}: {c.title}" + (f" ({c.unit})" if c.unit else "") for c in shown]
+    for place, axis in enumerate(plan.axes):
+        columns[place] += ": " + ", ".join(map(str, axis.values))
     varied = {axis.name for axis in plan.axes}
     return [
         f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
-        *(
-            f"{column(axis.name, axis.title, axis.unit)}: " + ", ".join(map(str, axis.values))
-            for axis in plan.axes
-        ),
-        *(column(one.name, one.title, one.unit) for one in plan.readings),
+        *columns,
         "settings of all runs:",
         *(line for line in dump(plan.settings).splitlines() if line.split(" ")[0] not in varied),
     ]
