@@ -8,7 +8,7 @@ memory (Fortran order), because the friction law walks through time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
-from solver.discrete.contacts import ContactGroup, grouped
+from solver.discrete.contacts import ContactGroup
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
 
@@ -136,7 +136,10 @@ class Problem:
     @cached_property
     def contact_groups(self) -> list[ContactGroup]:
         """Interfaces with friction, those of one law as one."""
-        return grouped(self.rubbing.values())
+        every, alike = list(self.rubbing.values()), dict[Hashable, list[int]]()
+        for number, law in enumerate(every):
+            alike.setdefault(law.kind, []).append(number)
+        return [ContactGroup(every, numbers) for numbers in alike.values()]
 
     @cached_property
     def contact_points(self) -> dict[str, slice]:
