@@ -111,8 +111,7 @@ class Rods:
     Raises
     ------
     RefusedError
-        For a field of another shape, a bound below zero, a break of ends that are not held and
-        pulled, or a settlement under several rods.
+        For a field of another shape, a bound below zero, or a settlement under several rods.
     """
 
     length: float

@@ -283,11 +283,11 @@ class CutStack:
             before, after = self._left_out(joint)
             for number, side in joint.sides:
                 own = self._pieces[number].rectangle
-                start, size = (own.y, own.rows) if joint.is_upright else (own.x, own.columns)
-                first, last = order * (joint.first - start) + before, order * (joint.last - start)
-                end = None if last - after == order * size else last - after + 1
+                start = own.y if joint.is_upright else own.x
+                first = order * (joint.first - start) + before
+                last = order * (joint.last - start) - after + 1
                 held = (0,) if is_known else (0, 1)
-                trace = _Trace(side, held, first, end, has_macro=self._has_macro(joint))
+                trace = _Trace(side, held, first, last, has_macro=self._has_macro(joint))
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             is_lowest = self._pieces[number][2:] == (0, 0)
