@@ -16,7 +16,7 @@ from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, looks, mask_of
-from solver.definitions import CurveParameter, Parameter, about
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
 from solver.scenes import CATALOGUE
 
 WIDTH = 286
@@ -81,12 +81,15 @@ class SettingControl:
         more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
+        self._is_logarithmic = is_logarithmic(definition)
         self.slider = self._make_slider()
         return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
 
     def _make_slider(self) -> pmui.FloatSlider:
         low, high = (self._to_slider(end) for end in self._definition.softbounds)
-        is_count = isinstance(self._definition, param.Integer) and not self._about.logarithmic
+        is_count = isinstance(self._definition, param.Integer) and not is_logarithmic(
+            self._definition
+        )
         slider = pmui.FloatSlider(
             label=self._about.title,
             start=low,
@@ -106,16 +109,16 @@ class SettingControl:
         return slider
 
     def _to_slider(self, value: float) -> float:
-        if self._about.logarithmic:
+        if self._is_logarithmic:
             return math.log10(max(value, 1e-300))
         return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, place: float) -> float:
         """The value of a place, as round as a hand can mean it."""
-        value = 10.0**place if self._about.logarithmic else place * self._unit.factor
+        value = 10.0**place if self._is_logarithmic else place * self._unit.factor
         if isinstance(self._definition, param.Integer):
             return round(value)
-        return float(f"{value:.{3 if self._about.logarithmic else 10}g}")
+        return float(f"{value:.{3 if self._is_logarithmic else 10}g}")
 
     def _written(self, value: float) -> str:
         return f"{value / self._unit.factor:.10g}"
@@ -190,9 +193,9 @@ class SettingControl:
         if self._is_updating:
             return
         self._is_dragged = False
-        self._change(self._from_slider(place))
-        if self._state.is_dragged:
-            self._state.run()
+        self._state.release(self.name, self._from_slider(place))
+        self.update()
+        self._explain(self._state.refusal)
 
     def _edit(self) -> None:
         """Open the points of a path."""

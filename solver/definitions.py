@@ -41,8 +41,6 @@ class About:
         What a widget calls it.
     unit
         SI unit, empty for a pure number.
-    logarithmic
-        Whether a slider over it should be logarithmic.
     applies
         Whether it does anything, given all the settings.
     path
@@ -55,7 +53,6 @@ class About:
     group: str
     title: str
     unit: str = ""
-    logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
     path: str = ""
     places: tuple[str, ...] = ()
@@ -113,6 +110,12 @@ def about(parameter: Parameter) -> About:
     """Record of a setting's definition."""
     record: About = parameter.metadata["about"]
     return record
+
+
+def is_logarithmic(definition: Any) -> bool:
+    """Whether a slider over a number is logarithmic: where it goes over far more than a decade."""
+    low, high = definition.softbounds
+    return bool(low > 0.0 and high >= (100 if isinstance(definition, param.Integer) else 20) * low)
 
 
 def _common(doc: str, record: Mapping[str, Any]) -> dict[str, Any]:

@@ -41,7 +41,6 @@ class FrictionSettings(MethodSettings):
         group="Contact",
         title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",
-        logarithmic=True,
     )
     tangential_stiffness = quantity(
         0.0,
@@ -53,7 +52,6 @@ class FrictionSettings(MethodSettings):
         title="Tangential stiffness",
         unit="N/m^2",
         applies=lambda settings: settings.is_general,
-        logarithmic=True,
     )
     cohesion = quantity(
         0.0,
@@ -106,7 +104,6 @@ class FrictionSettings(MethodSettings):
         title="Slip length",
         unit="m",
         applies=lambda settings: settings.is_linear_in_slip,
-        logarithmic=True,
     )
 
     @property

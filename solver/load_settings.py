@@ -53,7 +53,6 @@ class LoadSettings(FrictionSettings):
         group="Load",
         title="Duration T",
         unit="s",
-        logarithmic=True,
     )
     instants = count(
         101,

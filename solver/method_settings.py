@@ -81,7 +81,6 @@ class MethodSettings(Checked):
         "Multiplies the search direction k: other iterations, the same solution.",
         group="Method",
         title="Factor on k",
-        logarithmic=True,
     )
     k_friction_scale = quantity(
         1.0,
@@ -90,7 +89,6 @@ class MethodSettings(Checked):
         "Multiplies k once more, at friction points alone.",
         group="Method",
         title="Friction k factor",
-        logarithmic=True,
     )
     relaxation = quantity(
         0.8,
@@ -129,7 +127,6 @@ class MethodSettings(Checked):
         "with 1e-4, 15 % of a contact force were lost.",
         group="Method",
         title="PGD tolerance",
-        logarithmic=True,
         applies=_on_modes,
     )
     pgd_pairs = count(
@@ -195,7 +192,6 @@ class MethodSettings(Checked):
         "wrong by less than this share; 0.01 is 1 %.",
         group="Stop",
         title="Accuracy",
-        logarithmic=True,
     )
     tolerance = quantity(
         1e-3,
@@ -205,7 +201,6 @@ class MethodSettings(Checked):
         "this. η is not an error.",
         group="Stop",
         title="Tolerance on η",
-        logarithmic=True,
     )
     max_iterations = count(
         1000,
@@ -214,7 +209,6 @@ class MethodSettings(Checked):
         "The run stops after so many iterations, converged or not.",
         group="Stop",
         title="Most iterations",
-        logarithmic=True,
     )
     threads = count(
         1,

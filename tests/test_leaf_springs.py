@@ -41,12 +41,6 @@ def alone(height: float = 0.005) -> float:
     return cantilever(LENGTH, height, YOUNG, 0.3)
 
 
-@pytest.mark.parametrize("layers", [2, 3])
-def test_leaves_without_friction_share_a_force_as_beams(layers: int) -> None:
-    settings = settings_of(**LOOSE, layers=layers, force=100.0)
-    assert deflection(settings)[-1] == pytest.approx(100.0 / (layers * alone()), rel=3e-3)
-
-
 @pytest.mark.parametrize("layers", [2, 3, 4])
 def test_a_graduated_spring_bends_as_beams_that_touch_at_their_ends(layers: int) -> None:
     settings = settings_of(**LEAVES, layers=layers, force=100.0)

@@ -117,7 +117,7 @@ def test_every_method_and_any_number_of_substructures_reach_the_same_solution(kn
     [
         ({"wires": 3, "broken": 4}, "broken", "0 to wires (3)"),
         ({"elements": 5, "substructures": 6}, "substructures", "1 to elements (5)"),
-        ({"load": [[0.0, 0.0], [1.0, -5.0]]}, "load", "wires cannot be pushed"),
+        ({"load": [[0.0, 0.0], [1.0, -5.0]]}, "load", "raise the negative tension"),
         ({"peak": 2000.0}, "peak", "tensions below 1500 N"),
         ({"peak": 800.0, "broken": 1}, "peak", "tensions below 750 N"),
         ({"friction": 0.0}, "peak", "raise friction or pressure"),

@@ -21,7 +21,8 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study.proof import report
-from solver.study.proof.known_case import Answer, KnownCase, Number
+from solver.study.proof.known_numbers import Answer, Number
+from solver.study.proof.report import KnownCase
 
 CASES = report.cases()
 

@@ -18,12 +18,12 @@ from app.refusals import message_of
 from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
-from solver.definitions import CurveParameter, Parameter, SettingError, about
+from solver.definitions import CurveParameter, Parameter, SettingError, about, is_logarithmic
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantity import Quantity
-from solver.study.sweep import Plan, plan_of
+from solver.study.sweep.plan import Plan, plan_of
 
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
 LOG = ":log"
@@ -140,8 +140,7 @@ def proposed(settings: Settings, name: str) -> str:
     if not isinstance(definition, param.Number):
         return f"{name}={','.join(names_of(definition))}"
     low, high = definition.softbounds
-    is_log = about(definition).logarithmic and low > 0
-    return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_log}"
+    return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_logarithmic(definition)}"
 
 
 def iterations_over_k(settings: Settings, name: str = "acceleration") -> Question:

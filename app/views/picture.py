@@ -141,6 +141,11 @@ class Picture:
         """A place on the page from the middle of the foot, along the bodies, px."""
         return turned(np.array([x, y]) - self.layout.origin, -self.tilt)
 
+    def many(self, lines: Array) -> Columns:
+        """Lines or patches, (n, k, 2), on the page, each by itself."""
+        x, y = np.moveaxis(np.round(self._page(lines), 1), -1, 0)
+        return {"xs": x.tolist(), "ys": y.tolist()}
+
     def _page(self, local: Array) -> Array:
         return self.layout.page(local, self.tilt)
 

@@ -34,7 +34,6 @@ from solver.laws import (
     FrictionLaw,
     Interface,
     Perfect,
-    PointOfBody,
     Unilateral,
 )
 
@@ -440,7 +439,7 @@ class CutStack:
             points=np.zeros(1, dtype=np.intp),
             positions=np.array([stack.length]),
             weights=stack.length * self._traces[number]["spring"].weights(mesh),
-            around=PointOfBody(stack.modulus(0)),
+            around=Bodies(moduli=(stack.modulus(0), np.inf)),
         )
 
     def _prescribed(self, side: str, given: Side) -> Iterator[tuple[str, Dirichlet]]:

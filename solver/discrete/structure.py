@@ -163,6 +163,19 @@ class Loop:
     displacement: Probe
     force: Callable[[LoopFields], Array]
 
+    @property
+    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Titles and units of displacement and force."""
+        return self.across, self.up
+
+    def along(self, fields: LoopFields) -> tuple[Array, Array]:
+        """Displacement and force of an iterate, or of a reference, each (n_instants,)."""
+        return self.displacement.of(fields), self.force(fields)
+
+    def finds_force(self, problem: Problem) -> bool:
+        """Whether its displacement is given in a problem, so that its force is found."""
+        return bool(np.isin(self.displacement.dofs, problem.prescribed[0]).all())
+
 
 class Structure(Protocol):
     """Bodies, how they are held and what acts on them, as plain data: `Rods`, `Rope`, `Stack`."""

@@ -34,14 +34,10 @@ class Nested:
     Attributes
     ----------
     coarser
-        Such problems, uncut, the finest first; or what makes them, when a run begins.
+        Makes such problems, uncut, the finest first, when a run begins.
     """
 
-    coarser: Iterable[Problem] | Callable[[], Iterable[Problem]]
-
-    def problems(self) -> Iterable[Problem]:
-        """The coarser problems."""
-        return self.coarser() if callable(self.coarser) else self.coarser
+    coarser: Callable[[], Iterable[Problem]]
 
     def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
         """Where a problem starts with a search direction: from the finest mesh that has a solution.
@@ -49,7 +45,7 @@ class Nested:
         None if there is no such mesh, or it takes more than so many seconds.
         """
         deadline = time.perf_counter() + seconds
-        for coarse in self.problems():
+        for coarse in self.coarser():
             try:
                 solver = incremental_solver(coarse)
                 solution = solver.march(stop=lambda: time.perf_counter() > deadline)

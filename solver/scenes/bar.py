@@ -139,7 +139,6 @@ class BarSettings(Settings):
         title="Thermal expansion",
         unit="1/K",
         applies=lambda settings: settings.acts("temperature_load"),
-        logarithmic=True,
     )
     settlement, settlement_load = shared.sized_path(
         "settlement_load",

@@ -51,7 +51,6 @@ def spring(side: str) -> param.Number[float]:
         title=f"Spring at the {side} end",
         unit="N/m",
         applies=is_end(side, "spring"),
-        logarithmic=True,
     )
 
 

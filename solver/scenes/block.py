@@ -67,7 +67,6 @@ class BlockSettings(SideSettings):
         group="Contact",
         title="Radius R",
         unit="m",
-        logarithmic=True,
         applies=lambda settings: settings.gap == "parabola",
         places=("gap",),
     )

@@ -23,7 +23,6 @@ from solver.reference.closed_forms.elastic_bodies import (
 )
 from solver.reference.closed_forms.masing import masing
 from solver.reference.closed_forms.pulled_bar import (
-    broken_wire,
     closed_form,
     pulled_changing_bar,
     pulled_compliant_bar,
@@ -77,14 +76,6 @@ def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
     end = np.array([pulled_changing_bar(force, *given) for force in bar.load.tolist()])
     if end[-1] <= slip_length:
         yield ExactCurve("loop", end, bar.load)
-
-
-def exact_strand(strand: Rods) -> Iterator[ExactCurve]:
-    """Forces of the broken wire and of each neighbour."""
-    exact = broken_wire(strand)
-    if exact is not None:
-        for force in (exact.force, exact.neighbour_force):
-            yield ExactCurve("axial force", strand.nodes, force)
 
 
 def _is_even(bar: Rods) -> bool:

@@ -162,7 +162,6 @@ class FaultSettings(PlaneSettings):
         group="Contact",
         title="Normal stress σ",
         unit="Pa",
-        logarithmic=True,
     )
     normal_profile = shared.profile("σ", "the fault", PROFILES, is_positive=True)
     diffusivity = quantity(
@@ -173,7 +172,6 @@ class FaultSettings(PlaneSettings):
         group="Contact",
         title="Diffusivity α",
         unit="m^2/s",
-        logarithmic=True,
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
     friction_profile = shared.profile("μ", "the fault", PROFILES, is_positive=True)

@@ -80,7 +80,6 @@ class InclineSettings(PlaneSettings):
         group="Contact",
         title="Spring stiffness",
         unit="N/m",
-        logarithmic=True,
     )
     length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", "Body")
     height = shared.size(

@@ -167,7 +167,6 @@ class LayersSettings(PlaneSettings):
         "Young's modulus of every second layer over that of the others, the lowest among them.",
         group="Body",
         title="Stiffness contrast",
-        logarithmic=True,
     )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
     substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)

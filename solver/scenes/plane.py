@@ -61,7 +61,6 @@ class PlaneSettings(Settings):
         group="Contact",
         title="Normal stiffness",
         unit="N/m^3",
-        logarithmic=True,
         applies=lambda settings: settings.is_general and settings.features.opens,
     )
     cohesion = redefined(
@@ -150,7 +149,6 @@ class PlaneSettings(Settings):
         "Multiplies k once more, along the normals of contacts alone.",
         group="Method",
         title="Normal k factor",
-        logarithmic=True,
     )
     start = choice(
         "zero",
@@ -186,7 +184,7 @@ class PlaneSettings(Settings):
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
-        if self.friction_profile == "uniform":
+        if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
         return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
 
@@ -203,7 +201,7 @@ class PlaneSettings(Settings):
     @property
     def order(self) -> int:
         """Order of the elements: 1 bilinear, 2 biquadratic."""
-        return 2 if self.interpolation == "biquadratic" else 1
+        return 2 if self.interpolation == "biquadratic" and self.applies("interpolation") else 1
 
     @property
     def nodes(self) -> tuple[int, int]:

@@ -139,7 +139,6 @@ class RopeSettings(Settings):
         title="Length L",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
-        logarithmic=True,
     )
     friction = shared.friction(
         "mu of the wires on what they lie on; those beside each other do not rub"

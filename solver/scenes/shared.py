@@ -214,9 +214,7 @@ def size(
     default: float, slider: tuple[float, float], title: str, doc: str, group: str
 ) -> param.Number[float]:
     """Define a length of a body."""
-    return quantity(
-        default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m", logarithmic=True
-    )
+    return quantity(default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m")
 
 
 def young(
@@ -231,7 +229,6 @@ def young(
         group=group,
         title="Young's modulus E",
         unit="Pa",
-        logarithmic=True,
     )
 
 
@@ -245,5 +242,4 @@ def section(doc: str, group: str) -> param.Number[float]:
         group=group,
         title="Cross section S",
         unit="m^2",
-        logarithmic=True,
     )

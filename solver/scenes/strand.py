@@ -15,8 +15,8 @@ from solver.discrete.rods import End, Rods, neighbours
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
+from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain
-from solver.scenes.exact import exact_strand
 from solver.scenes.words import acting, counted, is_steel
 from solver.settings import Features, Icon, Settings
 
@@ -51,6 +51,7 @@ class StrandSettings(Settings):
         "Largest tension of a wire that the preset reaches.",
         "cycle",
         PULLS,
+        is_positive=True,
         title="Peak tension",
         places=("right x",),
     )
@@ -140,14 +141,7 @@ class StrandSettings(Settings):
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
         shared.factors_of(self)
-        tension = self.path("load")
-        if tension.min() < 0.0:
-            raise self.refusal(
-                "load",
-                "tensions of at least 0 N",
-                "wires cannot be pushed: raise the negative values",
-            )
-        self._check_equilibrium(tension)
+        self._check_equilibrium(self.path("load"))
 
     def structure(self) -> Rods:
         """Make the strand.
@@ -179,7 +173,11 @@ class StrandSettings(Settings):
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, where they are known."""
-        return exact_strand(self.structure())
+        strand = self.structure()
+        exact = broken_wire(strand)
+        if exact is not None:
+            for force in (exact.force, exact.neighbour_force):
+                yield ExactCurve("axial force", strand.nodes, force)
 
     def sentence(self) -> str:
         """The strand in a sentence."""
