@@ -181,14 +181,9 @@ class CutRods:
         rows, trace, ends = self._rows(rod, piece)
         start, length = self._starts[piece], rods.length / scales.displacement
         stiffness = self._stiffness(rods)[start : start + size]
-        springs = {
-            node: end
-            for node, end, is_there in (
-                (0, rods.left, piece == 0),
-                (size, rods.right, piece == len(self._sizes) - 1),
-            )
-            if is_there and end.is_on_spring
-        }
+        springs = {0: rods.left} if piece == 0 else {}
+        springs |= {size: rods.right} if piece == len(self._sizes) - 1 else {}
+        springs = {node: end for node, end in springs.items() if end.is_on_spring}
         key = trace.tobytes(), stiffness.tobytes(), length, tuple(springs)
         if key not in shared:
             part = size * (element := length / rods.elements)

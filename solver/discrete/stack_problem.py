@@ -399,12 +399,9 @@ class CutStack:
 
     def _rows_of(self, joints: Sequence[Joint]) -> list[Indices]:
         """Rows of each side of joints in a row, the one above first, (n_points, n_components)."""
-        sides = zip(*(joint.sides for joint in joints), strict=True)
         return [
-            np.concatenate(
-                [self._rows[number][one] for (number, _), one in zip(side, joints, strict=True)]
-            )
-            for side in sides
+            np.concatenate([self._rows[one.sides[which][0]][one] for one in joints])
+            for which in range(len(joints[0].sides))
         ]
 
     def _basis(self, joint: Joint, which: int) -> Array:
