@@ -33,6 +33,17 @@ def test_all_together_reach_one_percent_of_friction_force_early(changes):
     assert within(solved(options(max_iterations=30, **changes)), 0.01) <= 30
 
 
+def test_a_run_starts_from_no_mesh_that_has_other_instants():
+    """The points of a table are all instants where a mesh is coarse, and few where it is fine."""
+    times = np.linspace(0.0, 1.0, 2000)
+    wave = 300.0 * np.sin(20.0 * np.pi * times)
+    fine = options(elements=1200, load=np.stack([times, wave], axis=1).tolist())
+    assert fine.n_instants < len(times)
+    for settings in (fine, options()):
+        assert all(len(coarse.instants) == settings.n_instants for coarse in settings.coarser())
+    assert next(options().coarser()).elements == options().elements // 2
+
+
 @pytest.mark.parametrize(
     ("setting", "sizes", "most"),
     [("substructures", (1, 5, 50), 1.2), ("elements", (50, 200), 2.0)],

@@ -94,13 +94,11 @@ def with_opening(
         first, last = left, right
         if course == courses:
             first, last = lintel.x, lintel.x + lintel.columns
-        if course > courses or end <= first or brick.x >= last:
-            found.append(brick)
-            continue
-        if brick.x < first:
-            found.append(brick._replace(columns=first - brick.x))
-        if end > last:
-            found.append(brick._replace(x=last, columns=end - last))
+        elif course > courses:
+            first = last = end
+        for start, stop in ((brick.x, min(end, first)), (max(brick.x, last), end)):
+            if stop > start:
+                found.append(brick._replace(x=start, columns=stop - start))
     return sorted(found, key=lambda brick: (brick.y, brick.x))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -103,14 +102,6 @@ class ContactGroup:
         if law.normal is not None and force is not None:
             status[law.by_point(force[law.normal.component.above]) <= 0.0] = OPEN
         return status
-
-
-def grouped(laws: Iterable[Contact]) -> list[ContactGroup]:
-    """Groups of all interfaces with friction."""
-    every, alike = list(laws), dict[object, list[int]]()
-    for number, law in enumerate(every):
-        alike.setdefault(law.kind, []).append(number)
-    return [ContactGroup(every, numbers) for numbers in alike.values()]
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,172 +59,29 @@ def substructure_sizes(elements: int, substructures: int) -> list[int]:
     return [size + 1] * extra + [size] * (substructures - extra)
 
 
+def _pieces_of(rods: Rods) -> tuple[list[int], tuple[int, int] | None]:
+    """Elements of the pieces of each rod, which are cut at the break of one.
+
+    And the number of the broken rod and of the piece to the left of its break, from 0; or None.
+    """
+    if rods.broken is None:
+        return substructure_sizes(rods.elements, rods.substructures), None
+    (rod, node), count = rods.broken, max(rods.substructures, 2)
+    beyond = rods.elements - node
+    before = round(count * node / rods.elements)
+    before = min(max(before, 1, count - beyond), node, count - 1)
+    sizes = substructure_sizes(node, before) + substructure_sizes(beyond, count - before)
+    return sizes, (rod - 1, before - 1)
+
+
 class CutRods:
-    """Parallel rods that are all cut alike, and the numbers of degrees of freedom and rows.
+    """Parallel rods that are all cut alike.
 
     Each rod rubs on a support of its own, or on the rods before and behind it. Degrees of freedom
     run along rod after rod; a broken one has two at its break, and no boundary row there. Rows are
     ordered by law, so that those of one law follow each other: the lower sides of all contacts, if
     they are between rods, the upper sides of all contacts, then the left ends and the right ends,
     cut by cut.
-
-    Parameters
-    ----------
-    sizes
-        Elements of the pieces of a rod.
-    rods
-        Number of rods.
-    on_supports
-        Whether rods rub on supports.
-    rub_at_ends
-        Whether the first and the last node of a rod rub.
-    broken
-        Number of the broken rod, and of the piece to the left of its break, from 0; or None.
-
-    Attributes
-    ----------
-    starts
-        First nodes of the pieces.
-    rubbing
-        Nodes of each piece that rub, numbered from its first.
-    nodes
-        Node of every pair of one contact, piece after piece; a cut's has two.
-    nodes_of_dofs
-        Node of every degree of freedom, one array per rod.
-    left, right
-        Rows of the ends, shape (n_pieces, n_rods), `NO_ROW` at the break.
-    lower
-        Number of contacts that have a rod below.
-    """
-
-    def __init__(
-        self,
-        sizes: Sequence[int],
-        rods: int,
-        on_supports: bool,
-        rub_at_ends: tuple[bool, bool],
-        broken: tuple[int, int] | None = None,
-    ) -> None:
-        self.sizes, self.broken = sizes, broken
-        self.starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
-        self.rubbing = [np.arange(size + 1) for size in sizes]
-        if not rub_at_ends[0]:
-            self.rubbing[0] = self.rubbing[0][1:]
-        if not rub_at_ends[1]:
-            self.rubbing[-1] = self.rubbing[-1][:-1]
-        pieces = list(zip(self.starts, self.rubbing, strict=True))
-        self.nodes = np.concatenate([start + rubbing for start, rubbing in pieces])
-        self.nodes_of_dofs = [np.arange(sum(sizes) + 1)] * rods
-        ends = np.ones((2, len(sizes), rods), dtype=bool)
-        if broken is not None:
-            rod, before = broken
-            node = self.starts[before + 1]
-            self.nodes_of_dofs[rod] = np.insert(self.nodes_of_dofs[rod], node, node)
-            ends[1, before, rod] = ends[0, before + 1, rod] = False
-        self._first_dof = np.concatenate([[0], np.cumsum([len(x) for x in self.nodes_of_dofs])])
-        self._first_row = np.concatenate([[0], np.cumsum([len(own) for own in self.rubbing])])
-        self.lower = 0 if on_supports else rods - 1
-        sides = rods if on_supports else 2 * (rods - 1)
-        rows = sides * self._first_row[-1] - 1 + np.cumsum(ends.ravel())
-        self.left, self.right = np.where(ends.ravel(), rows, NO_ROW).reshape(ends.shape)
-
-    def dofs(self, rod: int, piece: int) -> Indices:
-        """Degrees of freedom of one piece."""
-        start = self._first_dof[rod] + self.starts[piece]
-        if self.broken is not None and rod == self.broken[0] and piece > self.broken[1]:
-            start += 1
-        return np.arange(start, start + self.sizes[piece] + 1)
-
-    def component(self, rod: int) -> Component:
-        """Rows of a rod on its support, or on the rod before it."""
-        if not self.lower:
-            return Component(self._side(rod))
-        return Component(self._side(self.lower + rod - 1), self._side(rod - 1))
-
-    def _side(self, number: int) -> Indices:
-        size = self._first_row[-1]
-        return np.arange(number * size, (number + 1) * size)
-
-    def rows(self, rod: int, piece: int) -> tuple[Indices, Indices, int]:
-        """Rows of one piece, the node of it under each, and how many, the last, are its ends."""
-        some = slice(self._first_row[piece], self._first_row[piece + 1])
-        numbers = [rod]
-        if self.lower:
-            # On the rod before it, and below the one behind it.
-            numbers = [self.lower + rod - 1] * (rod > 0) + [rod] * (rod < self.lower)
-        sides = [self._side(number)[some] for number in numbers]
-        ends = np.array([self.left[piece, rod], self.right[piece, rod]])
-        there = ends != NO_ROW
-        held = np.array([0, self.sizes[piece]])[there]
-        trace = np.concatenate([*[self.rubbing[piece]] * len(sides), held])
-        return np.concatenate([*sides, ends[there]]), trace, len(held)
-
-    def points(self, rod: int) -> Indices:
-        """Point of every pair of what a rod rubs on; there are two at a break of either rod."""
-        places: Indices = self.nodes - self.nodes[0]
-        if self.broken is not None and self.broken[0] in (rod, rod - 1):
-            piece = np.repeat(np.arange(len(self.sizes)), [len(own) for own in self.rubbing])
-            places += piece > self.broken[1]
-        return places
-
-    def weights(self, element_length: float) -> Array:
-        """Tributary lengths of all pairs of one contact."""
-        pieces = zip(self.sizes, self.rubbing, strict=True)
-        return np.concatenate([tributary(size, element_length)[own] for size, own in pieces])
-
-    def macro(self) -> sparse.csr_array | None:
-        """Macro basis of a contact between rods: polynomials on every piece."""
-        if not self.lower:
-            return None
-        counts = [len(nodes) for nodes in self.rubbing]
-        bases = [np.vander(np.linspace(-1.0, 1.0, n), min(MACRO_DEGREE + 1, n)) for n in counts]
-        return sparse.csr_array(block_diag(*bases))
-
-    def cuts(self) -> Iterator[tuple[str, Interface]]:
-        """Cuts through all rods by name; the macro problem balances the force of each rod."""
-        for piece in range(len(self.sizes) - 1):
-            first, second = self.right[piece], self.left[piece + 1]
-            whole = first != NO_ROW
-            macro = np.eye(int(whole.sum()))
-            yield f"cut {piece + 1}-{piece + 2}", Perfect(first[whole], second[whole], macro)
-
-
-def discretise_rods(rods: Rods) -> Problem:
-    """Cut all rods at the same nodes and write the laws of their interfaces.
-
-    Lengths are scaled by L, forces by ES of one rod (solver/README.md, 1). On the support the
-    interface is "friction"; "contact 1-2" lies between rods 1 and 2, the second being the body
-    above. Its points run along the rods; at the break of either there are two, one for each of the
-    parts that have come apart.
-
-    Elements are dealt to substructures, with a cut at the break. Between rods held ends do not rub:
-    nothing slips there, and friction could not be told from the reactions.
-    """
-    sizes, broken, rubs = substructure_sizes(rods.elements, rods.substructures), None, (True, True)
-    if rods.broken is not None:
-        node, count = rods.broken[1], max(rods.substructures, 2)
-        beyond = rods.elements - node
-        before = round(count * node / rods.elements)
-        before = min(max(before, 1, count - beyond), node, count - 1)
-        sizes = substructure_sizes(node, before) + substructure_sizes(beyond, count - before)
-        broken = rods.broken[0] - 1, before - 1
-    names = ["friction"]
-    if rods.wires > 1:
-        rubs = not rods.left.is_prescribed, not rods.right.is_prescribed
-        names = [f"contact {number}-{number + 1}" for number in range(1, rods.wires)]
-    cut = CutRods(sizes, rods.wires, rods.wires == 1, rubs, broken)
-    scales = Scales(rods.length, rods.stiffness, rods.duration)
-    return assembled(cut, [rods] * rods.wires, [rods.nodes] * rods.wires, names, scales)
-
-
-def assembled(
-    cut: CutRods,
-    rods: Sequence[Rods],
-    places: Sequence[Array],
-    names: Sequence[str],
-    scales: Scales,
-) -> Problem:
-    """Discrete problem of rods that are cut alike, and have ends and instants alike.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
     substructure. On the friction points it is that of a density ES/l_sub^2 over one element's
@@ -233,88 +90,190 @@ def assembled(
     reports (displacement error 0.15 against 0.21 at iteration 10 of its test), with the whole
     element length they meet them.
 
-    Each is one of `rods`; `places` are those of its nodes, shape (n_nodes,), m, and `names` are of
-    the interfaces on supports, or between two rods.
+    Parameters
+    ----------
+    rods
+        Each rod is one of these; they have ends, numbers of elements and instants alike.
+    places
+        Positions of the nodes of each, shape (n_nodes,), m.
+    names
+        Of the interfaces: on the support of each rod, or between each two.
+    rub_at_ends
+        Whether the first and the last node of a rod rub.
+    scales
+        As of `Problem`.
     """
-    shared: dict[tuple[object, ...], Elasticity] = {}
-    first, carried = rods[0], rods[0].settlement
-    rubbing = range(len(rods) - len(names), len(rods))
-    interfaces: dict[str, Interface] = {
-        name: _friction(cut, rod, rods[rod], places[rod], scales)
-        for name, rod in zip(names, rubbing, strict=True)
-    }
-    interfaces[SIDES["left"]] = _held_or_pulled(first, first.left, cut.left[0], 0, scales)
-    interfaces |= cut.cuts()
-    interfaces[SIDES["right"]] = _held_or_pulled(first, first.right, cut.right[-1], -1, scales)
-    return Problem(
-        substructures=tuple(
-            _substructure(cut, rod, piece, rods[rod], scales, shared)
-            for rod in range(len(rods))
-            for piece in range(len(cut.sizes))
-        ),
-        interfaces=interfaces,
-        positions=np.concatenate(
-            [own[nodes] for own, nodes in zip(places, cut.nodes_of_dofs, strict=True)]
-        ),
-        instants=first.instants,
-        carried=None if carried is None else carried / scales.displacement,
-        scales=scales,
-    )
 
+    def __init__(
+        self,
+        rods: Sequence[Rods],
+        places: Sequence[Array],
+        names: Sequence[str],
+        rub_at_ends: tuple[bool, bool],
+        scales: Scales,
+    ) -> None:
+        self._rods, self._places, self._names, self._scales = rods, places, names, scales
+        self._sizes, self._broken = _pieces_of(rods[0])
+        self._starts = np.concatenate([[0], np.cumsum(self._sizes)[:-1]])
+        # Nodes of each piece that rub, numbered from its first, and of one contact; a cut's twice.
+        self._rubbing = [np.arange(size + 1) for size in self._sizes]
+        if not rub_at_ends[0]:
+            self._rubbing[0] = self._rubbing[0][1:]
+        if not rub_at_ends[1]:
+            self._rubbing[-1] = self._rubbing[-1][:-1]
+        pieces = list(zip(self._starts, self._rubbing, strict=True))
+        self._nodes = np.concatenate([start + rubbing for start, rubbing in pieces])
+        self._nodes_of_dofs = [np.arange(len(own)) for own in places]
+        ends = np.ones((2, len(pieces), len(rods)), dtype=bool)
+        if self._broken is not None:
+            rod, before = self._broken
+            node = self._starts[before + 1]
+            self._nodes_of_dofs[rod] = np.insert(self._nodes_of_dofs[rod], node, node)
+            ends[1, before, rod] = ends[0, before + 1, rod] = False
+        self._first_dof = np.concatenate([[0], np.cumsum([len(x) for x in self._nodes_of_dofs])])
+        self._first_row = np.concatenate([[0], np.cumsum([len(own) for own in self._rubbing])])
+        # Contacts that have a rod below.
+        self._lower = 0 if len(names) == len(rods) else len(names)
+        rows = (len(names) + self._lower) * len(self._nodes) - 1 + np.cumsum(ends.ravel())
+        self._left, self._right = np.where(ends.ravel(), rows, NO_ROW).reshape(ends.shape)
 
-def _substructure(
-    cut: CutRods,
-    rod: int,
-    piece: int,
-    rods: Rods,
-    scales: Scales,
-    shared: dict[tuple[object, ...], Elasticity],
-) -> Substructure:
-    size, start = cut.sizes[piece], cut.starts[piece]
-    rows, trace, ends = cut.rows(rod, piece)
-    length, stiffness = rods.length / scales.displacement, _stiffness(rods, scales)
-    stiffness = stiffness[start : start + size]
-    springs = {
-        node: end
-        for node, end, is_there in (
-            (0, rods.left, piece == 0),
-            (size, rods.right, piece == len(cut.sizes) - 1),
+    def problem(self) -> Problem:
+        """The discrete problem."""
+        rods, places, scales = self._rods, self._places, self._scales
+        carried = rods[0].settlement
+        shared: dict[tuple[object, ...], Elasticity] = {}
+        return Problem(
+            substructures=tuple(
+                self._substructure(rod, piece, shared)
+                for rod in range(len(rods))
+                for piece in range(len(self._sizes))
+            ),
+            interfaces=dict(self._interfaces()),
+            positions=np.concatenate(
+                [own[nodes] for own, nodes in zip(places, self._nodes_of_dofs, strict=True)]
+            ),
+            instants=rods[0].instants,
+            carried=None if carried is None else carried / scales.displacement,
+            scales=scales,
         )
-        if is_there and end.is_on_spring
-    }
-    key = trace.tobytes(), stiffness.tobytes(), length, tuple(springs)
-    if key not in shared:
-        part = size * (element := length / rods.elements)
-        at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
-        direction = np.full(len(trace), at_ends)
-        direction[: len(trace) - ends] = at_ends * element / part
-        matrix = rod_stiffness(stiffness * (rods.elements / length))
+
+    def _side(self, number: int) -> Indices:
+        return np.arange(number * len(self._nodes), (number + 1) * len(self._nodes))
+
+    def _rows(self, rod: int, piece: int) -> tuple[Indices, Indices, int]:
+        """Rows of one piece, the node of it under each, and how many, the last, are its ends."""
+        some = slice(self._first_row[piece], self._first_row[piece + 1])
+        numbers = [rod]
+        if self._lower:
+            # On the rod before it, and below the one behind it.
+            numbers = [self._lower + rod - 1] * (rod > 0) + [rod] * (rod < self._lower)
+        sides = [self._side(number)[some] for number in numbers]
+        ends = np.array([self._left[piece, rod], self._right[piece, rod]])
+        there = ends != NO_ROW
+        held = np.array([0, self._sizes[piece]])[there]
+        trace = np.concatenate([*[self._rubbing[piece]] * len(sides), held])
+        return np.concatenate([*sides, ends[there]]), trace, len(held)
+
+    def _substructure(
+        self, rod: int, piece: int, shared: dict[tuple[object, ...], Elasticity]
+    ) -> Substructure:
+        rods, scales, size = self._rods[rod], self._scales, self._sizes[piece]
+        rows, trace, ends = self._rows(rod, piece)
+        start, length = self._starts[piece], rods.length / scales.displacement
+        stiffness = self._stiffness(rods)[start : start + size]
+        springs = {0: rods.left} if piece == 0 else {}
+        springs |= {size: rods.right} if piece == len(self._sizes) - 1 else {}
+        springs = {node: end for node, end in springs.items() if end.is_on_spring}
+        key = trace.tobytes(), stiffness.tobytes(), length, tuple(springs)
+        if key not in shared:
+            part = size * (element := length / rods.elements)
+            at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
+            direction = np.full(len(trace), at_ends)
+            direction[: len(trace) - ends] = at_ends * element / part
+            matrix = rod_stiffness(stiffness * (rods.elements / length))
+            for node, end in springs.items():
+                matrix[node, node] += end.spring / (scales.force / scales.displacement)
+            shared[key] = Elasticity(matrix, trace, direction)
+        forces: list[Array] = []
+        if rods.body_force is not None:
+            along = np.broadcast_to(rods.body_force, (rods.elements + 1, len(rods.instants)))
+            scaled = along[start : start + size + 1] * scales.displacement / scales.force
+            forces.append(tributary(size, length / rods.elements)[:, None] * scaled)
+        strain, needed = rods.free_strain, None
+        if strain is not None:
+            needed = strain[start : start + size] * stiffness[:, None]
+            # Elements push against their nodes with the force that would keep them as they were.
+            forces.append(np.diff(-needed, axis=0, prepend=0.0, append=0.0))
         for node, end in springs.items():
-            matrix[node, node] += end.spring / (scales.force / scales.displacement)
-        shared[key] = Elasticity(matrix, trace, direction)
-    forces: list[Array] = []
-    if rods.body_force is not None:
-        along = np.broadcast_to(rods.body_force, (rods.elements + 1, len(rods.instants)))
-        scaled = along[start : start + size + 1] * scales.displacement / scales.force
-        forces.append(tributary(size, length / rods.elements)[:, None] * scaled)
-    strain = rods.free_strain
-    needed = None
-    if strain is not None:
-        needed = strain[start : start + size] * stiffness[:, None]
-        # Elements push against their nodes with the force that would keep them as they were.
-        forces.append(np.diff(-needed, axis=0, prepend=0.0, append=0.0))
-    for node, end in springs.items():
-        pulled = np.zeros((size + 1, len(rods.instants)))
-        pulled[node] = end.spring / scales.force * _seen(rods, end, start + node)
-        forces.append(pulled)
-    body_force = sum(forces[1:], forces[0]) if forces else None
-    return Substructure(shared[key], cut.dofs(rod, piece), rows, body_force, needed)
+            pulled = np.zeros((size + 1, len(rods.instants)))
+            pulled[node] = end.spring / scales.force * _seen(rods, end, start + node)
+            forces.append(pulled)
+        body_force = sum(forces[1:], forces[0]) if forces else None
+        first_dof = self._first_dof[rod] + start
+        if self._broken is not None and rod == self._broken[0] and piece > self._broken[1]:
+            first_dof += 1
+        dofs = np.arange(first_dof, first_dof + size + 1)
+        return Substructure(shared[key], dofs, rows, body_force, needed)
 
+    def _stiffness(self, rods: Rods) -> Array:
+        """ES of every element of a rod, scaled."""
+        section = np.ones(rods.elements) if rods.section is None else rods.section
+        return np.asarray(section * (rods.stiffness / self._scales.force))
 
-def _stiffness(rods: Rods, scales: Scales) -> Array:
-    """ES of every element of a rod, scaled."""
-    section = np.ones(rods.elements) if rods.section is None else rods.section
-    return np.asarray(section * (rods.stiffness / scales.force))
+    def _interfaces(self) -> Iterator[tuple[str, Interface]]:
+        """Contacts, and then ends and cuts from the left to the right."""
+        first_above = len(self._rods) - len(self._names)
+        for number, name in enumerate(self._names):
+            yield name, self._friction(first_above + number)
+        yield SIDES["left"], self._held_or_pulled(self._rods[0].left, self._left[0], 0)
+        for piece in range(len(self._sizes) - 1):
+            first, second = self._right[piece], self._left[piece + 1]
+            whole = first != NO_ROW
+            # The macro problem balances the force of each rod.
+            macro = np.eye(int(whole.sum()))
+            yield f"cut {piece + 1}-{piece + 2}", Perfect(first[whole], second[whole], macro)
+        yield SIDES["right"], self._held_or_pulled(self._rods[0].right, self._right[-1], -1)
+
+    def _held_or_pulled(self, end: End, rows: Indices, node: int) -> Interface:
+        """Law of the ends of all rods; a spring that holds one is part of the rod."""
+        if end.is_prescribed:
+            held = _seen(self._rods[0], end, node) / self._scales.displacement
+            return Dirichlet(rows, np.tile(held, (len(rows), 1)))
+        force = np.zeros(len(self._rods[0].instants)) if end.force is None else end.force
+        pulled = np.tile(force / self._scales.force, (len(rows), 1))
+        return Neumann(rows, pulled, np.eye(len(rows)))
+
+    def _friction(self, rod: int) -> Contact:
+        """Law of a rod on its support, or on the rod before it."""
+        rods, units = self._rods[rod], (self._scales.displacement, self._scales.force)
+        component, macro = Component(self._side(rod)), None
+        if self._lower:
+            component = Component(self._side(self._lower + rod - 1), self._side(rod - 1))
+            macro = _macro([len(nodes) for nodes in self._rubbing])
+        pieces = list(zip(self._sizes, self._rubbing, strict=True))
+        weights = rods.length * np.concatenate(
+            [tributary(size, 1.0 / rods.elements)[own] for size, own in pieces]
+        )
+        points: Indices = self._nodes - self._nodes[0]
+        if self._broken is not None and self._broken[0] in (rod, rod - 1):
+            piece = np.repeat(np.arange(len(pieces)), [len(own) for own in self._rubbing])
+            points += piece > self._broken[1]
+        positions = np.zeros(points[-1] + 1)
+        positions[points] = self._places[rod][self._nodes]
+        known = rods.bounds[self._nodes] * weights[:, None] / units[1]
+        if rods.factors is not None:
+            known = known * rods.factors[rod - 1]
+        # Around a node are half an element on either side, in series.
+        soft = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
+        around = 2.0 / (soft[:-1] + soft[1:]) * (units[0] / rods.length)
+        return Contact(
+            tangential=rods.friction_law.at(component, weights, units, known=known),
+            points=points,
+            positions=positions,
+            weights=weights,
+            around=Rod(around[self._nodes]),
+            macro=macro,
+        )
 
 
 def _seen(rods: Rods, end: End, node: int) -> Array:
@@ -324,31 +283,7 @@ def _seen(rods: Rods, end: End, node: int) -> Array:
     return np.asarray(end.displacement - settled)
 
 
-def _held_or_pulled(rods: Rods, end: End, rows: Indices, node: int, scales: Scales) -> Interface:
-    """Law of the ends of all rods; a spring that holds one is part of the rod."""
-    if end.is_prescribed:
-        held = _seen(rods, end, node) / scales.displacement
-        return Dirichlet(rows, np.tile(held, (len(rows), 1)))
-    force = np.zeros(len(rods.instants)) if end.force is None else end.force
-    return Neumann(rows, np.tile(force / scales.force, (len(rows), 1)), np.eye(len(rows)))
-
-
-def _friction(cut: CutRods, rod: int, rods: Rods, places: Array, scales: Scales) -> Contact:
-    weights, points = rods.length * cut.weights(1.0 / rods.elements), cut.points(rod)
-    positions = np.zeros(points[-1] + 1)
-    positions[points] = places[cut.nodes]
-    known = rods.bounds[cut.nodes] * weights[:, None] / scales.force
-    if rods.factors is not None:
-        known = known * rods.factors[rod - 1]
-    # Around a node are half an element on either side, in series.
-    soft = np.pad(1.0 / _stiffness(rods, scales), 1, mode="edge")
-    around = 2.0 / (soft[:-1] + soft[1:]) * (scales.displacement / rods.length)
-    component, units = cut.component(rod), (scales.displacement, scales.force)
-    return Contact(
-        tangential=rods.friction_law.at(component, weights, units, known=known),
-        points=points,
-        positions=positions,
-        weights=weights,
-        around=Rod(around[cut.nodes]),
-        macro=cut.macro(),
-    )
+def _macro(counts: list[int]) -> sparse.csr_array:
+    """Macro basis of a contact between rods: polynomials on every piece, of so many pairs."""
+    bases = [np.vander(np.linspace(-1.0, 1.0, n), min(MACRO_DEGREE + 1, n)) for n in counts]
+    return sparse.csr_array(block_diag(*bases))

@@ -172,14 +172,12 @@ class SchurComplement:
     def __init__(self, whole: sparse.csc_array | Array, kept: Indices) -> None:
         self._size, self.kept = whole.shape[0], kept
         self._rest = np.setdiff1d(np.arange(self._size), kept)
-        stiffness = _block(whole, kept, kept)
+        stiffness, others = _dense(whole[kept][:, kept]), whole[self._rest]
         if len(self._rest):
-            coupling = _block(whole, self._rest, kept)
-            if isinstance(whole, np.ndarray):
-                factor = cho_factor(whole[np.ix_(self._rest, self._rest)])
-                self._solve = partial(cho_solve, factor)
+            coupling, inner = _dense(others[:, kept]), others[:, self._rest]
+            if isinstance(inner, np.ndarray):
+                self._solve = partial(cho_solve, cho_factor(inner))
             else:
-                inner = whole[self._rest][:, self._rest]
                 self._solve = splu(sparse.csc_array(inner)).solve
             self._response = self._solve(coupling)
             stiffness -= coupling.T @ self._response
@@ -203,10 +201,8 @@ class SchurComplement:
         return whole
 
 
-def _block(whole: sparse.csc_array | Array, rows: Indices, columns: Indices) -> Array:
-    if isinstance(whole, np.ndarray):
-        return np.asarray(whole[np.ix_(rows, columns)])
-    return np.asarray(whole[rows][:, columns].toarray())
+def _dense(block: sparse.csc_array | Array) -> Array:
+    return np.asarray(block if isinstance(block, np.ndarray) else block.toarray(), order="C")
 
 
 class Condensed:

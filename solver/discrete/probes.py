@@ -69,14 +69,14 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
     return _integral(inside, ends, component, np.full(ends.shape, 1.0 / whole))
 
 
-def end_rotation(problem: Problem, side: str = "right") -> Probe:
-    """Rotation of the ends of all bodies that reach the side, counter-clockwise, their mean.
+def end_rotation(problem: Problem) -> Probe:
+    """Rotation of the ends of all bodies that reach the right, counter-clockwise, their mean.
 
     It is what a moment that they share works on, spread over each of them as a linear
     traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height t.
     """
     inside = _inside(problem)
-    ends, bodies = _edges(inside, side)
+    ends, bodies = _edges(inside, "right")
     _, bodies = np.unique(bodies, return_inverse=True)
     y, count = inside.nodes[ends, 1], int(bodies.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)

@@ -8,7 +8,7 @@ memory (Fortran order), because the friction law walks through time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
-from solver.discrete.contacts import ContactGroup, grouped
+from solver.discrete.contacts import ContactGroup
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
 
@@ -136,7 +136,10 @@ class Problem:
     @cached_property
     def contact_groups(self) -> list[ContactGroup]:
         """Interfaces with friction, those of one law as one."""
-        return grouped(self.rubbing.values())
+        every, alike = list(self.rubbing.values()), dict[Hashable, list[int]]()
+        for number, law in enumerate(every):
+            alike.setdefault(law.kind, []).append(number)
+        return [ContactGroup(every, numbers) for numbers in alike.values()]
 
     @cached_property
     def contact_points(self) -> dict[str, slice]:
@@ -206,19 +209,16 @@ class Problem:
 
         P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README, 2).
         """
-        entries, rows, columns, loads = [], [], [], []
-        n_macro = 0
-        for interface in self.interfaces.values():
-            for own, basis, load in interface.macro_parts():
-                block = sparse.coo_array(basis)
-                entries.append(block.data)
-                rows.append(own[block.coords[0]])
-                columns.append(n_macro + block.coords[1])
-                loads.append(np.zeros((basis.shape[1], self.n_instants)) if load is None else load)
-                n_macro += basis.shape[1]
-        places = np.concatenate(rows), np.concatenate(columns)
-        shape = (self.n_rows, n_macro)
-        return sparse.csr_array((np.concatenate(entries), places), shape), np.concatenate(loads)
+        parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
+        bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])
+        rows = np.concatenate([part.rows for part in parts])[bases.coords[0]]
+        loads = [
+            np.zeros((part.basis.shape[1], self.n_instants)) if part.load is None else part.load
+            for part in parts
+        ]
+        shape = self.n_rows, bases.shape[1]
+        basis = sparse.csr_array((bases.data, (rows, bases.coords[1])), shape)
+        return basis, np.concatenate(loads)
 
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:

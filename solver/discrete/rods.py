@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cut_rods import SIDES, discretise_rods
+from solver.discrete.cut_rods import SIDES, CutRods
 from solver.discrete.probes import Probe, constant, reaction
-from solver.discrete.problem import Problem
+from solver.discrete.problem import Problem, Scales
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError, check_range
@@ -111,8 +111,7 @@ class Rods:
     Raises
     ------
     RefusedError
-        For a field of another shape, a bound below zero, a break of ends that are not held and
-        pulled, or a settlement under several rods.
+        For a field of another shape, a bound below zero, or a settlement under several rods.
     """
 
     length: float
@@ -208,8 +207,23 @@ class Rods:
         return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
 
     def discretise(self) -> Problem:
-        """Make the discrete problem."""
-        return discretise_rods(self)
+        """Make the discrete problem.
+
+        Lengths are scaled by L, forces by ES of one rod (solver/README.md, 1). On the support the
+        interface is "friction"; "contact 1-2" lies between rods 1 and 2, the second being the body
+        above. Its points run along the rods; at the break of either there are two, one for each of
+        the parts that have come apart.
+
+        Between rods held ends do not rub: nothing slips there, and friction could not be told from
+        the reactions.
+        """
+        names, rub_at_ends = ["friction"], (True, True)
+        if self.wires > 1:
+            names = [f"contact {number}-{number + 1}" for number in range(1, self.wires)]
+            rub_at_ends = not self.left.is_prescribed, not self.right.is_prescribed
+        rods, places = [self] * self.wires, [self.nodes] * self.wires
+        scales = Scales(self.length, self.stiffness, self.duration)
+        return CutRods(rods, places, names, rub_at_ends, scales).problem()
 
     def loop(self, problem: Problem) -> Loop:
         """Mean force on the ends that are driven over their mean displacement.

@@ -15,14 +15,13 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.cross_section import CrossSection, WireLayer
-from solver.discrete.cut_rods import CutRods, assembled, substructure_sizes
+from solver.discrete.cut_rods import CutRods
 from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
-from solver.refusal import RefusedError
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,11 +99,6 @@ class Rope:
         Instants, shape (n_instants,), and length of the interval, s.
     friction_law
         Of every wire on what it lies on.
-
-    Raises
-    ------
-    RefusedError
-        For wires on different meshes or instants, or none.
     """
 
     wires: Sequence[RopeWire]
@@ -116,16 +110,6 @@ class Rope:
     instants: Array
     duration: float
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
-
-    def __post_init__(self) -> None:
-        shapes = {wire.curvature.shape for wire in self.wires}
-        if len(shapes) != 1 or next(iter(shapes))[1] != len(self.instants):
-            raise RefusedError(
-                "Rope.wires",
-                sorted(shapes),
-                f"wires with a curvature of one shape, [n_nodes, {len(self.instants)}]",
-                "give all wires the same number of nodes",
-            )
 
     @property
     def elements(self) -> int:
@@ -153,14 +137,13 @@ class Rope:
 
         Positions are those along the strand.
         """
-        sizes, wires = substructure_sizes(self.elements, self.substructures), self.wires
-        return assembled(
-            CutRods(sizes, len(wires), on_supports=True, rub_at_ends=(False, False)),
-            [self._rod(wire) for wire in wires],
-            [wire.along for wire in wires],
-            [wire.name for wire in wires],
+        return CutRods(
+            [self._rod(wire) for wire in self.wires],
+            [wire.along for wire in self.wires],
+            [wire.name for wire in self.wires],
+            (False, False),
             Scales(self.length, self.stiffness, self.duration),
-        )
+        ).problem()
 
     def _rod(self, wire: RopeWire) -> Rods:
         held = End(displacement=np.zeros(len(self.instants)))

@@ -13,7 +13,7 @@ from solver.arrays import Array, Indices, without_residue
 from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
-from solver.discrete.stack_problem import discretise_stack
+from solver.discrete.stack_problem import CutStack
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
 
@@ -226,7 +226,7 @@ class Stack:
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
-        return discretise_stack(self)
+        return CutStack(self).problem()
 
     def loop(self, problem: Problem) -> Loop:
         """Spring force on a slope, shear force on a support, or what bends the end."""
@@ -244,7 +244,8 @@ class Stack:
             return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
         side, component, across, up = "right", 1, "Deflection of the end", "Transverse force"
         if rests:
-            side = "top" if len(self.rectangles) > 1 else self._driven_side()
+            driven = (name for name in DRIVEN if not all(one.is_zero for one in self.sides[name]))
+            side = "top" if len(self.rectangles) > 1 else next(driven, DRIVEN[0])
             component, across, up = 0, f"Displacement of the {side}", "Shear force"
         given = self.sides[side][component]
         if rests and len(self.rectangles) == 1:
@@ -255,12 +256,6 @@ class Stack:
             whole = self.size[0] if rests else self.longest * self.height
             force = constant(np.broadcast_to(given.mean * whole, self.instants.shape)).of
         return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
-
-    def _driven_side(self) -> str:
-        """Side of a body on a support that is driven."""
-        sides = ((name, self.sides[name]) for name in DRIVEN)
-        moved = (name for name, side in sides if not all(given.is_zero for given in side))
-        return next(moved, DRIVEN[0])
 
     def _moment(self) -> Array:
         """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""

@@ -43,27 +43,6 @@ if TYPE_CHECKING:
 SIDES = "left", "right", "bottom", "top"
 
 
-def discretise_stack(stack: Stack) -> Problem:
-    """Cut the bodies into rectangles and write the laws of their interfaces.
-
-    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
-    contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
-    """
-    cut = _Cut(stack)
-    skeleton = np.unique(np.concatenate([part.dofs for part in cut.parts]))
-    scales = Scales(stack.length, stack.young * stack.length, stack.duration)
-    places = cut.positions[skeleton // 2]
-    return Problem(
-        substructures=tuple(cut.substructures(skeleton)),
-        interfaces=dict(cut.interfaces()),
-        positions=places * scales.displacement,
-        instants=stack.instants,
-        scales=scales,
-        inside=Inside(cut.parts, cut.positions, skeleton, scales, len(stack.instants)),
-        rest=_rest(stack, places, skeleton % 2),
-    )
-
-
 def _rest(stack: Stack, positions: Array, components: Indices) -> Array | None:
     """Displacement of degrees of freedom where the body rests, (n_dofs, n_instants), scaled."""
     rigid = rigid_rest(stack)
@@ -143,15 +122,11 @@ class _Trace:
         return rectangle.edge_weights(self.side)[self.first : self.last]
 
 
-class _Cut:
-    """The bodies, cut into substructures.
+class CutStack:
+    """Bodies, cut into rectangles, and the laws of their interfaces.
 
-    Attributes
-    ----------
-    positions
-        Of all nodes, shape (n_nodes, 2), in lengths of a body.
-    parts
-        All substructures. Equal ones share what is condensed.
+    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
+    contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
     """
 
     def __init__(self, stack: Stack) -> None:
@@ -170,7 +145,7 @@ class _Cut:
             count = len(positions[-1])
             self._nodes.append(np.arange(first, first + count).reshape(everywhere.shape[:2]))
             first += count
-        self.positions = np.concatenate(positions)
+        self._positions = np.concatenate(positions)
         self._pieces = list(_pieces(stack))
         joints = joints_of([piece.rectangle for piece in self._pieces])
         joints = [one for one in joints if one.below is not None or stack.support]
@@ -182,12 +157,12 @@ class _Cut:
         self._mesh, self._operator = cache(self._mesh_of), cache(self._operator_of)
         # Rows are numbered part by part and trace by trace, by the name of a side or the joint.
         self._traces = list(self._all_traces())
-        self.parts: list[Part] = []
+        self._parts: list[Part] = []
         self._operators: list[Elasticity] = []
         self._rows: list[dict[Hashable, Indices]] = []
         n_rows = 0
         for (own, *_, body), traces in zip(self._pieces, self._traces, strict=True):
-            modulus, number = stack.modulus(body), len(self.parts)
+            modulus, number = stack.modulus(body), len(self._parts)
             mesh = self._mesh(own.columns, own.rows, modulus)
             force = self._force(number, mesh)
             # Members of a group have body forces on all or on none, and see the same macro forces.
@@ -196,13 +171,39 @@ class _Cut:
             )
             brick = stack.rectangles[body]
             along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(order)
-            self.parts.append(Part(condensed, self._nodes[body][up, along], body, force))
+            self._parts.append(Part(condensed, self._nodes[body][up, along], body, force))
             self._operators.append(operator)
             self._rows.append({})
             for name, trace in traces.items():
                 dofs = trace.dofs(mesh)
                 self._rows[-1][name] = n_rows + np.arange(dofs.size).reshape(dofs.shape)
                 n_rows += dofs.size
+
+    def problem(self) -> Problem:
+        """The discrete problem."""
+        stack = self.stack
+        skeleton = np.unique(np.concatenate([part.dofs for part in self._parts]))
+        scales = Scales(stack.length, stack.young * stack.length, stack.duration)
+        places = self._positions[skeleton // 2]
+        return Problem(
+            substructures=tuple(
+                Substructure(
+                    elasticity=operator,
+                    dofs=np.searchsorted(skeleton, part.dofs),
+                    rows=np.concatenate([own.ravel() for own in rows.values()]),
+                    body_force=None if part.force is None else part.condensed.condense(part.force),
+                )
+                for part, operator, rows in zip(
+                    self._parts, self._operators, self._rows, strict=True
+                )
+            ),
+            interfaces=dict(self._interfaces()),
+            positions=places * scales.displacement,
+            instants=stack.instants,
+            scales=scales,
+            inside=Inside(self._parts, self._positions, skeleton, scales, len(stack.instants)),
+            rest=_rest(stack, places, skeleton % 2),
+        )
 
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
         elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
@@ -217,16 +218,6 @@ class _Cut:
         k = [np.repeat(density * one.weights(mesh), len(one.components)) for one in traces]
         trace = np.searchsorted(condensed.dofs, dofs)
         return condensed, Elasticity(condensed.stiffness, trace, np.concatenate(k))
-
-    def substructures(self, skeleton: Indices) -> Iterator[Substructure]:
-        """All substructures, of the degrees of freedom of all nodes that any of them keeps."""
-        for part, operator, rows in zip(self.parts, self._operators, self._rows, strict=True):
-            yield Substructure(
-                elasticity=operator,
-                dofs=np.searchsorted(skeleton, part.dofs),
-                rows=np.concatenate([own.ravel() for own in rows.values()]),
-                body_force=None if part.force is None else part.condensed.condense(part.force),
-            )
 
     def _outer(self, number: int) -> Iterator[str]:
         """Sides of a substructure on which nothing is but what is given for such a side."""
@@ -291,11 +282,11 @@ class _Cut:
             before, after = self._left_out(joint)
             for number, side in joint.sides:
                 own = self._pieces[number].rectangle
-                start, size = (own.y, own.rows) if joint.is_upright else (own.x, own.columns)
-                first, last = order * (joint.first - start) + before, order * (joint.last - start)
-                end = None if last - after == order * size else last - after + 1
+                start = own.y if joint.is_upright else own.x
+                first = order * (joint.first - start) + before
+                last = order * (joint.last - start) - after + 1
                 held = (0,) if is_known else (0, 1)
-                trace = _Trace(side, held, first, end, has_macro=self._has_macro(joint))
+                trace = _Trace(side, held, first, last, has_macro=self._has_macro(joint))
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             is_lowest = self._pieces[number][2:] == (0, 0)
@@ -341,7 +332,7 @@ class _Cut:
         nodes = np.arange(order * first, order * (first + count) + 1)[:, None]
         return np.asarray(given.mean + (2.0 * nodes / (order * whole) - 1.0) * given.slope)
 
-    def interfaces(self) -> Iterator[tuple[str, Interface]]:
+    def _interfaces(self) -> Iterator[tuple[str, Interface]]:
         """All interfaces by name: contacts, then cuts, then prescribed sides."""
         stack, contacts = self.stack, dict[str, list[Joint]]()
         for joint in self._joints:
@@ -394,7 +385,7 @@ class _Cut:
             bases = [self._basis(joint, 0) for joint in joints]
             # Most joints of a wall have one part, and SciPy takes long for one block.
             macro = sparse.csr_array(bases[0] if len(bases) == 1 else block_diag(*bases))
-        below = np.inf if under is None else stack.modulus(self.parts[under].body)
+        below = np.inf if under is None else stack.modulus(self._parts[under].body)
         depth = stack.height * (stack.rectangles[body].rows / stack.elements[1])
         return Contact(
             normal=normal,
@@ -408,18 +399,15 @@ class _Cut:
 
     def _rows_of(self, joints: Sequence[Joint]) -> list[Indices]:
         """Rows of each side of joints in a row, the one above first, (n_points, n_components)."""
-        sides = zip(*(joint.sides for joint in joints), strict=True)
         return [
-            np.concatenate(
-                [self._rows[number][one] for (number, _), one in zip(side, joints, strict=True)]
-            )
-            for side in sides
+            np.concatenate([self._rows[one.sides[which][0]][one] for one in joints])
+            for which in range(len(joints[0].sides))
         ]
 
     def _basis(self, joint: Joint, which: int) -> Array:
         """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
         number, side = joint.sides[which]
-        mesh, count = self.parts[number].condensed.rectangle, len(self._rows[number][joint])
+        mesh, count = self._parts[number].condensed.rectangle, len(self._rows[number][joint])
         return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _points(self, joint: Joint) -> tuple[Indices, Array]:
@@ -437,7 +425,7 @@ class _Cut:
         """Law of a spring: it pushes to the right, as if from the left."""
         stack = self.stack
         (number,) = (number for number, rows in enumerate(self._rows) if "spring" in rows)
-        rows, mesh = self._rows[number]["spring"], self.parts[number].condensed.rectangle
+        rows, mesh = self._rows[number]["spring"], self._parts[number].condensed.rectangle
         return Contact(
             normal=Unilateral(
                 component=Component(rows[:, 0]),

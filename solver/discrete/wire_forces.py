@@ -16,8 +16,8 @@ class CutWires:
 
     Attributes
     ----------
-    layer, wire
-        The layer of each, and the place in `Rope.wires` of the one that stands for it.
+    wire
+        The place in `Rope.wires` of the one that stands for each.
     centres
         Sideways and towards the outermost fibre, shape (n_cut, 2), m.
     arc
@@ -26,7 +26,6 @@ class CutWires:
         1, or -1 where it slips the other way: on the other side of the plane of bending.
     """
 
-    layer: Indices
     wire: Indices
     centres: Array
     arc: Array
@@ -52,12 +51,11 @@ def cut_at(rope: Rope, place: float) -> CutWires:
             turned = np.sign(helix.lay) * angles
             sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
             arcs = np.arccos(np.cos(turned)) / np.pi * wire.length
-        whole = np.full(len(angles), number)
-        cuts.append((np.full(len(angles), wire.layer), whole, angles, arcs, sides))
-    layer, which, angle, arc, side = (np.concatenate(one) for one in zip(*cuts, strict=True))
+        cuts.append((np.full(len(angles), number), angles, arcs, sides))
+    which, angle, arc, side = (np.concatenate(one) for one in zip(*cuts, strict=True))
     radius = np.array([wire.helix.radius for wire in rope.wires])[which]
     centres = radius[:, None] * np.stack([np.sin(angle), np.cos(angle)], axis=1)
-    return CutWires(layer, which, centres, arc, side)
+    return CutWires(which, centres, arc, side)
 
 
 def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
