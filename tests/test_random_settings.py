@@ -78,7 +78,7 @@ def numbers(low, high):
 
 def tables(definition, extent):
     """Points of any size: plateaus, jumps and reversals among them."""
-    low = 0.0 if definition.ordinate in ("factor", "pressure") else -1e15
+    low = 0.0 if definition.columns[1] in ("factor", "pressure") else -1e15
     values = numbers(low, 1e15) | st.sampled_from([0.0, 900.0, 1e-6, 1e6])
     return paired(values, extent)
 
@@ -128,18 +128,19 @@ def constructions():
 
 def values_of(name, definition, extents):
     if isinstance(definition, CurveParameter):
+        presets = st.sampled_from(list(definition.presets))
         if not definition.is_path:
-            return st.sampled_from(definition.presets) | constructions()
+            return presets | constructions()
         extent = extents[definition.abscissa]
         if name == "strength":
-            return st.sampled_from(definition.presets) | strengths(extent)
+            return presets | strengths(extent)
         if name == "layer_lengths":
-            return st.sampled_from(definition.presets) | lengths(extent)
+            return presets | lengths(extent)
         if name == "friction_factors":
-            return st.sampled_from(definition.presets) | of_each(extent)
+            return presets | of_each(extent)
         is_section = name == "section_profile"
         points = paired(sizes(*SECTION), extent) if is_section else tables(definition, extent)
-        return st.sampled_from(definition.presets) | points
+        return presets | points
     if isinstance(definition, param.Boolean):
         return st.booleans()
     if isinstance(definition, param.Selector):

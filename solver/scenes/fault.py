@@ -13,7 +13,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, quantity, redefined
+from solver.definitions import POSITIVE, SettingError, quantity, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
@@ -163,7 +163,7 @@ class FaultSettings(PlaneSettings):
         title="Normal stress σ",
         unit="Pa",
     )
-    normal_profile = shared.profile("σ", "the fault", PROFILES, is_positive=True)
+    normal_profile = shared.profile("σ", "the fault", PROFILES, bounds=POSITIVE)
     diffusivity = quantity(
         0.1,
         (1e-15, 1e9),
@@ -174,7 +174,7 @@ class FaultSettings(PlaneSettings):
         unit="m^2/s",
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
-    friction_profile = shared.profile("μ", "the fault", PROFILES, is_positive=True)
+    friction_profile = shared.profile("μ", "the fault", PROFILES, bounds=POSITIVE)
     length = shared.size(
         600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
     )

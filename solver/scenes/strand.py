@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, quantity, redefined
+from solver.definitions import POSITIVE, SettingError, choice, count, quantity, redefined
 from solver.discrete.cut_rods import COARSEST
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods, neighbours
@@ -52,7 +52,7 @@ class StrandSettings(Settings):
         "Largest tension of a wire that the preset reaches.",
         "cycle",
         PULLS,
-        is_positive=True,
+        bounds=POSITIVE,
         title="Peak tension",
         places=("right x",),
     )
