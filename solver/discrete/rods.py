@@ -205,19 +205,22 @@ class Rods:
     def coarser(self) -> Iterator[Self]:
         """Yield the same uncut rods on ever fewer elements, as long as a front is seen.
 
-        They must be whole: a break stands at a node.
+        A break stands at the nearest node between the ends.
         """
         rods = self
         while (elements := rods.elements // 2) >= COARSEST:
-            force, strain = rods.body_force, rods.strain
+            force, strain, broken = rods.body_force, rods.strain, self.broken
             settled, section = rods.settlement, rods.section
             if force is not None and force.ndim == 2:
                 force = resampled(force, elements)
+            if broken is not None:
+                broken = broken[0], node_at(broken[1] / self.elements, elements)
             rods = replace(
                 rods,
                 elements=elements,
                 substructures=1,
                 bound=resampled(rods.bound, elements),
+                broken=broken,
                 body_force=force,
                 strain=None if strain is None else _means(strain, elements),
                 settlement=None if settled is None else resampled(settled, elements),
@@ -359,6 +362,11 @@ def _means(values: Array, elements: int) -> Array:
     """Means over equal elements of what others along one rod have, (n_elements, ...)."""
     sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
     return np.diff(resampled(sums, elements), axis=0) * (elements / len(values))
+
+
+def node_at(share: float, elements: int) -> int:
+    """Nearest node between the ends at a share of the length."""
+    return min(max(round(share * elements), 1), elements - 1)
 
 
 def neighbours(wire: int, wires: int) -> int:
