@@ -199,14 +199,10 @@ class FaultSettings(PlaneSettings):
 
     def strength_along(self, place: Array) -> Array:
         """Largest friction per area, shape (n_places, n_instants), Pa."""
-        mu, pressed = (
-            size * interpolate(self.points(name), place)[:, None]
-            for size, name in (
-                (self.friction, "friction_profile"),
-                (self.normal_stress, "normal_profile"),
-            )
-        )
-        return np.asarray(mu * (pressed - self.fluid(place)))
+        profiles = "friction_profile", "normal_profile"
+        mu, pressed = (interpolate(self.points(name), place)[:, None] for name in profiles)
+        effective = self.normal_stress * pressed - self.fluid(place)
+        return np.asarray(self.friction * mu * effective)
 
     def pressing_at_nodes(self) -> Array:
         """Normal stress of the nodes before any fluid is let in, shape (n_nodes,), Pa."""
@@ -230,9 +226,8 @@ class FaultSettings(PlaneSettings):
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
-            name = self.size_or_table("injection_load")
             raise self.refusal(
-                name,
+                self.size_or_table("injection_load"),
                 f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
                 "it would open the fault: lower the pressure of the fluid, or press more",
             )

@@ -100,10 +100,9 @@ class InclineSettings(PlaneSettings):
         loss = loss_of_equilibrium(self.structure())
         if loss is None:
             return
-        name = self.size_or_table("slope_load")
         angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
         raise self.refusal(
-            name,
+            self.size_or_table("slope_load"),
             "slopes on which the block stays in equilibrium",
             f"from {plain(loss.instant)} s on, at {angle:.4g}°, {loss.reason}: "
             "lower the slope, or take a longer base or a lower block",
