@@ -158,6 +158,19 @@ def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
     assert stored[0] < 0.75 * stored[1]
 
 
+def test_an_instant_right_after_another_does_not_blow_up_the_modes():
+    path = [[0.0, -1.0], [2.3e-308, 0.0], [1.0, -1.0]]
+    settings = CATALOGUE["rope"].checked(
+        {
+            **{"elements": 2, "layers": 1, "instants": 1, "substructures": 1, "friction": 1.0},
+            **{"length": 1.0, "fall_off": 1.0, "method": "paper", "linear_stage": "pgd"},
+            **{"load": path, "multiscale": False},
+        }
+    )
+    iterate = next(islice(iterations(discretise(settings), method_of(settings)), 9, None))
+    assert np.abs(iterate.boundary_force).max() < 1.0
+
+
 SMALL_ONES = {"elements": 12, "instants": 21}
 
 
