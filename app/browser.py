@@ -30,6 +30,9 @@ LASTS = 1.0
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
 """Elements that take keys for themselves."""
 LISTEN = """
+const measure = () => { keys.height = innerHeight }
+measure()
+addEventListener("resize", measure)
 document.addEventListener("keydown", (event) => {
   const target = event.composedPath()[0]
   const takes = target.closest?.(taken) || (event.key == " " && target.closest?.("button"))
@@ -132,15 +135,20 @@ class Display:
 
 
 class Keys(DataModel):
-    """The last key that was pressed, and a count of them."""
+    """The last key that was pressed, a count of them, and the height of the window in pixels."""
 
     pressed: str = String(default="")  # type: ignore[assignment]
     count: int = Int(default=0)  # type: ignore[assignment]
+    height: int = Int(default=0)  # type: ignore[assignment]
 
 
-def listen(document: Any, actions: Mapping[str, Callable[[], Any]]) -> None:
-    """Have keys do something, by their names in the browser, wherever nothing else takes them."""
+def listen(state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]) -> None:
+    """Have keys do something, by their names in the browser, wherever nothing else takes them.
+
+    The state has the height of the window.
+    """
     keys = Keys(name="keys")
+    keys.on_change("height", lambda name, old, new: state.param.update(height=new))
     keys.on_change("count", lambda name, old, new: actions[keys.pressed]())
     document.add_root(keys)
     code = CustomJS(args={"keys": keys, "names": list(actions), "taken": TAKEN}, code=LISTEN)

@@ -28,15 +28,6 @@ GROUPS = (
     *("Decomposition", "Method", "Stop"),
 )
 """Order of the groups: what the scene is, then how it is solved."""
-FIELD = {
-    "& .MuiInputBase-input": {"fontWeight": 600, "paddingBottom": "3px"},
-    "& .MuiInput-root::before": {"display": "none"},
-}
-ON_UNDERLINE = {
-    "& .MuiSlider-root": {"padding": "8px 0 !important"},
-    "& .MuiFormLabel-root": {"display": "none"},
-}
-"""A slider stands in place of the line under its field, whose label is its name too."""
 
 
 class SettingControl:
@@ -87,7 +78,7 @@ class SettingControl:
         if isinstance(definition, param.Selector):
             field = pmui.Select(options=list(definition.objects), variant="standard", **more)
             return field, field
-        more |= {"margin": 0, "variant": "standard", "sx": FIELD}
+        more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
         self._is_logarithmic = is_logarithmic(definition)
@@ -111,7 +102,7 @@ class SettingControl:
             width=WIDTH,
             height=20,
             margin=(-10, 0, 0, 0),
-            sx=ON_UNDERLINE,
+            **looks("under-number"),
         )
         slider.param.watch(lambda event: self._drag(event.new), "value")
         slider.param.watch(lambda event: self._release(event.new), "value_throttled")
@@ -202,9 +193,9 @@ class SettingControl:
         if self._is_updating:
             return
         self._is_dragged = False
-        self._change(self._from_slider(place))
-        if self._state.is_dragged:
-            self._state.run()
+        self._state.release(self.name, self._from_slider(place))
+        self.update()
+        self._explain(self._state.refusal)
 
     def _edit(self) -> None:
         """Open the points of a path."""

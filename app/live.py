@@ -16,26 +16,17 @@ from app.views.catalogue import CARDS
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
-from app.widgets import wrapped
+from app.widgets import looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
-LARGE = "2.6vh"
-"""Size of the type of plots on a projector."""
+LARGE = 0.026
+"""Size of the type of plots on a projector, a share of the window's height."""
+LOW, HIGH = 56, 0.13
+"""Pixels of the time line on the page, and its share of the height on a projector."""
 LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
 PRESENTED = 2
 """Plots that a projector has room for beside the scene."""
-SMALL_TABS = {
-    "&.MuiTabs-root, & .MuiTabs-root": {"minHeight": "26px"},
-    "& .MuiTab-root": {
-        "minHeight": "26px",
-        "minWidth": 0,
-        "padding": "2px 10px",
-        "textTransform": "none",
-        "fontSize": "13px",
-    },
-    "& .MuiTabs-scrollButtons": {"width": "20px"},
-}
 
 
 class Live:
@@ -56,7 +47,7 @@ class Live:
         self._above = wrapped(self.transport.view, self._status, sizing_mode="stretch_width")
         self._scene, self._plots = column("scene"), column("plots")
         self._timeline = pn.Row(
-            self.transport.play_button, sizing_mode="stretch_width", min_height=56, margin=0
+            self.transport.play_button, sizing_mode="stretch_width", height=LOW, margin=0
         )
         self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
@@ -82,7 +73,7 @@ class Live:
         self.arrange(self._kinds)
         scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
         scene.sizing_mode = "stretch_both"
-        timeline.param.update(sizing_mode="stretch_width", height=56)
+        timeline.sizing_mode = "stretch_both"
         self._scene.append(scene)
         self._timeline.append(timeline)
         # All at once: each change goes through all models of the document.
@@ -105,7 +96,9 @@ class Live:
         if self._is_open:
             self._plots[:] = [card.view for card in self._cards]
         self.transport.view.visible = state.view == "page"
-        size = LARGE if state.view == "present" else TEXT
+        size, self._timeline.height = TEXT, LOW
+        if state.view == "present":
+            size, self._timeline.height = f"{LARGE * state.height:.0f}px", int(HIGH * state.height)
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
         self.view.css_classes = ["live", state.view]
@@ -142,7 +135,8 @@ class Card:
         self.seen: View | None = None
         self._offered: list[View] = []
         self._panes: dict[View, pn.pane.Bokeh] = {}
-        self.tabs = pmui.TabMenu(items=[], margin=0, sx=SMALL_TABS, sizing_mode="stretch_width")
+        look = {"margin": 0, "sizing_mode": "stretch_width", **looks("small-tabs")}
+        self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
         self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
 

@@ -79,10 +79,13 @@ class Page:
             busy_indicator=None,
             sx=COMPACT,
         )
-        listen(document, {**self._live.transport.keys(), "p": self._present, "?": self._help})
+        listen(
+            state, document, {**self._live.transport.keys(), "p": self._present, "?": self._help}
+        )
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
+        state.param.watch(lambda event: state.view == "present" and self._dress(), "height")
         self._turn(state.tab)
         self._lesson.show()
         self._case.show()

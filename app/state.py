@@ -108,7 +108,7 @@ class PageState(param.Parameterized):
     pace = param.Selector(default="whole in 3 s", objects=list(PACES), doc="Iterations a second.")
     needs = param.ClassSelector(class_=frozenset, default=frozenset(), doc="Extras in sight.")
     readings = param.List(default=[], doc="Quantities that a lesson or a case names.")
-    is_dragged = param.Boolean(doc="Whether a slider is being dragged.")
+    is_dragged = param.Boolean(doc="Whether a slider or an arrow is being dragged.")
     lesson = param.String(doc="Name of the lesson.")
     case = param.String(doc="Name of the case; in a lesson there is none.")
     prediction = param.Integer(default=None, doc="The choice predicted; -1 did without.")
@@ -116,6 +116,7 @@ class PageState(param.Parameterized):
     tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
     question = param.String(doc="What the tab What if asks, as `Question` writes it.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
+    height = param.Integer(default=720, doc="Of the browser's window, pixels.")
     plots = param.String(doc="Names of the views on top of their cards, between commas.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(
@@ -157,6 +158,12 @@ class PageState(param.Parameterized):
         settings = self.settings.with_change(name, allowed)
         self.param.update(refusal="", settings=settings, is_dragged=True)
         self._start(answer(settings), is_dragged=True)
+
+    def release(self, name: str, value: float) -> None:
+        """Run what a slider or an arrow is let go at; where that is refused, the nearest before."""
+        self.change(**{name: value})
+        if self.is_dragged:
+            self.run()
 
     def adopt(self, settings: Settings) -> None:
         """Take settings over and run them."""

@@ -10,11 +10,19 @@ from typing import Any
 import panel_material_ui as pmui
 
 from app.browser import Echoes
+from app.frame import Selection
+from app.server import PAGES
 from app.state import ANSWER, PACES, SEARCH, PageState, known
 from app.widgets import button, looks, wrapped
 
 PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
+LIVELY = 60.0
+"""Seconds for which a page plays by itself; several share them, as they do the server's thread."""
+TOUCHED = [
+    *("settings", "is_dragged", "iteration", "running", "pinned", "tab", "lesson", "case", "room"),
+]
+"""What changes when somebody does something."""
 TICK = 50
 """Milliseconds between two instants that are shown, at least."""
 FOLLOWS = 400
@@ -35,6 +43,8 @@ class Transport:
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
         self._playing: Any = None
+        self._is_lively = False
+        self._is_touched = self._is_guided or state.selection != Selection()
         self._moved_at = -math.inf
         self._echoes = Echoes()
         self._run = _button("pause", "Run or pause (space)", self._toggle)
@@ -43,13 +53,14 @@ class Transport:
         self._pin = _button("push_pin", PIN, state.pin)
         self.view = wrapped(
             self._run,
+            _button("skip_previous", "From the start (r)", state.reset),
             _button("skip_next", "One iteration (s)", state.step),
-            _button("replay", "From the start (r)", state.reset),
             self._pin,
             *self._choices(),
         )
         shown = ["settings", "frame", "newest", "running", "is_costly", "pinned"]
         state.param.watch(lambda *events: self._show(), shown)
+        state.param.watch(self._touch, TOUCHED)
         document.add_periodic_callback(self._follow, FOLLOWS)
         self._show()
 
@@ -77,6 +88,7 @@ class Transport:
             size="small",
             width=110,
             margin=(0, 8),
+            **looks("small-label"),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
         return [self._way, pace, self._iteration]
@@ -108,16 +120,28 @@ class Transport:
             self._state.go_on()
 
     def play(self, until: float = 1.0) -> None:
-        """Go through time from the selected instant, up to a share of the interval, or stop."""
+        """Go through time from the selected instant, up to a share of the interval, or stop.
+
+        It stops as well once another instant is selected.
+        """
         if self._playing is not None:
             self.stop()
             return
-        began, phase = time.monotonic(), self._state.selection.phase
-        first = phase if phase < until else 0.0
+        began, shown = time.monotonic(), self._state.selection.phase
+        first = shown if shown < until else 0.0
 
         def play_on() -> None:
-            share = (time.monotonic() - began) / PLAYED_IN
-            self._state.select(phase=(first + share) % until)
+            nonlocal shown
+            passed = time.monotonic() - began
+            if self._state.selection.phase != shown:
+                self.stop()
+            elif self._is_lively and passed > LIVELY / max(PAGES.count, 1):
+                self.stop()
+                # As the page began.
+                self._state.select(phase=Selection.phase)
+            else:
+                shown = (first + passed / PLAYED_IN) % until
+                self._state.select(phase=shown)
 
         self._playing = self._document.add_periodic_callback(play_on, TICK)
         self.play_button.icon = "pause_circle"
@@ -126,8 +150,38 @@ class Transport:
         """Go through time no more."""
         if self._playing is not None:
             self._document.remove_periodic_callback(self._playing)
-            self._playing = None
+            self._playing, self._is_lively = None, False
             self.play_button.icon = "play_circle"
+
+    @property
+    def _is_guided(self) -> bool:
+        """Whether a lesson, a case or a class says what is seen."""
+        return bool(self._state.lesson or self._state.case or self._state.room)
+
+    def _enliven(self) -> None:
+        """Play by itself what the first search of a scene has found, until somebody does something.
+
+        Whoever has the answer at once goes on from it.
+        """
+        frame = self._state.frame
+        self._is_touched = True
+        if self._state.settings.finish == SEARCH["finish"] and not frame.run.is_idle:
+            self.play()
+            self._is_lively = True
+
+    def _touch(self, *events: Any) -> None:
+        """Stop what plays by itself; another scene does so anew.
+
+        Other settings are seen at the instant of the page's beginning, an arrow where it is held.
+        """
+        changed = {event.name: event for event in events}
+        settings = changed.get("settings")
+        is_new = settings is not None and settings.old.scene != settings.new.scene
+        self._is_touched = self._is_guided or not is_new
+        if self._is_lively:
+            self.stop()
+            if settings is not None:
+                self._state.select(phase=Selection.phase)
 
     def _move(self, instants: int) -> None:
         """Select an instant so many later."""
@@ -169,6 +223,8 @@ class Transport:
     def _follow(self) -> None:
         """Show which iteration is shown."""
         frame, slider = self._state.frame, self._iteration
+        if self._state.is_over and not self._is_touched:
+            self._enliven()
         if frame is None or time.monotonic() < self._moved_at + HELD:
             return
         is_newest = frame is self._state.newest

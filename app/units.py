@@ -35,7 +35,8 @@ class Unit:
 
     def __call__(self, value: float, digits: int = 3) -> str:
         """A value in SI with this unit."""
-        return f"{number(value / self.factor, digits)} {self.name}".strip()
+        gap = "" if self.name == "°" else " "
+        return f"{number(value / self.factor, digits)}{gap}{self.name}".strip()
 
     def titled(self, title: str) -> str:
         """A title with the unit behind it."""

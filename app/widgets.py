@@ -14,12 +14,12 @@ import panel_material_ui as pmui
 from solver.settings import Icon
 
 SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(encoding="utf-8")
-TEXT = "p { margin: 0; font-size: 14px; line-height: 1.43 }"
 
 
 def looks(role: str) -> dict[str, Any]:
     """Look of a widget in a role that `widgets.css` knows."""
-    return {"css_classes": [role], "stylesheets": [SHEET]}
+    rules = [rule for rule in SHEET.split("\n\n") if f":host(.{role})" in rule]
+    return {"css_classes": [role], "stylesheets": ["\n".join(rules)]}
 
 
 def changing_text(**options: Any) -> pn.pane.Markdown:
@@ -28,7 +28,7 @@ def changing_text(**options: Any) -> pn.pane.Markdown:
     A component of panel-material-ui begins to listen once it is painted, and loses what changes
     before.
     """
-    return pn.pane.Markdown("", stylesheets=[TEXT], **options)
+    return pn.pane.Markdown("", **looks("line"), **options)
 
 
 def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:

@@ -22,17 +22,7 @@ TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 def read_bytes(path: Path, refuse: Refuse) -> bytes:
     """Bytes of a file; of one that is too large, or has no end, no more than it takes to know.
 
-    Parameters
-    ----------
-    path
-        Of the file.
-    refuse
-        Makes the refusal out of why it cannot be read.
-
-    Raises
-    ------
-    SettingError
-        If it cannot be read, or is too large.
+    One that cannot be read, or is too large, is refused with the reason.
     """
     try:
         with path.open("rb") as file:

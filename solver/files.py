@@ -6,7 +6,8 @@ import contextlib
 import json
 import math
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import MISSING, fields
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,15 @@ from solver.curves import messages, read_tables
 from solver.definitions import SettingError, parse
 from solver.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
 from solver.latin import Iterate, Solution
+from solver.reduction.basis import modes_stored
 from solver.reference.distance import determinate_forces, held_instants
 from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
+IN_FILES = {"str": str, "int": int, "float": (int, float), "tuple[str, ...]": list}
+"""Types of values in a file, by those of the fields that they are for."""
 INDICATORS = "indicator", "behaviour", "estimated_error"
 ERRORS = "error_displacement", "error_force"
 """What is known of every iteration, beside its time; errors where there is a reference."""
@@ -82,20 +86,7 @@ def settings_from_command(
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Content of a file in TOML.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-    kind
-        What it is to be, used in messages.
-
-    Raises
-    ------
-    SettingError
-        For a file that cannot be read, or is no TOML.
-    """
+    """Content of a file in TOML; one that is none is refused as what it is to be, its `kind`."""
     refuse = partial(SettingError, kind, str(path), "a file that can be read")
     return _parsed(read_bytes(path, refuse), kind, str(path))
 
@@ -111,7 +102,7 @@ def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
 
 
 def check_keys(
-    values: Mapping[str, Any], keys: Mapping[str, Any], optional: tuple[str, ...] = ()
+    values: Mapping[str, Any], keys: Mapping[str, Any], optional: Collection[str] = ()
 ) -> None:
     """Refuse keys that there are not, keys that lack, and values of a wrong type."""
     known = ", ".join(keys)
@@ -123,6 +114,37 @@ def check_keys(
     for name in keys:
         if name not in values and name not in optional:
             raise SettingError(name, None, known, "this key is needed: write it")
+
+
+def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, Any]:
+    """Values of the fields of a dataclass that a table has as its keys, with lists as tuples.
+
+    Parameters
+    ----------
+    kind
+        The dataclass. What has a default may be left out; its name is not in the table.
+    values
+        The table.
+    others
+        Types of keys that are no fields, or are kept otherwise.
+
+    Raises
+    ------
+    SettingError
+        As `check_keys`, and for a list of anything but texts.
+    """
+    own = {field.name: field for field in fields(kind) if field.name != "name"}
+    keys = {name: IN_FILES[field.type] for name, field in own.items() if field.type in IN_FILES}
+    optional = [name for name, field in own.items() if field.default is not MISSING]
+    check_keys(values, keys | others, optional)
+    found = dict(values)
+    for name in keys.keys() & found.keys():
+        if own[name].type == "tuple[str, ...]" and name not in others:
+            texts = found[name] = tuple(found[name])
+            are_texts = bool(texts) and all(isinstance(text, str) and text for text in texts)
+            can = "a list of texts, at least one"
+            require(are_texts, name, list(texts), can, "write them in quotes")
+    return found
 
 
 def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -> None:
@@ -151,13 +173,13 @@ def scene_settings(scene: object) -> type[Settings]:
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
     last = solution.records[-1] if solution.records else None
-    reduction, bases = solution.iterate.reduction, {}
-    if reduction is not None:
-        bases = {
-            "modes_largest": max(entry.modes for entry in reduction.records),
-            "modes_stored": reduction.stored,
-            "modes_saved": reduction.saved,
-        }
+    counts = [basis.n_modes for basis in solution.iterate.bases]
+    stored = modes_stored(solution.iterate.bases)
+    bases = {
+        "modes_largest": max(counts, default=0),
+        "modes_stored": stored,
+        "modes_saved": sum(counts) - stored,
+    }
     return {
         "scene": settings.scene,
         "status": str(solution.status.ending),
@@ -169,7 +191,7 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "residual": solution.iterate.residual,
         **{name: getattr(last, name, None) for name in ERRORS},
         "seconds": last.seconds if last else solution.iterate.seconds,
-        **bases,
+        **(bases if counts else {}),
     }
 
 
@@ -191,14 +213,14 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         name: [getattr(entry, name) for entry in solution.records]
         for name in (*INDICATORS, *ERRORS, "seconds")
     }
-    if iterate.reduction is not None:
+    if iterate.bases:
         for name in OF_BASES:
             history[f"pgd_{name}"] = [
                 [getattr(part, name) for part in entry.reduction] for entry in solution.records
             ]
-    fields: dict[str, Any]
+    found: dict[str, Any]
     if problem.inside is None:
-        fields = {
+        found = {
             "x": problem.positions,
             "displacement": problem.at_rest(iterate.displacement),
             "friction_force": iterate.friction_force,
@@ -206,7 +228,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
             "status": iterate.status,
         }
     else:
-        fields = {
+        found = {
             "x": problem.inside.nodes,
             "elements": problem.inside.elements,
             "displacement": problem.inside.displacement(iterate.displacement, slice(None)),
@@ -214,7 +236,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         }
     return {
         "t": problem.instants,
-        **fields,
+        **found,
         **interface_arrays(iterate),
         **{name: np.array(column) for name, column in history.items()},
         "certified": solution.is_certified,

@@ -15,36 +15,13 @@ from typing import Any
 
 from solver.checked import dump
 from solver.definitions import SettingError, is_number
-from solver.files import check_keys, placed, read_toml, require, scene_settings
+from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantity import Quantity
 
 SUBJECTS = "mechanics", "method"
-KEYS = {
-    "title": str,
-    "order": int,
-    "subject": str,
-    "question": str,
-    "choices": list,
-    "right": int,
-    "why": str,
-    "scene": str,
-    "settings": dict,
-    "controls": list,
-    "views": list,
-    "text": str,
-    "explanation": str,
-    "instant": (int, float),
-    "interface": str,
-    "draw": str,
-    "beside": list,
-    "until": (int, float),
-    "checkpoints": list,
-}
-"""Keys of a lesson, and the type of each; `OPTIONAL` may be left out."""
-OPTIONAL = "interface", "draw", "beside", "until"
 OF_CHECKPOINT = {
     "claim": str,
     "settings": dict,
@@ -150,9 +127,9 @@ class Lesson:
     """
 
     name: str
+    title: str
     order: int
     subject: str
-    title: str
     question: str
     choices: tuple[str, ...]
     right: int
@@ -225,18 +202,12 @@ def lesson_from_file(path: Path) -> Lesson:
         return _lesson(path.stem, read_toml(path, "lesson"))
 
 
-def _lesson(name: str, values: dict[str, Any]) -> Lesson:
-    check_keys(values, KEYS, optional=OPTIONAL)
+def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
+    kept = {"scene": str, "settings": dict, "text": str, "explanation": str, "checkpoints": list}
+    values = fields_in(Lesson, table, **kept)
     kind = scene_settings(values.pop("scene"))
     with placed("settings"):
         settings = kind.checked(values["settings"])
-    for key in ("choices", "controls", "views", "beside"):
-        names = values.get(key)
-        if names is None:
-            continue
-        are_names = bool(names) and all(isinstance(text, str) and text for text in names)
-        require(are_names, key, names, "a list of texts, at least one", "write them in quotes")
-        values[key] = tuple(names)
     _check(values, settings)
     for key in ("text", "explanation"):
         with placed(key):

@@ -26,8 +26,6 @@ more, those that close together stick without traction beside points that were t
 (measured on a parabola, 192 elements)."""
 SMALL = 0.05
 """Largest strain, or slope of a body, for which small strains hold."""
-AT_ONCE = 2_000_000
-"""Nodes times instants whose displacements are held together."""
 
 
 def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
@@ -54,13 +52,7 @@ def ends_of_tables(settings: Settings) -> dict[str, float]:
 
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
-    """Sentences on what an iterate shows that its status does not tell.
-
-    Parameters
-    ----------
-    settings, iterate
-        Of a run, at its end or on the way.
-    """
+    """Sentences on what an iterate shows, at the end or on the way, that no status tells."""
     remarks = list(settings.left_out())
     beyond = beyond_small_strain(settings.structure(), iterate.problem, iterate.displacement)
     remarks += [] if beyond is None else [beyond]
@@ -142,22 +134,18 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
         axial = np.abs(force).max(initial=0.0) / wire.helix.stiffness
-        bent = 0.5 * wire.diameter * np.abs(wire.curvature).max(initial=0.0)
+        bent = 0.5 * wire.made.diameter * np.abs(wire.curvature).max(initial=0.0)
         largest = max(largest, float(axial + bent))
     return largest
 
 
 def _in_plane(inside: Inside, displacement: Array) -> float:
     corners = inside.nodes[inside.elements]
-    width = corners[:, 1, 0] - corners[:, 0, 0]
-    height = corners[:, 3, 1] - corners[:, 0, 1]
-    step = max(1, AT_ONCE // len(inside.nodes))
+    width, height = (corners[:, 2] - corners[:, 0]).T[:, :, None]
     largest = 0.0
-    for first in range(0, displacement.shape[1], step):
-        moved = inside.displacement(displacement, slice(first, first + step))
+    for instant in range(displacement.shape[1]):
+        moved = inside.displacement(displacement, [instant])[:, :, 0]
         a, b, c, d = (moved[corner] for corner in inside.elements.T)
-        along = 0.5 * (b - a + c - d) / width[:, None, None]
-        up = 0.5 * (d - a + c - b) / height[:, None, None]
-        sizes = (float(np.abs(one).max(initial=0.0)) for one in (along, up))
-        largest = max(largest, *sizes)
+        along, up = 0.5 * (b - a + c - d) / width, 0.5 * (d - a + c - b) / height
+        largest = max(largest, float(np.abs([along, up]).max()))
     return largest

@@ -11,12 +11,11 @@ from solver.console import add_command, given, writing
 from solver.definitions import SettingError
 from solver.files import scene_settings
 from solver.study.cases.case import case_from_file
-from solver.study.figures import paper_figures
 from solver.study.figures.figure import FILE, write_figures
+from solver.study.figures.modes import paper_figures
 from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned, head_of, line_of
 from solver.study.proof import report as proof
-from solver.study.proof.known_case import known_case, rows_of
 from solver.study.speed.measured_times import error_against_time, times_at_sizes
 from solver.study.speed.study_report import (
     FILES as STUDY_FILES,
@@ -24,7 +23,7 @@ from solver.study.speed.study_report import (
 from solver.study.speed.study_report import (
     conditions,
     notes,
-    ratio_table,
+    sizes_table,
     table,
     write_curves,
     write_study,
@@ -92,10 +91,10 @@ def _study(chosen: argparse.Namespace) -> int:
         curves = error_against_time(settings, chosen.repeats)
         write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        note = write_study(curves, sizes, chosen.out)
-    print("\n".join(conditions(curves)), end="\n\n")
+        note = write_study(settings, chosen.repeats, curves, sizes, chosen.out)
+    print("\n".join(conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(table(curves)))
-    print("", aligned(ratio_table(settings, sizes)), *notes(settings, sizes), sep="\n")
+    print("", aligned(sizes_table(settings, sizes)), *notes(settings, sizes), sep="\n")
     if note:
         print(note)
     print(f"{len(STUDY_FILES)} files in {chosen.out}")
@@ -130,12 +129,12 @@ def _stability(chosen: argparse.Namespace) -> int:
 
 
 def _proof(chosen: argparse.Namespace) -> int:
-    own = [known_case(case_from_file(path)) for path in chosen.files]
+    own = [proof.known_case(case_from_file(path)) for path in chosen.files]
     rows = []
     with writing(chosen.out, *proof.FILES):
         print(head_of(proof.SHOWN))
         for case in own or proof.cases():
-            for row in rows_of(case):
+            for row in proof.rows_of(case):
                 print(line_of(proof.entries(row), proof.SHOWN), flush=True)
                 rows.append(row)
         proof.write_proof(rows, chosen.out)

@@ -29,7 +29,7 @@ from solver.study.compared_runs import ComparedRun
 from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
 from solver.study.fit import MOST, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
-from solver.study.measured_loop import ALIKE, LoopComparison, axes_of, is_a_loop, read_loop, rms
+from solver.study.measured_loop import ALIKE, LoopComparison, is_a_loop, read_loop, rms
 from solver.study.measured_loop import CAN as LOOP
 from solver.study.mesh import (
     TIME_STEP,
@@ -142,12 +142,12 @@ def _beside_loop(
     chosen: argparse.Namespace, data: bytes, settings: Settings, problem: Problem
 ) -> Found:
     loop = settings.structure().loop(problem)
-    measured = read_loop(data, chosen.file.name, axes_of(loop))
+    measured = read_loop(data, chosen.file.name, loop.axes)
     print_tables({measured.source: measured.message})
     beside = LoopComparison(measured, loop, problem)
     announce(settings, problem)
     solution = solve(problem, method_of(settings))
-    differences, drive = beside.differences(*beside.both(solution.iterate))
+    differences, drive = beside.differences(*loop.along(solution.iterate))
     if rms(drive) > ALIKE:
         warn(beside.drive_message(drive))
     figures = {
@@ -166,7 +166,7 @@ def _fit(chosen: argparse.Namespace) -> int:
     settings, tables = given(chosen)
     data, problem = read_brought(chosen, LOOP), discretise(settings)
     announce(settings, problem)
-    measured = read_loop(data, chosen.file.name, axes_of(settings.structure().loop(problem)))
+    measured = read_loop(data, chosen.file.name, settings.structure().loop(problem).axes)
     print_tables({measured.source: measured.message})
     names = [name.strip() for name in chosen.vary.split(",")]
     printed = 0.0

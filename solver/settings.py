@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import ClassVar, Literal, NamedTuple, Self
 
+import numpy as np
 import param
 
 from solver.definitions import SettingError, about
@@ -18,6 +19,8 @@ from solver.reference.closed_forms import ExactCurve
 
 LARGEST_FIELD = 25_000_000
 """Nodes times instants; a run keeps about ten fields over them."""
+COARSEST = 6
+"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 
 
 class Icon(NamedTuple):
@@ -67,6 +70,7 @@ class Settings(LoadSettings):
 
     length: param.Number[float]
     friction: param.Number[float]
+    elements: param.Integer[int]
     """Every scene defines these, where it shows them."""
 
     title: ClassVar[str]
@@ -96,8 +100,20 @@ class Settings(LoadSettings):
         raise NotImplementedError
 
     def coarser(self) -> Iterator[Structure]:
-        """Yield the same scene, uncut, on ever coarser meshes; nothing where no run starts so."""
-        yield from ()
+        """Yield the same scene, uncut, on ever coarser meshes, as long as a front is seen.
+
+        Until it does not fit its mesh, as where the break of a wire, at the nearest node, leaves
+        less than the tension to friction, or where a mesh so coarse has more instants.
+        """
+        coarse = self
+        while (elements := coarse.elements // 2) >= COARSEST:
+            try:
+                coarse = coarse.replace(elements=elements, substructures=1)
+            except SettingError:
+                return
+            if not np.array_equal(coarse.times(), self.times()):
+                return
+            yield coarse.structure()
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
         """What is known of the scene without a mesh; often that is nothing.

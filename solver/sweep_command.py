@@ -16,8 +16,7 @@ from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import settings_from_command
 from solver.study.page import write_page
-from solver.study.sweep import Plan, Row, patience, plan_of, sweep
-from solver.study.sweep.plan import FORM, LOST, STUCK
+from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, Row, plan_of
 from solver.study.sweep.report import (
     counts,
     csv_of,
@@ -27,7 +26,7 @@ from solver.study.sweep.report import (
     sections,
     title_of,
 )
-from solver.study.sweep.run import field_file
+from solver.study.sweep.run import field_file, patience, sweep
 
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0

@@ -136,11 +136,9 @@ class Table:
 
     def _numbers(self, columns: Sequence[TableColumn]) -> Array:
         places = [column.place for column in columns]
-        cells = [
-            [row[place] if place < len(row) else "" for place in places] for _, row in self.rows
-        ]
-        if self.separator != ",":
-            cells = self._with_points(cells)
+        cells = [[row[place] for place in places] for _, row in self.rows]
+        if self.separator != "," and self._has_decimal_commas(cells):
+            cells = [[text.replace(",", ".") for text in row] for row in cells]
         numbers = np.array([[_number(text) for text in texts] for texts in cells])
         wrong = np.argwhere(~np.isfinite(numbers))
         if len(wrong):
@@ -153,23 +151,19 @@ class Table:
             raise self.refuse(f"line {line} has {text!r} as {name}: {remedy}")
         return numbers.T
 
-    def _with_points(self, cells: list[list[str]]) -> list[list[str]]:
-        """Cells with decimal points; of both signs the rarer one is refused, with its line."""
+    def _has_decimal_commas(self, cells: list[list[str]]) -> bool:
+        """Whether decimals have commas; of both signs the rarer one is refused, with its line."""
         signs = Counter(sign for row in cells for text in row for sign in ",." if sign in text)
-        if signs["."] and signs[","]:
+        if len(signs) == 2:
             (common, _), (rare, _) = signs.most_common()
-            line, text = next(
-                (line, text)
-                for (line, _), row in zip(self.rows, cells, strict=True)
-                for text in row
-                if rare in text
-            )
+            every = zip(self.rows, cells, strict=True)
+            line, text = next((n, text) for (n, _), row in every for text in row if rare in text)
             names = {",": "comma", ".": "point"}
             raise self.refuse(
                 f"line {line} has {text!r}, with a decimal {names[rare]} where others have a "
                 f"{names[common]}: write all of them alike, and thousands without a sign"
             )
-        return [[text.replace(",", ".") for text in row] for row in cells] if signs[","] else cells
+        return "," in signs
 
 
 def read_table(data: bytes | str, refuse: Refuse) -> Table:
@@ -203,19 +197,17 @@ def read_table(data: bytes | str, refuse: Refuse) -> Table:
     for line, cells in rows[start:]:
         if len(cells) > len(columns):
             raise refuse(f"line {line} has {len(cells)} cells for {len(columns)} columns")
+        cells += [""] * (len(columns) - len(cells))
     return Table(columns, rows[start:], separator, refuse)
 
 
 def _text(data: bytes | str, refuse: Refuse) -> str:
     if isinstance(data, str):
         text = data
-    elif data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
-        text = data.decode("utf-16", "replace")
-    elif 0 in data[:2]:
-        text = data.decode("utf-16-le" if data[0] else "utf-16-be", "replace")
     else:
+        is_wide = data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) or data[1:2] == b"\0"
         try:
-            text = data.decode("utf-8")
+            text = data.decode("utf-16" if is_wide else "utf-8")
         except UnicodeDecodeError:
             text = data.decode("cp1252", "replace")
     if "\0" in text:

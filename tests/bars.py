@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import islice
 
 import numpy as np
 
 from solver.discrete.rods import End
-from solver.latin import iterations, solve
-from solver.reference.distance import distance_to
-from solver.reference.incremental import reference_of
-from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
 
 SMALL = {"elements": 30, "instants": 41, "substructures": 6}
 SMALL_BAR = ["--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
@@ -36,18 +30,6 @@ def pulled(bar, load, **changes):
     load = np.asarray(load, dtype=float)
     ends = {"left": End(displacement=np.zeros_like(load)), "right": End(force=load)}
     return replace(bar, **ends, **changes)
-
-
-def sample(chosen, number):
-    """Iterate of some number."""
-    return next(islice(iterations(discretise(chosen), method_of(chosen)), number - 1, None))
-
-
-def measured(settings):
-    """Solve without a clock, beside the reference."""
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    return solve(problem, method_of(settings), distance=distance, watch=False)
 
 
 def relative(found, expected):

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from solver.scenes import CATALOGUE
-from solver.study.sweep import Plan, Row, plan_of, sweep
+from solver.study.sweep.plan import Plan, Row, plan_of
+from solver.study.sweep.run import sweep
 
 TINY = {"elements": 20, "instants": 21, "substructures": 2}
 

@@ -16,20 +16,6 @@ from solver.scenes.method import method_of
 from solver.study.quantities import QUANTITIES
 from solver.study.quantities.finished import finished_run
 
-SOFTER = 1e7
-"""Bond of a rod, N/m^2."""
-PILE = {
-    "length": 20.0,
-    "young": 25e9,
-    "section": np.pi * 0.36 / 4.0,
-    "friction": 1.0,
-    "pressure": 30e3 * np.pi * 0.6,
-    "left_end": "spring",
-    "left_spring": 2e8,
-    "right_end": "free",
-    "settlement": -0.05,
-}
-
 
 def bar(**changes):
     return CATALOGUE["bar"].checked(changes)
@@ -67,43 +53,12 @@ def test_a_long_rail_breathes_at_its_ends_and_comes_back_by_half():
     assert moved[-1, -1] == pytest.approx(0.5 * end, rel=1e-3)
 
 
-def test_a_pile_is_dragged_down_to_its_neutral_plane():
-    """theory: 1021.8 kN at 18.069 m in one increment; a path goes on to turn friction below it."""
-    at_once = bar(**PILE, elements=800, instants=1)
-    _, _, axial = answer(at_once)
-    deepest = int(np.argmin(axial[:, -1]))
-    assert axial[deepest, -1] == pytest.approx(-1021.8e3, rel=1e-3)
-    assert 20.0 * (1.0 - (deepest + 0.5) / 800) == pytest.approx(18.069, abs=0.03)
-    _, _, along = answer(bar(**PILE, elements=200, instants=41))
-    assert along[:, -1].min() < 1.05 * axial[deepest, -1]
-
-
 def test_what_friction_does_not_carry_comes_to_the_other_end():
     """The reaction of a clamp, and of a spring, is the pull less all friction."""
     for left in ({"left_end": "held"}, {"left_end": "spring", "left_spring": 1e5}):
         run = finished_run(bar(peak=2000.0, load="ramp", **left))
         assert QUANTITIES["left_force"](run) == pytest.approx(-500.0, rel=0.04)
         assert QUANTITIES["right_force"](run) == 2000.0
-
-
-@pytest.mark.parametrize("left", ["free", "held"])
-def test_an_elastic_bond_carries_as_in_closed_form(left):
-    rod = bar(
-        section=1e-4,
-        pressure=1e9,
-        friction_law="general",
-        tangential_stiffness=SOFTER,
-        left_end=left,
-        peak=1000.0,
-        load="ramp",
-        elements=400,
-        instants=2,
-    )
-    stiffness = rod.young * rod.section
-    lag = np.sqrt(SOFTER / stiffness)
-    share = 1.0 / np.tanh(lag) if left == "free" else np.tanh(lag)
-    _, moved, _ = answer(rod)
-    assert moved[-1, -1] == pytest.approx(1000.0 / (stiffness * lag) * share, rel=1e-4)
 
 
 def test_a_spring_is_a_clamp_where_it_is_stiff_and_nothing_where_it_is_soft():

@@ -26,7 +26,7 @@ def test_rows_of_a_named_construction_are_that_construction(preset: str) -> None
     rows = settings_of(construction=named.points("construction"), tension=5e4)
     for name in ("stiffness", "stuck_bending", "slipping_bending", "diameter", "wires"):
         assert getattr(rows.section, name) == pytest.approx(getattr(named.section, name), rel=1e-9)
-    bounds = [[float(wire.bound[0]) for wire in s.structure().wires] for s in (named, rows)]
+    bounds = [[float(wire.bound) for wire in s.structure().wires] for s in (named, rows)]
     assert bounds[1] == pytest.approx(bounds[0], rel=1e-9)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from ropes import exact_of, moment_of, settings_of, solved
 
-from solver import End, Rods, solve
+from solver import solve
 from solver.arrays import Array
 from solver.discrete.cross_section import CONSTRUCTIONS, CrossSection, WireLayer, seven_wire
 from solver.discrete.helical_wire import HelicalWire
@@ -39,15 +39,6 @@ def test_first_bending_meets_the_closed_form(construction: str) -> None:
     exact = exact_of(settings).moment(scene.curvature)
     assert np.abs(moment_of(scene, found) - exact).max() < 0.005 * exact[-1]
     assert found.status.any()
-
-
-@pytest.mark.parametrize("curvature", [0.02, 0.1, 0.25])
-def test_a_cycle_loses_the_energy_of_masings_rule(curvature: float) -> None:
-    settings = settings_of(curvature=curvature, instants=301)
-    scene, found = solved(settings)
-    moment, last = moment_of(scene, found), slice(60, None)
-    loop = abs(float(np.trapezoid(moment[last], scene.curvature[last])))
-    assert loop == pytest.approx(exact_of(settings).energy(curvature), rel=0.01)
 
 
 @pytest.mark.parametrize("load", ["cycle", "random", "decaying"])
@@ -113,25 +104,6 @@ def test_wires_carry_the_tension_and_lie_beside_each_other(construction: str) ->
         assert layer.wires * layer.diameter <= 1.005 * room
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {},
-        {"bending": "uniform"},
-        {"substructures": 4},
-        {"tension_load": "loosening"},
-        {"construction": "conductor", "tension": 28e3},
-        {"cycles": 3},
-        {"linear_stage": "pgd", "bending": "uniform", "substructures": 4},
-    ],
-)
-def test_latin_certifies_it(changes: dict[str, Any]) -> None:
-    settings = settings_of(**{**CLAMPED, **changes})
-    solution = solve(discretise(settings), method_of(settings))
-    assert solution.is_certified
-    assert solution.iterate.residual < 1e-9
-
-
 @pytest.mark.parametrize("changes", [CLAMPED, CHANGING, {"load": "random"}])
 def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None:
     settings = settings_of(**changes)
@@ -172,7 +144,7 @@ def test_what_is_no_strand_is_refused() -> None:
     with pytest.raises(RefusedError, match="same number of nodes"):
         replace(scene, wires=[short, *scene.wires[1:]])
     with pytest.raises(RefusedError, match="below zero"):
-        replace(scene, wires=[replace(scene.wires[0], bound=np.array([-1.0]))])
+        replace(scene, wires=[replace(scene.wires[0], bound=-1.0)]).discretise()
 
 
 def taken(name: str, run: FinishedRun) -> float:
@@ -236,63 +208,15 @@ WIRE = HelicalWire(stiffness=1.5e6, radius=4e-3, lay=np.radians(12.0))
 BENT = BentWire(WIRE, bound=3000.0)
 
 
-def rods(curvature: Array, elements: int = 40, substructures: int = 4) -> Rods:
-    """Make half a pitch of the wire; by symmetry neither of its ends slips."""
-    arc = np.linspace(0.0, WIRE.half_pitch, elements + 1)
-    instants = np.linspace(0.0, 1.0, len(curvature))
-    return Rods(
-        length=WIRE.half_pitch,
-        stiffness=WIRE.stiffness,
-        elements=elements,
-        substructures=substructures,
-        bound=np.full(elements + 1, BENT.bound),
-        left=End(displacement=np.zeros(len(curvature))),
-        right=End(displacement=np.zeros(len(curvature))),
-        instants=instants,
-        duration=1.0,
-        body_force=WIRE.body_force(arc, curvature),
-    )
-
-
-def moment_of_wire(arc: Array, slip: Array, curvature: Array) -> Array:
-    """What the wire adds to the strand's moment, its mean along the wire, N m."""
-    stuck = WIRE.stuck_force(arc, curvature)
-    strain = np.diff(slip, axis=0) / np.diff(arc)[:, None]
-    return WIRE.mean_levers(arc) @ (WIRE.stiffness * strain + 0.5 * (stuck[1:] + stuck[:-1]))
-
-
-def moments_of_wire(curvature: Array, elements: int = 40) -> Array:
-    """The wire's moment by the incremental solver."""
-    scene = rods(curvature, elements)
-    return moment_of_wire(scene.nodes, reference_of(scene.discretise()).displacement, curvature)
-
-
-def to_and_fro(peak: float, steps: int = 60) -> Array:
-    up = np.linspace(0.0, peak, steps + 1)
-    down, back = np.linspace(peak, -peak, 2 * steps + 1), np.linspace(-peak, peak, 2 * steps + 1)
-    return np.concatenate([up, down[1:], back[1:]])
-
-
 def test_it_comes_nearer_with_order_two() -> None:
-    curvature = BENT.first_slip * np.linspace(0.0, 1.4, 15)
-    exact = BENT.moment(curvature)
-    off = [np.abs(moments_of_wire(curvature, n) - exact).max() for n in (20, 40, 80, 160)]
+    off = []
+    for elements in (20, 40, 80, 160):
+        settings = settings_of(load="ramp", curvature=0.1, layers=1, elements=elements, instants=15)
+        scene, found = solved(settings)
+        exact = exact_of(settings).moment(scene.curvature)
+        off.append(np.abs(moment_of(scene, found) - exact).max())
     orders = np.log2(np.array(off[:-1]) / np.array(off[1:]))
     assert np.mean(orders) == pytest.approx(2.0, abs=0.3)
-
-
-def test_what_friction_dissipates_is_what_the_loop_encloses() -> None:
-    peak = 1.5 * BENT.first_slip
-    curvature = to_and_fro(peak)
-    scene = rods(curvature)
-    found = reference_of(scene.discretise())
-    slips = np.diff(found.displacement[:, 60:], axis=1)
-    force = found.contact_force[:, 61:]
-    # The loop is a wire's mean share in the moment of a metre of strand.
-    strand = WIRE.half_pitch * np.cos(WIRE.lay)
-    lost = -np.sum(force * slips) / strand
-    moment = moment_of_wire(scene.nodes, found.displacement, curvature)
-    assert lost == pytest.approx(abs(np.trapezoid(moment[60:], curvature[60:])), rel=0.01)
 
 
 def test_the_closed_form_has_its_landmarks() -> None:

@@ -57,20 +57,6 @@ def relative(found, exact):
 
 
 @pytest.mark.parametrize(
-    ("change", "sides"),
-    [({"wires": 2, "broken": 1}, 1), ({"wires": 2, "broken": 2}, 1), ({"wires": 3}, 2)],
-)
-def test_it_regains_its_force_linearly_over_the_tension_by_the_friction_bound(change, sides):
-    # 300 N over 1500 N/m for each rubbing side: 12 elements of 1/60 m, or 6.
-    scene, iterate = solved(**change, load="ramp", peak=300.0)
-    found = axial_forces(scene, iterate.displacement)[scene.broken[0] - 1, :, -1]
-    place = (np.arange(60) + 0.5) / 60
-    expected = np.minimum(300.0, sides * 1500.0 * np.abs(place - 0.5))
-    np.testing.assert_allclose(found, expected, atol=1e-4)
-    assert sides * np.count_nonzero(found < 299.99) == 24
-
-
-@pytest.mark.parametrize(
     "change",
     [{"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}],
     ids=["middle of three", "pair in a grip"],

@@ -18,8 +18,8 @@ from app.charts import contours, in_units, keys, overlay, render
 from solver.study import page
 from solver.study.chart import Chart, Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, write_page
-from solver.study.sweep import Row
 from solver.study.sweep.chart import chart_of, charts
+from solver.study.sweep.plan import Row
 
 X = np.array([1.0, 2.0, 3.0])
 PANEL = Panel(

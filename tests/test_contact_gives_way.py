@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from runs import settings_of, solved
 from small_scenes import SMALL
 
-from solver.latin import Ending, solve
+from solver.latin import Ending
 from solver.reference.closed_forms.pulled_bar import pulled_compliant_bar
-from solver.reference.distance import distance_to
-from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise
-from solver.scenes.method import method_of
+from solver.scenes import CATALOGUE
 
 LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
 
 
 def run(scene="bar", **values):
-    chosen = CATALOGUE[scene].checked({**SMALL[scene], **COMPLIANT, **values})
-    problem = discretise(chosen)
-    return solve(problem, method_of(chosen), distance=distance_to(reference_of(problem), problem))
+    return solved(settings_of(scene, **{**SMALL[scene], **COMPLIANT, **values}))
 
 
 def pulled(force, stiffness):

@@ -12,7 +12,7 @@ from solver.latin import Ending, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.rules import rules_of
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
 from solver.study.stability.stability_case import Verdict, judge, run
@@ -86,29 +86,6 @@ def test_a_step_that_needs_more_systems_gets_them_in_time(command):
     assert outcome.error_force < 1e-9
 
 
-ACCURACY = 0.01
-FEW = {"instants": 21}
-CASES = [
-    ("bar", {}),
-    ("bar", {"peak": 10.0}),
-    ("bar", {"friction": 100.0}),
-    ("strand", {"wires": 10, **FEW}),
-    ("block", {"top_normal_displacement": 4e-5}),
-    ("block", {"interpolation": "biquadratic", "elements": 24, "elements_up": 12, **FEW}),
-    ("layers", {"layers": 6, "friction": 1.0, **FEW}),
-]
-PAPER = [
-    ("bar", {"peak": 10.0}),
-    ("strand", FEW),
-    ("block", {"top_normal_displacement": 4e-5}),
-]
-RUNS = [
-    *CASES,
-    *((scene, {"finish": "none", **values}) for scene, values in CASES),
-    *((scene, {"method": "paper", **values}) for scene, values in PAPER),
-]
-
-
 @pytest.mark.parametrize("friction", [0.02, 0.05])
 @pytest.mark.parametrize("finish", ["none", "at-once"])
 def test_friction_does_not_hide_behind_a_large_pressure(finish, friction):
@@ -136,14 +113,3 @@ def test_an_error_is_that_of_friction_and_one_of_next_to_nothing_counts_beside_t
     distance = distance_to(SimpleNamespace(displacement=nowhere, contact_force=exact), problem)
     fields = SimpleNamespace(displacement=nowhere, contact_force=wrong)
     assert distance.of_friction_force(fields) == pytest.approx(error, rel=1e-2)
-
-
-@pytest.mark.parametrize(("scene", "values"), RUNS, ids=str)
-def test_what_is_called_converged_is_within_one_percent(scene, values):
-    settings = CATALOGUE[scene].checked(values)
-    problem = discretise(settings)
-    solution = solve(problem, method_of(settings), watch=False)
-    distance = distance_to(reference_of(problem), problem)
-    assert solution.status.ending is Ending.CONVERGED
-    assert distance.of_displacement(solution.iterate) < ACCURACY
-    assert distance.of_friction_force(solution.iterate) < ACCURACY

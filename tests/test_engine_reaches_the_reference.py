@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bars import SMALL, options, relative, sample, table
+from bars import SMALL, options, relative, table
+from runs import sample
 
 from solver.latin import Ending, iterations, solve
 from solver.reference.distance import distance_to

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import replace
 from functools import cache
@@ -13,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from runs import distance_of, solved
 
 from solver.cli import main
 from solver.latin import (
@@ -21,14 +21,10 @@ from solver.latin import (
     StopState,
     iterations,
     judged,
-    solve,
     status,
     stop,
 )
-from solver.reference.distance import Distance, distance_to
-from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
-from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.settings import Settings
 
@@ -48,10 +44,6 @@ def small(scene: str, **changes: Any) -> Any:
     return CATALOGUE[scene].checked({**SMALL[scene], **changes})
 
 
-def true_distance(problem: Any) -> Distance:
-    return distance_to(reference_of(problem), problem)
-
-
 @pytest.mark.parametrize("scene", SMALL)
 @pytest.mark.parametrize("method", METHODS)
 def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
@@ -59,7 +51,7 @@ def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
 ) -> None:
     settings = small(scene, method=method, finish="none", tolerance=1e-8, max_iterations=400)
     problem = discretise(settings)
-    distance = true_distance(problem)
+    distance = distance_of(problem)
     proven = 0
     for iterate, verdict in judged(problem, method_of(settings)):
         if verdict.certificate is not None:
@@ -79,9 +71,7 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
     scene: str, method: str, accuracy: float
 ) -> None:
     changes = {"finish": "none", "tolerance": 1e-3, "max_iterations": 2000}
-    settings = small(scene, method=method, accuracy=accuracy, **changes)
-    problem = discretise(settings)
-    solution = solve(problem, method_of(settings), distance=true_distance(problem))
+    solution = solved(small(scene, method=method, accuracy=accuracy, **changes))
     assert solution.status.ending is Ending.CONVERGED
     last = solution.records[-1]
     assert last.error_force <= accuracy / LOW
@@ -91,9 +81,7 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
 @pytest.mark.parametrize("scene", SMALL)
 def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scene: str) -> None:
     for accuracy in (1e-2, 1e-6):
-        settings = small(scene, accuracy=accuracy)
-        problem = discretise(settings)
-        solution = solve(problem, method_of(settings), distance=true_distance(problem))
+        solution = solved(small(scene, accuracy=accuracy))
         assert solution.status.ending is Ending.CONVERGED
         assert solution.is_certified
         assert solution.records[-1].error_force < ROUNDING
@@ -104,9 +92,7 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
 def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     scene: str, is_by_increments: bool
 ) -> None:
-    settings = CATALOGUE[scene]()
-    problem = discretise(settings)
-    found = solve(problem, method_of(settings), distance=true_distance(problem))
+    found = solved(CATALOGUE[scene]())
     before = found.records[-2]
     advice = found.status.advice
     assert f"iterate {before.iteration}, whose" in advice
@@ -154,29 +140,15 @@ def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_result_file_says_what_is_known_of_its_error(
-    tmp_path: Any, capsys: pytest.CaptureFixture[str], method: str
-) -> None:
-    file = tmp_path / "result.npz"
-    words = [text for name, value in SMALL["bar"].items() for text in ("--set", f"{name}={value}")]
-    words += ["--set", f"method={method}", "--out", str(file), "--json"]
-    assert main(["run", "bar", *words]) == 0
-    told = json.loads(capsys.readouterr().out)
-    with np.load(file, allow_pickle=False) as found:
-        arrays = dict(found)
-    certified = method == "fast"
-    assert bool(arrays["certified"]) == told["certified"] == certified
-    assert math.isnan(arrays["residual"]) != certified
-    assert (told["residual"] is not None) == certified
-    estimated, truth = arrays["estimated_error"], arrays["error_force"]
-    assert len(estimated) == told["iterations"]
-    assert np.isfinite(estimated[-1])
+def test_what_is_estimated_on_the_way_is_no_less_than_the_error(method: str) -> None:
+    found = solved(small("bar", method=method))
+    assert found.is_certified == (method == "fast")
+    estimated, truth = np.transpose(
+        [[one.estimated_error, one.error_force] for one in found.records]
+    )
     known = np.isfinite(estimated)
+    assert known[-1]
     assert np.all(estimated[known] >= LOW * truth[known] - ROUNDING)
-    assert told["estimated_error"] == estimated[-1] <= BarSettings.checked({}).accuracy
-    # The clamped end shares its force with the support; all other points have their own.
-    assert not arrays["determinate"][0].any()
-    assert arrays["determinate"][1:].all()
 
 
 SHORT = {"elements": 16, "instants": 21, "substructures": 2}
@@ -193,8 +165,7 @@ def options(scene: str = "bar", **changes: Any) -> Settings:
 
 @cache
 def ended(settings: Settings) -> Solution:
-    problem = discretise(settings)
-    return solve(problem, method_of(settings), distance=distance_to(reference_of(problem), problem))
+    return solved(settings)
 
 
 @cache

@@ -9,6 +9,7 @@ import pytest
 from contact_problems import local_stage, rubbing_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from runs import solved
 
 from solver import Stack
 from solver.discrete import Given, Side, Support
@@ -59,7 +60,7 @@ STRENGTHS = [
 ]
 
 
-@settings(max_examples=200)
+@settings(max_examples=300)
 @given(
     st.integers(0, 2**31),
     st.booleans(),
@@ -68,14 +69,20 @@ STRENGTHS = [
     st.sampled_from(STRENGTHS),
     st.sampled_from([0.0, 0.3]),
     st.sampled_from([None, 0.6]),
+    st.sampled_from([0.0, 0.5]),
+    st.sampled_from([0.0, 0.4, 10.0]),
 )
 def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
-    seed, opens, two, softness, strength, cohesion, cap
+    seed, opens, two, softness, strength, cohesion, cap, gap, mu
 ):
+    """Signorini's law across, and Coulomb's along with what may be added to it."""
     random, plain, common = rubbing_points(seed, opens=opens, two=two)
     along = replace(plain, strength=strength, bound=plain.bound + cohesion)
-    if opens and cap is not None:
-        along = replace(along, cap=np.full(4, cap))
+    if opens:
+        common["normal"] = replace(common["normal"], gap=gap * random.normal(size=4))
+        along = replace(along, friction=np.full(4, mu))
+        if cap is not None:
+            along = replace(along, cap=np.full(4, cap))
     if softness is not None:
         along = replace(along, softness=softness / common["weights"])
     law = Contact(tangential=along, **common)
@@ -84,10 +91,12 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
     slip = np.diff(slider, axis=1, prepend=0.0)
     bound = np.broadcast_to(along.bound, slip.shape)
     if opens:
-        opened = law.normal.opening(moved, force) > 1e-8
-        bound = bound * ~np.logical_or.accumulate(opened, axis=1)
-        bound = bound + along.friction[:, None] * force[law.normal.component.above]
-        bound = np.minimum(bound, np.inf if along.cap is None else cap)
+        opening, pressing = law.normal.opening(moved, force), force[law.normal.component.above]
+        assert np.all(pressing >= 0.0)
+        assert np.all(opening >= -1e-11)
+        assert np.all(np.minimum(opening, pressing) <= 1e-11)
+        bound = bound * ~np.logical_or.accumulate(opening > 1e-8, axis=1)
+        bound = np.minimum(bound + mu * pressing, np.inf if cap is None else cap)
     if strength is not None:
         bound = bound * strength(np.cumsum(np.abs(slip), axis=1))
     assert np.all(np.abs(friction) <= bound + 1e-9)
@@ -98,7 +107,8 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
         spring = (slider - law.tangent.jump(moved)) / along.softness[:, None]
         np.testing.assert_allclose(friction, spring, atol=1e-9)
     if two:
-        np.testing.assert_allclose(friction, -force[law.tangent.below], atol=1e-9)
+        for above, below in law.components:
+            np.testing.assert_allclose(force[above], -force[below], atol=1e-9)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.5, 2.0])
@@ -152,12 +162,9 @@ def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(ratio,
 def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": 3e-4, "load": load}
     chosen = CATALOGUE["bar"].checked({**values, "instants": 51, "finish": "none"})
-    problem = discretise(chosen)
-    distance = distance_to(reference_of(problem), problem)
-    run = solve(problem, method_of(chosen), distance=distance)
+    run, whole = (solved(chosen.replace(finish=finish)) for finish in ("none", "at-once"))
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.02
-    whole = solve(problem, method_of(chosen.replace(finish="at-once")), distance=distance)
     assert whole.is_certified
     assert whole.records[-1].error_force < 1e-9
     assert whole.records[-1].behaviour < 1e-9
@@ -166,11 +173,11 @@ def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
 def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
     length = 4e-4
     largest = MOST / gamma(0.0, length)
-    force = np.linspace(0.0, 1.2 * largest, 121)
-    problem = pulled_bar(changing(0.0, length), force, 100)
+    force = np.linspace(0.0, 1.2 * largest, 61)
+    problem = pulled_bar(changing(0.0, length), force, 50)
     found = reference_of(problem)
     assert found.jumps_at is not None
-    assert force[found.jumps_at] == pytest.approx(largest, rel=0.015)
+    assert force[found.jumps_at] == pytest.approx(largest, rel=0.03)
     run = solve(problem, Latin())
     assert run.is_certified
     assert f"At {problem.instants[found.jumps_at]:.4g} s" in run.status.advice
@@ -181,13 +188,13 @@ def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
 @pytest.mark.parametrize("displaced", [False, True])
 def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(length, displaced):
     found = []
-    for steps in (10, 320):
+    for steps in (10, 80):
         end = np.linspace(0.0, 1.0, steps + 1) * (6e-4 * STIFFNESS if displaced else 800.0)
         found.append(reference_of(pulled_bar(changing(0.3, length), end, 40, displaced=displaced)))
         assert found[-1].converged.all()
         assert found[-1].jumps_at is None
     few, many = (one.displacement for one in found)
-    assert np.allclose(few, many[:, ::32], rtol=0.0, atol=1e-9 * np.abs(many).max())
+    assert np.allclose(few, many[:, ::8], rtol=0.0, atol=1e-9 * np.abs(many).max())
 
 
 STRIP = {
@@ -282,48 +289,6 @@ def test_what_is_found_obeys_equilibrium_and_the_law_wherever_it_is_found(
         assert found.jumps_at is not None
 
 
-def bonded_rod(peak, softens, length=3.0, elements=1200):
-    """A rod whose bond is elastic up to its peak and then softens to nothing; its end is moved."""
-    stiffness, slope = 2e9, 5e8
-    slip = peak / slope
-    law = FrictionLaw(stiffness=stiffness, strength=Strength((0.0, slip), (1.0, 0.0)))
-    end = np.linspace(0.0, softens * slip + peak / stiffness, 41)
-    return Rods(
-        length=length,
-        stiffness=STIFFNESS,
-        elements=elements,
-        substructures=1,
-        bound=np.full(elements + 1, peak),
-        left=End(displacement=np.zeros(41)),
-        right=End(displacement=end),
-        instants=np.linspace(0.0, 1.0, 41),
-        duration=1.0,
-        friction_law=law,
-    )
-
-
-def test_a_bonded_rod_is_pulled_out_as_in_closed_form():
-    """theory: elastic beyond the zone that softens, whose slope is that of both in series."""
-    peak, stiffness, slope = 1e5, 2e9, 5e8
-    rod = bonded_rod(peak, 0.6)
-    found = reference_of(rod.discretise())
-    assert found.converged.all()
-    falls = slope / (1.0 - slope / stiffness)
-    assert falls > 0.0
-    lag, beta = np.sqrt(stiffness / STIFFNESS), np.sqrt(falls / STIFFNESS)
-    zone = np.linspace(0.0, 0.5 * np.pi / beta, 400)
-    first = peak / lag
-    force = first * np.cos(beta * zone) + peak / beta * np.sin(beta * zone)
-    moved = peak / stiffness + peak / falls * (1.0 - np.cos(beta * zone))
-    moved += first * np.sin(beta * zone) / (STIFFNESS * beta)
-    end = found.displacement[-1]
-    softens = end > peak / stiffness
-    pulled = -found.contact_force.sum(axis=0)
-    assert softens.sum() > 10
-    exact = np.interp(end[softens], moved, force)
-    np.testing.assert_allclose(pulled[softens], exact, rtol=4e-3)
-
-
 WHOLE = np.linspace(0.0, 1.0, 41)
 
 
@@ -376,17 +341,6 @@ def test_a_block_that_slips_carries_cohesion_and_friction_until_it_is_lifted(
     assert stress[-1] == pytest.approx(last if lifted else first, rel=1e-9)
     alone = solve(problem, Latin(finish=None), distance=distance_to(reference, problem))
     assert alone.records[-1].error_force < 0.01
-
-
-def test_no_point_carries_more_than_the_cap():
-    run = solve(pressed_block(FrictionLaw(cap=8e6)), Latin())
-    assert run.is_certified
-    support = run.iterate.problem.rubbing["support"]
-    area = support.by_point(support.weights)[:, None]
-    carried = np.abs(run.iterate.contact("support").tangential_force) / area
-    assert carried.max() == pytest.approx(8e6, rel=1e-9)
-    pressure = run.iterate.contact("support").normal_force / area
-    assert np.all(carried <= 0.3 * pressure + 1.0)
 
 
 def test_contact_that_gives_way_across_is_in_series_with_the_body():

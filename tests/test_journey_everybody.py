@@ -9,6 +9,10 @@ from playwright.sync_api import Page, expect
 WIDTH, HEIGHT = 390, 844
 LIGHT_TAB = "rgb(25, 118, 210)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
+SIZE = """() => {
+  const models = Bokeh.documents[0].roots().flatMap((root) => [...root.references()])
+  return models.find((model) => model.axis_label == "force, kN/m").major_label_text_font_size
+}"""
 
 OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name")
 """What panel-material-ui's own descriptions, bars and number fields break."""
@@ -84,5 +88,7 @@ def test_keys_open_dialogs_and_the_view_for_a_projector(visit: Visit) -> None:
     expect(page.get_by_role("banner")).to_be_hidden()
     expect(status(page)).to_contain_text("certified")
     assert "view=present" in page.url
+    # 2.6 % of the height, whatever the theme sets.
+    assert page.evaluate(SIZE) == "19px"
     page.keyboard.press("p")
     expect(page.locator(".bk-Figure")).to_have_count(count)

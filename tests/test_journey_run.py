@@ -144,6 +144,15 @@ def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) 
     expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
 
 
+def test_a_scene_plays_its_load_cycle_until_somebody_does_something(visit: Visit) -> None:
+    page = visit()
+    is_solved(page)
+    expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
+    figure(page, 1).click()
+    expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
+    expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
+
+
 def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(visit: Visit) -> None:
     page = visit(f"?{ENDLESS}")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import groupby, islice, takewhile
+from itertools import groupby
 
 import numpy as np
 import pytest
-from bars import measured
+from runs import assert_goes_on, distance_of, errors, iterates, solved
 
-from solver.latin import Ending, directions, iterations
-from solver.latin.automatic_k import sliding_share
-from solver.latin.directions import CALM, TRIAL
+from solver.latin import Ending, from_status
+from solver.latin.directions import sliding_share
+from solver.latin.from_status import CALM, TRIAL
 from solver.loads import PRESETS
-from solver.reference.distance import distance_to
-from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
 
@@ -33,7 +30,7 @@ def within(solution, level: float) -> int:
     "changes", [*({"load": load} for load in PRESETS), {"peak": 300.0}, {"peak": 2400.0}], ids=str
 )
 def test_all_together_reach_one_percent_of_friction_force_early(changes):
-    assert within(measured(options(max_iterations=30, **changes)), 0.01) <= 30
+    assert within(solved(options(max_iterations=30, **changes)), 0.01) <= 30
 
 
 @pytest.mark.parametrize(
@@ -43,13 +40,13 @@ def test_all_together_reach_one_percent_of_friction_force_early(changes):
 )
 def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
     early = {"tolerance": 1e-20, "max_iterations": 60}
-    found = [within(measured(options(**early, **{setting: size})), 0.01) for size in sizes]
+    found = [within(solved(options(**early, **{setting: size})), 0.01) for size in sizes]
     assert max(found) <= most * min(found)
 
 
 @pytest.mark.parametrize("change", [{}, {"load": "random"}], ids=str)
 def test_the_limit_is_the_same(change):
-    solution = measured(options(tolerance=1e-24, max_iterations=3000, **change))
+    solution = solved(options(tolerance=1e-24, max_iterations=3000, **change))
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-8
     assert solution.records[-1].error_displacement < 1e-8
@@ -77,34 +74,23 @@ def updating(**changes: object) -> BarSettings:
     return BarSettings.checked({"method": "paper", "k_update": "status", **changes})
 
 
-def sample(settings: BarSettings, number: int):
-    return list(islice(iterations(discretise(settings), method_of(settings)), number))
-
-
-def iterations_to(settings: BarSettings, level: float) -> int:
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    found = islice(iterations(problem, method_of(settings)), settings.max_iterations)
-    return 1 + sum(1 for _ in takewhile(lambda it: distance.of_friction_force(it) > level, found))
-
-
 @pytest.mark.parametrize("load", PRESETS)
 def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
-    chosen = updating(**FAST, load=load, relaxation=1.0, max_iterations=200)
-    assert iterations_to(chosen, 1e-6) <= 150
+    assert errors(updating(**FAST, load=load, relaxation=1.0), 150).min() <= 1e-6
 
 
 @pytest.mark.parametrize("substructures", [1, 10])
 def test_it_makes_the_plain_iteration_shorter(substructures):
-    chosen = updating(substructures=substructures, max_iterations=500)
-    assert iterations_to(chosen, 1e-3) < iterations_to(chosen.replace(k_update="none"), 1e-3)
+    chosen = updating(substructures=substructures)
+    updated, plain = (errors(one, 300) for one in (chosen, chosen.replace(k_update="none")))
+    assert sum(updated > 1e-3) < sum(plain > 1e-3)
 
 
 @pytest.mark.parametrize(
     "change", [{"load": "random"}, {"multiscale": False, "substructures": 3}], ids=str
 )
 def test_the_limit_is_the_same_once_k_is_updated(change):
-    solution = measured(updating(**FAST, tolerance=1e-24, max_iterations=3000, **change))
+    solution = solved(updating(**FAST, tolerance=1e-24, max_iterations=3000, **change))
     assert solution.iterate.course.phase == "updated"
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-8
@@ -112,34 +98,24 @@ def test_the_limit_is_the_same_once_k_is_updated(change):
 
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
-    monkeypatch.setattr(directions, "SLIDING", 1e-9)
+    monkeypatch.setattr(from_status, "SLIDING", 1e-9)
     chosen = updating(**{**FAST, "acceleration": acceleration})
-    problem = discretise(chosen)
-    constant = sample(chosen.replace(k_update="none"), CALM + 20)
-    found = sample(chosen, 600)
+    constant = iterates(chosen.replace(k_update="none"), CALM + 20)
+    found = iterates(chosen, 600)
     phases = [iterate.course.phase for iterate in found]
     assert [phase for phase, _ in groupby(phases)] == ["first", "updated", "returned"]
-    start, back = phases.index("updated"), phases.index("returned")
+    # An iterate says what follows: the next is the first with the new k.
+    start, back = phases.index("updated") + 1, phases.index("returned") + 1
     assert (back - start) % TRIAL == 0
     assert np.array_equal(found[back].k, constant[0].k)
     if back - start == TRIAL:  # from the state before the update, as if it had never been
         assert np.allclose(found[back].local_incoming, constant[start].local_incoming, atol=1e-15)
-    distance = distance_to(reference_of(problem), problem)
-    assert distance.of_friction_force(found[-1]) < 1e-3
+    assert distance_of(found[-1].problem).of_friction_force(found[-1]) < 1e-3
 
 
 @pytest.mark.parametrize("harm", [1.0, 1e-9])
 def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, harm):
-    monkeypatch.setattr(directions, "SLIDING", harm * directions.SLIDING)
+    monkeypatch.setattr(from_status, "SLIDING", harm * from_status.SLIDING)
     chosen = updating(**{**FAST, "acceleration": "none"})
-    problem = discretise(chosen)
-    straight = sample(chosen, CALM + TRIAL + 20)
     for place in (2, CALM, CALM + 1, CALM + TRIAL):
-        rest = len(straight) - place - 1
-        again = list(
-            islice(iterations(problem, method_of(chosen), straight[place].checkpoint), rest)
-        )
-        for one, other in zip(again, straight[place + 1 :], strict=True):
-            assert one.course.phase == other.course.phase
-            assert np.array_equal(one.outgoing, other.outgoing)
-            assert np.array_equal(one.local_incoming, other.local_incoming)
+        assert_goes_on(chosen, CALM + TRIAL + 20, place)

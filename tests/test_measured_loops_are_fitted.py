@@ -16,7 +16,7 @@ from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.fit import fit
 from solver.study.fit_report import messages
-from solver.study.measured_loop import LoopComparison, MeasuredLoop, axes_of, branches, read_loop
+from solver.study.measured_loop import LoopComparison, MeasuredLoop, branches, read_loop
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
@@ -282,7 +282,7 @@ def test_the_commands_compare_and_fit_and_write_what_they_found(tmp_path, capsys
     far = 100.0 * found["distance"]
     told = capsys.readouterr().out
     assert told == f"End displacement: {far:.4g} % from measured.csv, at 41 of 41 rows\n"
-    axes = axes_of(saved.structure().loop(discretise(saved)))
+    axes = saved.structure().loop(discretise(saved)).axes
     fitted = read_loop((out / "loop.csv").read_text(), "loop.csv", axes)
     run = finished_run(saved, errors=False, indicators=False)
     assert beside(run, fitted).of(run.iterate) < 1e-6

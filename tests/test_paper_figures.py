@@ -22,28 +22,10 @@ from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.figures import paper_figures
-from solver.study.figures.figure import Finding, PaperFigure
-from solver.study.figures.modes import figure_5, figure_6, figure_8
+from solver.study.figures.modes import figure_5, figure_6, figure_8, paper_figures
 from solver.study.figures.paper_runs import PaperRuns, paper_runs
 
 NUMBERS = (3, 4, 5, 6, 7, 8)
-SMALL = PaperFigure(
-    3,
-    "A <small> figure",
-    (
-        Panel(
-            "Panel",
-            PanelAxis("Place", "m"),
-            PanelAxis("Force", "N"),
-            [PanelCurve("c", *np.eye(2), 1)],
-        ),
-    ),
-    "It is < the paper's.",
-    (Finding("One is 1.", True), Finding("Two is 1.", False)),
-    "Caption.",
-)
 
 
 @pytest.fixture(scope="module")
@@ -81,11 +63,7 @@ def test_the_page_stands_alone_and_shows_every_figure_with_claim_numbers_and_cap
 
 
 @pytest.mark.parametrize("obstacle", ["folder is a file", "page is a folder", "parent is a file"])
-def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(
-    tmp_path, monkeypatch, capsys, obstacle
-):
-    monkeypatch.setattr(report_commands, "paper_runs", lambda: None)
-    monkeypatch.setattr(report_commands, "paper_figures", lambda runs: [SMALL])
+def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(tmp_path, capsys, obstacle):
     folder = tmp_path / "out"
     if obstacle == "page is a folder":
         (folder / "figures.html").mkdir(parents=True)

@@ -258,12 +258,3 @@ def test_a_section_that_vanishes_or_is_too_uneven_is_refused(table, allowed):
         varying(section_profile=table)
     assert allowed in str(refusal.value)
     varying(section_profile=[[0.0, 1e-4], [1.0, 1e4]])
-
-
-def test_coarser_meshes_of_a_strand_have_its_instants_where_paths_are_thinned():
-    times = np.linspace(0.0, 1.0, 150)
-    table = np.stack([times, 300.0 * (1.0 - np.cos(6.0 * times))], axis=1).tolist()
-    size = {"wires": 200, "elements": 120, "substructures": 2, "instants": 2}
-    strand = CATALOGUE["strand"].checked({**size, "grip": "displacement", "load": table})
-    assert strand.n_instants < len(table)
-    assert {len(coarse.instants) for coarse in strand.coarser()} == {strand.n_instants}

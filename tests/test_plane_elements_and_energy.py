@@ -42,7 +42,7 @@ def test_uniform_strain_has_no_forces_inside_and_its_own_stress(state, order):
     gradient = np.array([[0.3, -0.7], [0.2, 0.5]])
     displacement = places(mesh) @ gradient.T
     force = (mesh.stiffness @ displacement.ravel()).reshape(-1, 2)
-    inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline)
+    inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline.kept // 2)
     np.testing.assert_allclose(force[inner], 0.0, atol=1e-14)
     strain = [gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]]
     expected = np.broadcast_to(mesh.elastic @ strain, (len(mesh.cells), 3))
@@ -86,7 +86,7 @@ def test_biquadratic_elements_hold_a_linear_stress_exactly():
     x, y = places(mesh).T
     displacement = np.stack([x * y, -0.5 * (x**2 + 0.3 * y**2)], axis=1)
     force = (mesh.stiffness @ displacement.ravel()).reshape(-1, 2)
-    inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline)
+    inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline.kept // 2)
     np.testing.assert_allclose(force[inner], 0.0, atol=1e-14)
     height = y[mesh.cells].mean(axis=1)
     np.testing.assert_allclose(mesh.stress(displacement)[:, 0], height, atol=1e-14)
@@ -101,7 +101,7 @@ def test_what_is_condensed_comes_back(sides, order):
     random = np.random.default_rng(7)
     force = random.normal(size=(2 * mesh.n_nodes, 3))
     nodes = np.unique(np.concatenate([mesh.edge(side) for side in sides]))
-    kept = Condensed(mesh).keep(dofs_of(nodes))
+    kept = Condensed(mesh, dofs_of(nodes))
     values = random.normal(size=(len(kept.dofs), 3))
     found = kept.recover(values, force).reshape(-1, 3)
     for column in range(3):

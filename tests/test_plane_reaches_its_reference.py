@@ -2,49 +2,28 @@
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import islice
 
 import numpy as np
 import pytest
 from contact_problems import block
 from plane import whole_force_error
+from runs import errors, sample, settings_of
 
 from solver.discrete.stack import Given, Side
 from solver.latin import iterations
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces, distance_to
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
 SMALL = {"elements": 32, "elements_up": 16, "instants": 41}
 
 
-def problem_of(scene, **values):
-    settings = CATALOGUE[scene].checked(values)
-    return settings, discretise(settings)
-
-
-@cache
-def known(scene):
-    """Distance to the reference of a small scene; it is the same however it is cut."""
+def errors_of(scene, most, **values):
     size = SMALL if scene == "block" else {"instants": 41}
-    _, problem = problem_of(scene, **size)
-    reference = reference_of(problem)
-    assert reference.converged.all()
-    assert not reference.ambiguous.any()
-    return distance_to(reference, problem)
-
-
-def errors(scene, most, **values):
-    """Error of the contact force after every iteration."""
-    size = SMALL if scene == "block" else {"instants": 41}
-    settings, problem = problem_of(scene, **{**size, **values})
-    distance = known(scene)
-    found = islice(iterations(problem, method_of(settings)), most)
-    return np.array([distance.of_friction_force(one) for one in found])
+    return errors(settings_of(scene, **{**size, **values}), most)
 
 
 def within(found, level):
@@ -56,7 +35,7 @@ def within(found, level):
 @pytest.mark.parametrize("acceleration", ["anderson", "none"])
 @pytest.mark.parametrize("gap", ["parabola", "flat"])
 def test_twenty_thousand_unknowns_come_within_one_percent_in_fifteen_iterations(gap, acceleration):
-    settings, problem = problem_of(
+    settings = settings_of(
         "block",
         elements=96,
         elements_up=96,
@@ -66,19 +45,19 @@ def test_twenty_thousand_unknowns_come_within_one_percent_in_fifteen_iterations(
         gap=gap,
         acceleration=acceleration,
     )
-    *_, last = islice(iterations(problem, method_of(settings)), 15)
-    assert whole_force_error(reference_of(problem), last) <= 0.01
+    last = sample(settings, 15)
+    assert whole_force_error(reference_of(last.problem), last) <= 0.01
 
 
 @pytest.mark.parametrize(("scene", "most"), [("block", 45), ("layers", 160)])
 def test_the_iteration_ends_at_the_reference(scene, most):
-    assert errors(scene, most)[-1] < 1e-6
+    assert errors_of(scene, most)[-1] < 1e-6
 
 
 def test_iterations_to_one_percent_hardly_grow_from_four_to_sixty_four_substructures():
     cuts = [(2, 2), (4, 4), (8, 8)]
     found = [
-        within(errors("block", 30, substructures=along, substructures_up=up), 0.01)
+        within(errors_of("block", 30, substructures=along, substructures_up=up), 0.01)
         for along, up in cuts
     ]
     assert max(found) <= 1.5 * min(found)

@@ -229,15 +229,6 @@ def test_decomposition_changes_nothing():
     np.testing.assert_allclose(whole.friction_force, parts.friction_force, rtol=0.0, atol=1e-9)
 
 
-def test_without_friction_the_bar_is_elastic():
-    scene = BarSettings.checked({"method": "paper", "friction": 0.0}).structure()
-    found = reference_of(scene.discretise())
-    elastic = scene.nodes[:, None] * scene.load / scene.stiffness
-    np.testing.assert_allclose(found.displacement, elastic, rtol=0.0, atol=1e-15)
-    assert not found.friction_force.any()
-    assert np.all(found.status[1:] == np.sign(np.diff(scene.load, prepend=0.0)))
-
-
 def test_a_stop_interrupts_between_instants():
     calls = iter([False, False, True])
     with pytest.raises(Interrupted):

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bars import SMALL, boundary_of, options, sample
+from bars import SMALL, boundary_of, options
+from runs import assert_goes_on, sample, settings_of
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from solver.latin import (
@@ -35,7 +36,7 @@ from solver.latin.iteration import Iteration
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
@@ -85,14 +86,7 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
 @pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 500.0}], ids=str)
 @pytest.mark.parametrize("elements", [30, 32])
 def test_resuming_from_a_checkpoint_continues_bit_by_bit(change, elements):
-    chosen = options(**{**SMALL, "elements": elements}, **change)
-    problem = discretise(chosen)
-    straight = list(islice(iterations(problem, method_of(chosen)), 12))
-    resumed = list(islice(iterations(problem, method_of(chosen), straight[6].checkpoint), 5))
-    for one, other in zip(straight[7:], resumed, strict=True):
-        assert one.number == other.number
-        for name in ("outgoing", "incoming", "local_displacement", "local_incoming"):
-            assert np.array_equal(getattr(one, name), getattr(other, name))
+    assert_goes_on(options(**{**SMALL, "elements": elements}, **change), 12, 6)
 
 
 def test_the_clock_stands_still_while_the_consumer_looks(monkeypatch):
@@ -160,13 +154,9 @@ LARGE = {
 
 @pytest.mark.parametrize("scene", LARGE)
 def test_iterates_are_the_same_to_the_bit_whatever_the_threads(scene):
-    settings = CATALOGUE[scene].checked(LARGE[scene])
-    problem = discretise(settings)
-    assert len(Blocks(problem.n_rows, problem.n_instants).slices) > 1
-    one, several = (
-        next(islice(iterations(problem, method_of(settings.replace(threads=threads))), 8, None))
-        for threads in (1, 3)
-    )
+    settings = settings_of(scene, **LARGE[scene])
+    one, several = (sample(settings.replace(threads=threads), 5) for threads in (1, 3))
+    assert len(Blocks(one.problem.n_rows, one.problem.n_instants).slices) > 1
     assert np.array_equal(one.outgoing, several.outgoing)
     assert np.array_equal(one.local_displacement, several.local_displacement)
 

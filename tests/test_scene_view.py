@@ -9,18 +9,18 @@ import pytest
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.views.catalogue import CARDS
 from app.views.picture import bands
 from app.views.rope import StressRanges, Unrolled, WireSection
-from app.views.scene import HEIGHT, WIDTH, Scene, Stress
-from app.views.thrust import WIDEST, Thrust
+from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
 from app.views.timeline import Timeline, paths_of
-from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 SCENES = tuple(CATALOGUE)
+NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
 SMALL = {"elements": 24, "instants": 21}
 PHASES = np.linspace(0.0, 1.0, 7)
 
@@ -44,7 +44,7 @@ def small(scene: str) -> Settings:
 
 @pytest.fixture(scope="module", params=SCENES)
 def frame(request: pytest.FixtureRequest) -> Frame:
-    return frame_of(small(request.param), extras=frozenset(EXTRAS | OF_ROPE))
+    return frame_of(small(request.param), extras=NEEDS)
 
 
 def shown(frame: Frame, phase: float = 0.75, kind: type[Scene] = Scene) -> Scene:
@@ -157,7 +157,7 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
             _ = view.figure
             for phase in (0.0, 0.6):
                 view.update(frame, Selection(phase), None)
-    assert all(np.isfinite(values).all() for _, values, _ in paths_of(frame.run))
+    assert all(np.isfinite(values).all() for _, values in paths_of(frame.run))
     _, _, values = frame.extras["stress"]
     assert values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
 

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from runs import assert_goes_on, distance_of, errors, sample, settings_of, solved
+from small_scenes import SMALL
 
-from solver.latin import Ending, Solution, iterations, solve
+from solver.latin import Ending, Solution
 from solver.reduction.basis import SeparatedBasis
-from solver.reference.distance import distance_to
-from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
-from solver.settings import Settings
 from solver.study.quantities.finished import finished_run
 
 GENEROUS = {"pgd_modes": 100, "pgd_pairs": 100, "pgd_tolerance": 1e-12}
@@ -27,20 +24,10 @@ def options(**changes: object) -> BarSettings:
     return BarSettings.checked({"method": "paper", "linear_stage": "pgd", **changes})
 
 
-def run(settings: BarSettings, **rest: object):
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    return solve(problem, method_of(settings), distance=distance, **{"watch": False, **rest})
-
-
-def sample(settings: BarSettings, number: int):
-    return next(islice(iterations(discretise(settings), method_of(settings)), number - 1, None))
-
-
 def test_a_generous_basis_follows_the_full_stage():
     chosen = options(**GENEROUS)
-    reduced = run(chosen)
-    full = run(chosen.replace(linear_stage="full"))
+    reduced = solved(chosen)
+    full = solved(chosen.replace(linear_stage="full"))
     assert reduced.status.ending is full.status.ending is Ending.CONVERGED
     assert len(reduced.records) == len(full.records)
     for one, other in zip(reduced.records, full.records, strict=True):
@@ -50,13 +37,12 @@ def test_a_generous_basis_follows_the_full_stage():
 
 @pytest.mark.parametrize(("substructures", "most"), [(10, 8), (5, 11)])
 def test_the_default_basis_reaches_one_percent_of_displacement(substructures, most):
-    solution = run(options(substructures=substructures, max_iterations=300))
+    solution = solved(options(substructures=substructures, max_iterations=300))
     assert min(entry.error_displacement for entry in solution.records) < 0.01
     assert solution.records[-1].error_displacement < 0.01
     # The friction force of a moving front does not separate well: 0.7 % at 10, 8.5 % at 5.
     assert solution.records[-1].error_force < (0.01 if substructures == 10 else 0.12)
-    assert solution.iterate.reduction is not None
-    assert max(entry.modes for entry in solution.iterate.reduction.records) <= most
+    assert 0 < max(basis.n_modes for basis in solution.iterate.bases) <= most
 
 
 @pytest.mark.parametrize(
@@ -64,15 +50,9 @@ def test_the_default_basis_reaches_one_percent_of_displacement(substructures, mo
     [("bar", {"substructures": 5}), ("layers", {"elements": 16, "instants": 31})],
 )
 def test_the_force_follows_the_number_of_modes(scene, size):
-    settings = CATALOGUE[scene].checked({"linear_stage": "pgd", **size, "finish": "none"})
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    errors = []
-    for modes in (3, 6, 12):
-        latin = method_of(settings.replace(pgd_modes=modes))
-        iterate = next(islice(iterations(problem, latin), 39, None))
-        errors.append(distance.of_friction_force(iterate))
-    assert errors[0] > 1.5 * errors[1] > 3.0 * errors[2]
+    settings = settings_of(scene, linear_stage="pgd", **size)
+    few, some, many = (errors(settings.replace(pgd_modes=most), 40)[-1] for most in (3, 6, 12))
+    assert few > 1.5 * some > 3.0 * many
 
 
 def test_every_mode_is_admissible():
@@ -134,64 +114,42 @@ def test_the_modes_of_a_field_are_orthonormal_and_hold_it(drawn):
 
 @pytest.mark.parametrize("change", [{}, {"pgd_sharing": 0.5}], ids=str)
 def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
-    chosen = options(substructures=5, **change)
-    straight = sample(chosen, 40)
-    half = sample(chosen, 25).checkpoint
-    again = next(islice(iterations(discretise(chosen), method_of(chosen), half), 14, None))
-    assert np.array_equal(again.outgoing, straight.outgoing)
-    assert again.reduction is not None
-    assert straight.reduction is not None
-    assert again.reduction.records == straight.reduction.records
+    assert_goes_on(options(substructures=5, **change), 40, 24)
 
 
 @pytest.mark.parametrize("scene", ["bar", "strand"])
 def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
-    settings = CATALOGUE[scene].checked({"linear_stage": "pgd", "finish": "none"})
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    errors, stored = [], []
-    for chosen in (settings, settings.replace(pgd_sharing=0.0)):
-        iterate = next(islice(iterations(problem, method_of(chosen)), 39, None))
-        errors.append(distance.of_friction_force(iterate))
-        stored.append(iterate.reduction.stored)
-    assert errors[0] == pytest.approx(errors[1], rel=0.01)
-    assert stored[0] < 0.75 * stored[1]
+    shared, own = (
+        sample(settings_of(scene, linear_stage="pgd", **changes), 40)
+        for changes in ({}, {"pgd_sharing": 0.0})
+    )
+    distance = distance_of(shared.problem)
+    assert distance.of_friction_force(shared) == pytest.approx(
+        distance.of_friction_force(own), rel=0.01
+    )
+    assert shared.reduction.stored < 0.75 * own.reduction.stored
 
 
 def test_an_instant_right_after_another_does_not_blow_up_the_modes():
     path = [[0.0, -1.0], [2.3e-308, 0.0], [1.0, -1.0]]
-    settings = CATALOGUE["rope"].checked(
-        {
-            **{"elements": 2, "layers": 1, "instants": 1, "substructures": 1, "friction": 1.0},
-            **{"length": 1.0, "fall_off": 1.0, "method": "paper", "linear_stage": "pgd"},
-            **{"load": path, "multiscale": False},
-        }
-    )
-    iterate = next(islice(iterations(discretise(settings), method_of(settings)), 9, None))
-    assert np.abs(iterate.boundary_force).max() < 1.0
+    size = {"elements": 2, "layers": 1, "instants": 1, "substructures": 1, "length": 1.0}
+    method = {"method": "paper", "linear_stage": "pgd", "multiscale": False}
+    settings = settings_of("rope", **size, **method, load=path, friction=1.0, fall_off=1.0)
+    assert np.abs(sample(settings, 10).boundary_force).max() < 1.0
 
 
-SMALL_ONES = {"elements": 12, "instants": 21}
-
-
-def of_scene(scene: str = "bar", **changes: Any) -> Settings:
-    given = {"linear_stage": "pgd", **SMALL_ONES, **changes}
-    return CATALOGUE[scene].checked(given)
-
-
-def ended(settings: Settings) -> Solution:
-    problem = discretise(settings)
-    return solve(problem, method_of(settings), distance=distance_to(reference_of(problem), problem))
+def small(scene: str = "bar", **changes: Any) -> Any:
+    return settings_of(scene, **SMALL[scene], **{"linear_stage": "pgd", **changes})
 
 
 @pytest.fixture(scope="module")
 def bar() -> Solution:
-    return ended(of_scene(pgd_modes=2))
+    return solved(small(pgd_modes=2))
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_two_modes_find_the_solution_of_every_scene(scene: str) -> None:
-    solution = ended(of_scene(scene, pgd_modes=2))
+    solution = solved(small(scene, pgd_modes=2))
     assert solution.is_certified
     before, last = solution.records[-2:]
     assert last.error_force < 1e-9 < before.error_force
@@ -202,15 +160,15 @@ def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
     left = bar.records[-2].error_force
     assert "status step" in bar.status.advice
     assert f"contact force was still {float(f'{100.0 * left:.2g}'):g} % away" in bar.status.advice
-    full = ended(of_scene(linear_stage="full"))
+    full = solved(small(linear_stage="full"))
     assert full.is_certified
     assert "bases" not in full.status.advice
 
 
 @pytest.mark.parametrize(("stage", "is_answered"), [("full", True), ("pgd", False)])
 def test_a_run_on_bases_is_not_answered_by_its_neighbour(stage: str, is_answered: bool) -> None:
-    first = finished_run(of_scene(linear_stage=stage), errors=False)
-    again = finished_run(of_scene(linear_stage=stage), errors=False, before=first.states)
+    first = finished_run(small(linear_stage=stage), errors=False)
+    again = finished_run(small(linear_stage=stage), errors=False, before=first.states)
     assert again.was_warm is is_answered
     assert again.iterate.number == (1 if is_answered else first.iterate.number)
     assert np.allclose(again.force, first.force)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from runs import distance_of, settings_of
 
 from solver.cli import main
 from solver.discrete.problem import Problem
@@ -19,45 +20,30 @@ from solver.latin import (
     solve,
 )
 from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
-from solver.reference.distance import distance_to
-from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 
 CYCLE = 12
 TIGHT = Latin(finish=None, stop=Stop(tolerance=1e-20, iterations=800))
 ROUGH = replace(TIGHT, stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=400))
 
 
+LOADED: dict[str, dict[str, Any]] = {
+    "block": {
+        **{"elements": 16, "elements_up": 8, "substructures": 2},
+        **{"top_normal_load": [[0.0, 0.0], [0.25, -4e-5]], "top_tangential_displacement": 2e-5},
+        "top_tangential_load": "sine",
+    },
+    "bar": {"load": "sine", "elements": 20, "substructures": 4},
+    "strand": {"load": "triangle", "elements": 20, "substructures": 2},
+    "incline": {},
+}
+
+
 def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
     """Make a scene whose load repeats itself, 12 instants a cycle."""
-    turns = [
-        (cycle + part, sign)
-        for cycle in range(cycles)
-        for part, sign in ((0.25, 1.0), (0.75, -1.0), (1.0, 0.0))
-    ]
-    path = {
-        "block": lambda: {
-            "top_normal_load": [[0.0, 0.0], [0.25, -4e-5]],
-            "top_tangential_load": [[0.0, 0.0], *([t, 2e-5 * sign] for t, sign in turns)],
-            "elements": 16,
-            "elements_up": 8,
-            "substructures": 2,
-        },
-        "bar": lambda: {
-            "load": [[0.0, 0.0], *([t, 900.0 * sign] for t, sign in turns)],
-            "elements": 20,
-            "substructures": 4,
-        },
-        "strand": lambda: {
-            "load": [[0.0, 0.0], *([t, 600.0 * max(sign, 0.0)] for t, sign in turns)],
-            "elements": 20,
-            "substructures": 2,
-        },
-        "incline": dict,
-    }[scene]()
-    own = {**path, "instants": CYCLE * cycles + 1, "duration": float(cycles), **changes}
-    return discretise(CATALOGUE[scene].checked(own))
+    own = {"cycles": cycles, "instants": CYCLE * cycles + 1, "duration": float(cycles)}
+    return discretise(settings_of(scene, **{**LOADED[scene], **own, **changes}))
 
 
 @pytest.mark.parametrize(
@@ -74,7 +60,7 @@ def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
 def test_they_have_the_solution_of_the_whole(scene: str, changes: dict[str, Any]) -> None:
     problem = cyclic(scene, 3, **changes)
     found = solve_in_slabs(problem, TIGHT, CYCLE + 2)  # neither a cycle, nor a part of the whole
-    distance = distance_to(reference_of(problem), problem)
+    distance = distance_of(problem)
     assert distance.of_friction_force(found.iterate) < 1e-6
     assert distance.of_displacement(found.iterate) < 1e-6
     assert found.records[-1].iteration == found.iterate.number
@@ -92,13 +78,13 @@ def test_what_repeats_itself_takes_one_iteration() -> None:
     assert max(counts) < 40
     whole = solve_in_slabs(problem, ROUGH, CYCLE)
     assert len(whole.records) <= sum(counts)  # its first slab is certified
-    distance = distance_to(reference_of(problem), problem)
+    distance = distance_of(problem)
     assert distance.of_friction_force(whole.iterate) < 0.01
 
 
 def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     problem = cyclic("block", 3)
-    distance = distance_to(reference_of(problem), problem)
+    distance = distance_of(problem)
     found = solve_in_slabs(problem, ROUGH, CYCLE, distance=distance, spent=100.0)
     *_, last = found.records
     assert last.error_force == distance.of_friction_force(found.iterate) < 1e-3

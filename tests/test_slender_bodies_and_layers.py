@@ -8,18 +8,18 @@ from itertools import islice
 import numpy as np
 import pytest
 from plane import lengths, reaction, solved, whole_force_error
+from runs import assert_goes_on, errors, settings_of
 
 from solver.latin import iterations, solve
 from solver.latin.directions import LOOK
 from solver.reference.closed_forms.elastic_bodies import cantilever
-from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 from solver.scenes.method import method_of
 
 
 def problem_of(scene, **values):
-    settings = CATALOGUE[scene].checked({"instants": 13, **values})
+    settings = settings_of(scene, **{"instants": 13, **values})
     return settings, discretise(settings)
 
 
@@ -75,37 +75,21 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
 THIN = {"length": 2.0, "thickness": 0.01, "elements": 24, "instants": 13, "finish": "none"}
 
 
-def stuck(**values):
-    settings = CATALOGUE["layers"].checked(values)
-    return discretise(settings), method_of(settings)
-
-
-def iterates(number, start=None, **values):
-    problem, latin = stuck(**values)
-    return list(islice(iterations(problem, latin, start), number))
-
-
 @pytest.mark.parametrize("ratio", [200, 1000])
 @pytest.mark.parametrize("layers", [4, 10])
 def test_thin_layers_that_stick_come_within_one_percent_in_thirty_iterations(ratio, layers):
-    problem, latin = stuck(**{**THIN, "length": 0.01 * ratio, "layers": layers})
-    distance = distance_to(reference_of(problem), problem)
-    errors = [distance.of_friction_force(one) for one in islice(iterations(problem, latin), 33)]
-    assert max(errors[-4:]) <= 0.01
+    thin = settings_of("layers", **{**THIN, "length": 0.01 * ratio, "layers": layers})
+    assert max(errors(thin, 33)[-4:]) <= 0.01
 
 
 @pytest.mark.parametrize("place", [LOOK - 2, LOOK - 1, LOOK, LOOK + 4])
 def test_such_a_run_goes_on_from_any_checkpoint_to_the_bit(place):
-    plain = {**THIN, "acceleration": "none"}
-    straight = iterates(LOOK + 8, **plain)
-    again = iterates(len(straight) - place - 1, straight[place].checkpoint, **plain)
-    for one, other in zip(again, straight[place + 1 :], strict=True):
-        assert np.array_equal(one.k, other.k)
-        assert np.array_equal(one.outgoing, other.outgoing)
+    assert_goes_on(settings_of("layers", **THIN, acceleration="none"), LOOK + 8, place)
 
 
 def test_what_nowhere_slips_is_solved_by_a_status_step_at_once():
-    solution = solve(*stuck(**{**THIN, "instants": 81, "finish": "at-once"}))
+    settings = settings_of("layers", **{**THIN, "instants": 81, "finish": "at-once"})
+    solution = solve(discretise(settings), method_of(settings))
     assert solution.is_certified
     assert solution.iterate.number <= LOOK
 

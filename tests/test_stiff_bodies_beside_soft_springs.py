@@ -3,16 +3,15 @@
 Balance and closed forms: solver/README.md, 9.
 """
 
-from itertools import islice
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from runs import errors, solved
 
-from solver.latin import Ending, iterations, solve
+from solver.latin import Ending, solve
 from solver.laws import OPEN
-from solver.reference.distance import distance_to, kkt_residual
+from solver.reference.distance import kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings
@@ -95,9 +94,7 @@ HARD = {
 @pytest.mark.parametrize("case", HARD)
 def test_a_run_ends_certified_and_its_forces_balance(case):
     values = InclineSettings.checked({**SMALL, **HARD[case]})
-    problem = discretise(values)
-    distance = distance_to(reference_of(problem), problem)
-    run = solve(problem, method_of(values), distance=distance)
+    run = solved(values)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-9
     assert run.records[-1].error_displacement < 1e-9
@@ -130,20 +127,12 @@ def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiff
     assert kkt_residual(found, problem) < 1e-10
 
 
-def course_of(values, n):
-    """Error of the contact force, iteration by iteration."""
-    problem = discretise(values)
-    distance = distance_to(reference_of(problem), problem)
-    found = islice(iterations(problem, method_of(values)), n)
-    return np.array([distance.of_friction_force(one) for one in found])
-
-
 @pytest.mark.parametrize("method", ["paper", "fast"])
 def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
     """What the body's own deformation takes is all: a shift of the whole body takes nothing."""
     own = {**SMALL, "young": STEEL, "method": method, "finish": "none"}
     soft, steel, hard = (
-        course_of(InclineSettings.checked({**own, "spring": spring}), 100)
+        errors(InclineSettings.checked({**own, "spring": spring}), 100)
         for spring in (2e6, 2e9, 1e18)
     )
     for course in (soft, steel, hard):

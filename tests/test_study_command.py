@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -24,11 +25,10 @@ from solver.study.speed.measured_times import (
     INCREMENTAL,
     LEVELS,
     ErrorCurve,
-    Study,
     forms_of,
     times_at_sizes,
 )
-from solver.study.speed.study_report import notes, ratio_table, table
+from solver.study.speed.study_report import sizes_table, table
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1"]
@@ -41,7 +41,7 @@ def rows(file):
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
-    """Give the folder that the command fills, and the study behind it."""
+    """Give the folder that the command fills, and the curves behind it."""
     kept = []
     folder = tmp_path_factory.mktemp("study") / "made"
     with pytest.MonkeyPatch.context() as patch:
@@ -62,12 +62,8 @@ def course(method, seconds, errors):
     return ErrorCurve(method, steps, np.array(seconds), np.array(errors), np.array(errors))
 
 
-def study_of(*courses):
-    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses)
-
-
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
-    folder, study = measured
+    folder, curves = measured
     assert {file.name for file in folder.iterdir()} == {
         "curves.csv",
         "levels.csv",
@@ -77,29 +73,29 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)
-    cells = {f">{cell}</td>" for row in table(study)[1:] for cell in row}
-    for words in (*forms_of(study.settings), INCREMENTAL, "BLAS threads: 1", *cells):
+    cells = {f">{cell}</td>" for row in table(curves)[1:] for cell in row}
+    for words in (*forms_of(BarSettings()), INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
 
 
 def test_the_table_marks_the_first_of_the_levels(measured):
-    folder, study = measured
+    folder, curves = measured
     for column, level in enumerate(LEVELS.values(), start=1):
         times = {
             row["method"]: float(row["seconds"])
             for row in rows(folder / "levels.csv")
             if float(row["level"]) == level and row["seconds"]
         }
-        first = [row[0] for row in table(study) if row[column].endswith("*")]
+        first = [row[0] for row in table(curves) if row[column].endswith("*")]
         assert first == [min(times, key=times.get)]
 
 
 def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
-    study = study_of(
+    curves = [
         course("LATIN multiscale", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
         course(INCREMENTAL, [0.02], [0.0]),
-    )
-    _, latin, incremental, ratios = table(study)
+    ]
+    _, latin, incremental, ratios = table(curves)
     assert latin[1:3] == ["30 ms (2)", "200 ms (3)"]
     assert incremental[1:3] == ["20 ms *", "20 ms *"]
     assert ratios[:3] == [f"best LATIN / {INCREMENTAL}", "1.5", "10"]
@@ -154,12 +150,13 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("scene", ["bar", "layers"])
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     settings = CATALOGUE[scene].checked(SMALL_ONES[scene])
-    (head, *rows), name = ratio_table(settings, times_at_sizes(settings)), CATALOGUE[scene].GROWS[0]
+    measured, name = times_at_sizes(settings), CATALOGUE[scene].GROWS[0]
     sizes = [round(factor * getattr(settings, name)) for factor in FACTORS]
-    assert head[1:] == [f"{name} {size}" for size in sizes]
     instants = [round(factor * (settings.instants - 1)) + 1 for factor in FACTORS]
-    assert [row[0] for row in rows] == [f"{number} instants" for number in instants]
-    assert all(float(ratio) > 0.0 for row in rows for ratio in row[1:])
+    at = {(times.size, times.instants): times for times in measured}
+    assert at.keys() == set(product(sizes, instants))
+    assert all(times.ratio > 0.0 and not times.message for times in measured)
+    assert len(sizes_table(settings, measured)) == 1 + len(measured)
 
 
 def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
@@ -172,4 +169,4 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     assert list(said) == [1, 2, 4]
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
-    assert any("Wires 4" in line and "left out" in line for line in notes(settings, found))
+    assert any(row[0] == "4" and "left out" in row[-1] for row in sizes_table(settings, found))

@@ -25,11 +25,10 @@ from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
 from solver.study.chart import Map
 from solver.study.page import write_page
-from solver.study.sweep import Plan, Row, plan_of, sweep
 from solver.study.sweep.adaptive import Chooser
 from solver.study.sweep.chart import chart_of
-from solver.study.sweep.plan import axis_of
-from solver.study.sweep.run import snake
+from solver.study.sweep.plan import Plan, Row, axis_of, plan_of
+from solver.study.sweep.run import snake, sweep
 
 SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
 

@@ -22,8 +22,7 @@ from sweeps import rows_in_table, rows_of, tiny
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.executors import opened
-from solver.study.sweep import sweep
-from solver.study.sweep.run import versions
+from solver.study.sweep.run import sweep, versions
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -24,11 +24,12 @@ from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.scene import Scene
 from app.views.timeline import Timeline
-from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.checked import dump
 from solver.files import settings_from_toml
+
+NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
 
 SMALL: dict[str, dict[str, Any]] = {
     "bar": {"elements": 20, "instants": 21, "substructures": 4},
@@ -44,7 +45,7 @@ def ended(scene: str) -> tuple[Runner, Frame]:
     runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
     while runner.rest() is not None:
         runner.advance()
-    return runner, runner.frame(Needs(extras=frozenset(EXTRAS | OF_ROPE)))
+    return runner, runner.frame(Needs(extras=NEEDS))
 
 
 def page(scene: str) -> TakeAway:

@@ -21,12 +21,12 @@ from app.views.loops import HysteresisLoop
 from app.views.rope import AxialForces
 from app.views.status_map import StatusMap
 from app.views.view import View
-from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.settings import Settings
 
 VIEWS = [kind for card in CARDS for kind in card]
+NEEDS = frozenset(need for kind in VIEWS for need in kind.needs)
 SMALL = {
     "bar": {"elements": 60},
     "block": {},
@@ -59,7 +59,7 @@ def settings_of(case: str) -> Settings:
 @cache
 def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
     """First iterate, before any reference; one on the way; and the answer."""
-    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=frozenset(EXTRAS | OF_ROPE))
+    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=NEEDS)
     runner = Runner(start, ReferenceCache(), lambda: False)
     runner.advance()
     frames = [runner.frame(needs)]

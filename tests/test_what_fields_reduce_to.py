@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import islice, pairwise
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from runs import sample, settings_of
 
 from solver.arrays import Array
-from solver.latin import iterations
 from solver.reduction.clips import Clips, clips_of, monotone
 from solver.reduction.sizes import in_pieces, of_bases
 from solver.reduction.svd import (
@@ -21,7 +21,6 @@ from solver.reduction.svd import (
 from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.scenes.method import method_of
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
 from solver.study.quantities.reduction_measures import clips_in
@@ -39,12 +38,6 @@ def weighted_fields(draw):
 
 def squared_norm(field, space_weights, time_weights):
     return space_weights @ field**2 @ time_weights
-
-
-def iterate_of(number=15, **changes):
-    chosen = BarSettings.checked({"method": "paper", "substructures": 5, **changes})
-    problem = discretise(chosen)
-    return next(islice(iterations(problem, method_of(chosen)), number - 1, None))
 
 
 def first_modes(found, rank):
@@ -202,7 +195,8 @@ def test_branches_go_one_way_and_are_as_few_as_can_be(load):
 
 
 def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers():
-    iterate = iterate_of(8, linear_stage="pgd", substructures=1, relaxation=1.0)
+    reduced = {"linear_stage": "pgd", "substructures": 1, "relaxation": 1.0}
+    iterate = sample(settings_of("bar", method="paper", **reduced), 8)
     own, best = of_bases(iterate, iterate.reduction), in_pieces(iterate)
     assert own.errors[-1] < 1e-9
     assert np.all(own.errors >= best.errors[: len(own.errors)] - EXACT)

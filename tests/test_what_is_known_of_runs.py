@@ -21,7 +21,8 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study.proof import report
-from solver.study.proof.known_case import Answer, KnownCase, Number
+from solver.study.proof.known_numbers import Answer, Number
+from solver.study.proof.report import KnownCase
 
 CASES = report.cases()
 
@@ -121,8 +122,10 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
             continue
         if curve.of == "loop":
             loop = settings.structure().loop(problem)
-            force = loop.force if isinstance(loop.force, np.ndarray) else loop.force(found)
-            pairs = [(curve.up, force), (curve.across, loop.displacement(found.displacement))]
+            pairs = [
+                (curve.up, loop.force(found)),
+                (curve.across, loop.displacement(found.displacement)),
+            ]
         else:
             (name, law), *_ = problem.rubbing.items()
             contact = found.contact(name)

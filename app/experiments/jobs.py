@@ -21,7 +21,8 @@ import panel as pn
 from app.worker.commands import LOG, command
 from solver.definitions import SettingError
 from solver.executors import opened, processors
-from solver.study.sweep import Plan, Row, patience, sweep
+from solver.study.sweep.plan import Plan, Row
+from solver.study.sweep.run import patience, sweep
 
 log = logging.getLogger(__name__)
 LOOK = 500

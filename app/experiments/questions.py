@@ -23,7 +23,7 @@ from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantity import Quantity
-from solver.study.sweep import Plan, plan_of
+from solver.study.sweep.plan import Plan, plan_of
 
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
 LOG = ":log"
@@ -161,12 +161,7 @@ def iterations_over_k(settings: Settings, name: str = "acceleration") -> Questio
 
 def _energy(settings: Settings) -> Question | None:
     """Over the load's amplitude: small ones take its third power along rods (Masing)."""
-    load = _load(settings)
-    if load is None:
-        return None
-    end = settings.definitions()[load].softbounds[getattr(settings, load) >= 0.0]
-    low, high = sorted((TENTH * end, end))
-    return Question((f"{load}={low:g}:{high:g}:{VALUES}{LOG * (end > 0.0)}",), "dissipation")
+    return _over(settings, "dissipation", VALUES, _load(settings))
 
 
 def _bricks(settings: Settings) -> Question | None:
@@ -179,9 +174,8 @@ def _bricks(settings: Settings) -> Question | None:
 
 
 def _fretting(settings: Settings) -> Question | None:
-    if not has_cycles(settings):
-        return None
-    return _map(settings, _load(settings), settings.behind().get("top y"), "sliding_share")
+    across, up = _load(settings), settings.behind().get("top y")
+    return _over(settings, "sliding_share", COARSE, across, up) if has_cycles(settings) else None
 
 
 def _shakedown(settings: Settings) -> Question | None:
@@ -189,8 +183,7 @@ def _shakedown(settings: Settings) -> Question | None:
     is_rigid_rod = settings.kind != "plane" and np.isinf(settings.law.stiffness)
     if not has_a_limit(settings) or is_rigid_rod:
         return None
-    end = settings.definitions()["friction"].softbounds[1]
-    return Question((f"friction={TENTH * end:g}:{end:g}:{COARSE}",), "shakedown_factor")
+    return _over(settings, "shakedown_factor", COARSE, "friction")
 
 
 def _load(settings: Settings) -> str | None:
@@ -200,15 +193,19 @@ def _load(settings: Settings) -> str | None:
     return next((name for name in names if isinstance(known[name], param.Number)), None)
 
 
-def _map(settings: Settings, across: str | None, up: str | None, of: str) -> Question | None:
-    """Ask over two settings, from a tenth of what their sliders reach on."""
+def _over(settings: Settings, of: str, count: int, *names: str | None) -> Question | None:
+    """Ask over settings, from a tenth of what their sliders reach on; None without one of them.
+
+    The values of a single one that is positive have even ratios.
+    """
     known, vary = variable(settings), []
-    for name in (across, up):
+    for name in names:
         if name is None or not isinstance(known.get(name), param.Number):
             return None
         end = known[name].softbounds[getattr(settings, name) >= 0.0]
         low, high = sorted((TENTH * end, end))
-        vary.append(f"{name}={low:g}:{high:g}:{COARSE}")
+        is_log = len(names) == 1 and end > 0.0
+        vary.append(f"{name}={low:g}:{high:g}:{count}{LOG * is_log}")
     return Question(tuple(vary), of)
 
 
@@ -218,7 +215,7 @@ def _cuts(settings: Settings) -> Question | None:
 
 
 def _energies(settings: Settings) -> Question | None:
-    return _map(settings, "friction", _load(settings), "dissipation")
+    return _over(settings, "dissipation", COARSE, "friction", _load(settings))
 
 
 TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from html import escape
 from typing import Any
 
@@ -153,26 +152,9 @@ class Reports(CommandTab):
             margin=(6, 6),
             **looks("words"),
         )
-        self.repeats = pmui.Select(
-            label="Timed passes",
-            options=[3, 5, 9],
-            value=5,
-            width=130,
-            size="small",
-            description="How often each method runs; its median time counts.",
-            visible=self.kind.rx() == STUDY,
-        )
-        self.is_quick = pmui.Switch(
-            label="A quarter of the cases",
-            value=True,
-            margin=(10, 6),
-            visible=self.kind.rx() == STABILITY,
-        )
-        fields: Sequence[Any] = (self.kind, self.repeats, self.is_quick)
         self._has_paused = False
-        super().__init__(state, "Reports", DONE, *fields)
-        for field in fields:
-            field.param.watch(lambda event: self.show(), "value")
+        super().__init__(state, "Reports", DONE, self.kind)
+        self.kind.param.watch(lambda event: self.show(), "value")
         self.show()
         if not self.written:
             self.start()
@@ -182,8 +164,8 @@ class Reports(CommandTab):
         """The command of the report that is chosen."""
         arguments = {
             FIGURES: ["figures"],
-            STUDY: ["study", SETTINGS, "--repeats", str(self.repeats.value)],
-            STABILITY: ["stability", *["--quick"] * self.is_quick.value],
+            STUDY: ["study", SETTINGS],
+            STABILITY: ["stability", "--quick"],
             PROOF: ["proof"],
         }[self.kind.value]
         texts = ((SETTINGS, dump(self.state.settings)),) if SETTINGS in arguments else ()

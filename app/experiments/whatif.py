@@ -34,8 +34,8 @@ from solver.settings import Settings
 from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of, is_map
+from solver.study.sweep.plan import Plan
 from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"

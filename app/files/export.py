@@ -89,12 +89,12 @@ def plot_table(view: View, frame: Frame) -> str:
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     items = [item for legend in view.figure.legend for item in legend.items]
     tables = []
-    for source in view.sources.values():
+    for key, source in view.sources.items():
         labels = [
             str(getattr(item.label, "value", None))
             for item in items
             for other in item.renderers
-            if other.data_source is source
+            if other.name == key
         ]
         table = pd.DataFrame({name: list(column) for name, column in source.data.items()})
         paths = [name for name in table if any(np.ndim(cell) for cell in table[name])]

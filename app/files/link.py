@@ -48,7 +48,7 @@ class Place:
     """What an address says, as `PageState` has it; the room is "class" there.
 
     The instant is a share of the interval, and None leaves it; the run waits at the iteration, and
-    goes on at 0; an empty theme is that of the browser.
+    goes on at 0; without a theme the page begins in light colours.
     """
 
     settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))

@@ -14,7 +14,7 @@ from solver.remarks import ends_of_tables
 from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.comparison import OtherResults, read_results
-from solver.study.measured_loop import Axes, MeasuredLoop, axes_of, columns_of, loop_in
+from solver.study.measured_loop import Axes, MeasuredLoop, columns_of, loop_in
 from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
@@ -113,10 +113,7 @@ def renamed(table: Table, heads: str) -> Table:
         return replace(table, columns=columns)
     if len(columns) != width + 1:
         raise table.refuse(f"it has {width} columns: write as many names, or one more")
-    rows = [
-        (line, [*cells, *[""] * (width - len(cells)), str(number)])
-        for number, (line, cells) in enumerate(table.rows)
-    ]
+    rows = [(line, [*cells, str(n)]) for n, (line, cells) in enumerate(table.rows)]
     return replace(table, columns=columns, rows=rows)
 
 
@@ -145,4 +142,4 @@ def axes_on(state: PageState) -> Axes:
     frame, settings = state.frame, state.settings
     if frame is not None and frame.run.settings.scene == settings.scene:
         return frame.run.across, frame.run.up
-    return axes_of(settings.structure().loop(discretise(settings)))
+    return settings.structure().loop(discretise(settings)).axes

@@ -13,11 +13,10 @@ import param
 from app.controls import SettingControl
 from app.lessons.catalogue import plots_of, settings_of
 from app.state import PageState
-from app.widgets import button, dialog
+from app.widgets import button, dialog, looks
 from solver.lessons import Lesson
 from solver.study.cases.case import Case
 
-PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 text_button = partial(button, margin=(3, 8, 3, 0))
 
 
@@ -80,9 +79,8 @@ class Guide(ABC):
 
     def _markdown(self, text: Callable[[], str]) -> pn.pane.Markdown:
         """A pane of text that follows the frame."""
-        pane = pn.pane.Markdown(
-            text(), margin=0, sizing_mode="stretch_width", stylesheets=PARAGRAPH
-        )
+        look = {"margin": 0, "sizing_mode": "stretch_width", **looks("paragraph")}
+        pane = pn.pane.Markdown(text(), **look)
         self._texts.append((pane, text))
         return pane
 

@@ -14,7 +14,7 @@ from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, ends_of
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, on_side
 
 LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn, or cannot be dragged."""
@@ -190,7 +190,9 @@ def strokes_of(
     """
     lines: list[Array] = []
     for hold in description.holds:
-        first, last = layout.local(ends_of(hold.side) * np.array([layout.length, layout.top]))
+        first, last = layout.local(
+            on_side(hold.side, [0.0, 1.0]) * np.array([layout.length, layout.top])
+        )
         edge = np.array([first + share * (last - first) for share in hold.stretch])
         away = np.array(OUTWARD[hold.side])
         if hold.kind == "clamp":

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from bokeh.models import NumeralTickFormatter
+from bokeh.models import LogScale, NumeralTickFormatter
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
@@ -17,6 +17,8 @@ from app.units import Unit, unit_for
 
 LONGEST = 16
 """Letters in a line of the title beside a plot: a small one is no higher."""
+FLOOR = 1e-15
+"""Smallest value that a logarithmic axis shows."""
 
 
 class Axis:
@@ -27,6 +29,7 @@ class Axis:
 
     def __init__(self, made: figure, side: str, title: str, unit: str = "") -> None:
         self._made, self._side, self._range = made, side, getattr(made, f"{side}_range")
+        self._is_log = isinstance(getattr(made, f"{side}_scale"), LogScale)
         self._title, self._si = title, unit
         self._unit, self._key, self._ends = Unit(""), None, (np.nan, np.nan)
         self._label()
@@ -44,19 +47,24 @@ class Axis:
         if (title, unit) != (self._title, self._si):
             self._title, self._si, self._key = title, unit, None
 
-    def hold(self, key: object, low: float, high: float, margin: float = 0.0) -> None:
-        """Show what lies between two values in SI, and all that was shown with the same key.
+    def hold(self, key: object, *curves: ArrayLike, margin: float = 0.0) -> None:
+        """Show all values of curves in SI, and all that was shown with the same key.
 
         With another key, as of another run, it chooses the unit anew. The margin is a share of the
-        distance, and is left free on either side.
+        distance, and is left free on either side; a logarithmic axis shows whole decades.
         """
+        low, high = extent(curves)
         if key != self._key:
             self._key, self._held = key, (low, high)
             self._unit = unit_for(max(abs(low), abs(high)), self._si)
             self._label()
         low, high = self._held = min(self._held[0], low), max(self._held[1], high)
-        room = margin * (high - low) if high > low else self._unit.factor
-        self.span((low - room) / self._unit.factor, (high + room) / self._unit.factor)
+        if self._is_log:
+            low, high = np.log10(max(low, FLOOR)), np.log10(high)
+            self.span(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
+        else:
+            room = margin * (high - low) if high > low else self._unit.factor
+            self.span((low - room) / self._unit.factor, (high + room) / self._unit.factor)
 
     def span(self, low: float, high: float) -> None:
         """Show what lies between two values on the axis; zooming stays until these change."""
@@ -64,13 +72,6 @@ class Axis:
         if ends != self._ends:
             self._ends = ends
             self._range.update(start=low, end=high, reset_start=low, reset_end=high)
-
-    def decades(self, key: object, low: float, high: float) -> None:
-        """Show whole decades from a positive value to another, and what was shown with the key."""
-        if key != self._key:
-            self._key, self._held = key, (low, high)
-        low, high = self._held = min(self._held[0], low), max(self._held[1], high)
-        self.span(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
 
     def _label(self) -> None:
         text = self._unit.titled(self._title)
@@ -84,6 +85,12 @@ def whole(axis: Any) -> None:
     """Have an axis say whole numbers only."""
     axis.ticker.update(min_interval=1, num_minor_ticks=0)
     axis.formatter = NumeralTickFormatter(format="0")
+
+
+def edges(middles: Floats) -> Floats:
+    """Ends of cells of equal size about points."""
+    size = float(np.ptp(middles)) / max(len(middles) - 1, 1) or 1.0
+    return np.append(middles - 0.5 * size, middles[-1] + 0.5 * size)
 
 
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from bokeh.models import BasicTicker, LinearColorMapper, Range1d
 
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
-from app.views.axis import extent, whole
+from app.views.axis import whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
 from app.views.view import ExtraView, color_bar, hover
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
@@ -51,7 +51,7 @@ class Spectra(ExtraView):
         xs = [modes[: len(values)] for values in ys]
         self.fill("values", xs=xs, ys=ys, part=thinned(count, MOST_SPECTRA) + 1.0)
         self.x.rename("mode; the colour is the substructure" if count > 1 else "mode", "")
-        self.x.hold(frame.run.number, 1.0, float(max([FEWEST, *map(len, ys)])))
+        self.x.hold(frame.run.number, [1, max([FEWEST, *map(len, ys)])])
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
 
@@ -86,7 +86,7 @@ class SpaceModes(ModePlot):
 
     def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         self.x.rename(f"x ({modes['text']})", "m")
-        self.x.hold((frame.run.number, modes["substructure"]), *extent([modes["x"]]))
+        self.x.hold((frame.run.number, modes["substructure"]), modes["x"])
         titles = ["mode 1", *(str(n + 1) for n in range(1, len(modes["space"])))]
         self._draw(modes["x"], modes["space"], titles)
 
@@ -101,7 +101,7 @@ class TimeFunctions(ModePlot):
     def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         run = frame.run
         self.x.rename(f"t (substructure {modes['substructure'] + 1})", "s")
-        self.x.hold(run.number, *extent([run.instants]))
+        self.x.hold(run.number, run.instants)
         self.fill("now", x=self.x(run.instants[[run.column(selection.phase)]]))
         sizes = np.abs(modes["time"]).max(axis=1, initial=0.0)
         values = modes["time"] / np.where(sizes > 0.0, sizes, 1.0)[:, None]
@@ -128,8 +128,8 @@ class ClipErrors(ExtraView):
         lines = [self.add(name, color=color, width=2.5) for name, color in colors.items()]
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         lines.append(self.add("alone", "Scatter", size=11, **ring))
+        lines[-1].name = "clips"
         self.add("table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
-        self._drawn["clips"].append(lines[-1])
         self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 
@@ -137,8 +137,7 @@ class ClipErrors(ExtraView):
         table = float(clips["table"])
         kept = {n: clips[n] for n in ("SVD", "PGD", "clips") if clips[n] is not None}
         numbers = np.concatenate([way[0] for way in kept.values()])
-        smallest = float(numbers[numbers > 0].min(initial=table))
-        self.x.decades(frame.run.number, max(smallest, 1.0), min(float(numbers.max()), 10 * table))
+        self.x.hold(frame.run.number, np.clip(numbers[numbers > 0], 1.0, 10.0 * table))
         size, missed = (float(part) for part in clips["clips"][:, 0])
         exactness = "exact" if missed <= EXACT else percent(missed)
         titles = {"clips": f"clips, {clips['branches']} × 2 vectors: {exactness}"}

@@ -7,10 +7,9 @@ from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
 from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
 from app.views.rope import AxialForces, StressRanges, Unrolled, WireSection
-from app.views.scene import Stress
+from app.views.scene import Stress, Thrust
 from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap
-from app.views.thrust import Thrust
 from app.views.view import View
 
 CARDS: tuple[tuple[type[View], ...], ...] = (

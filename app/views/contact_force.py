@@ -97,12 +97,11 @@ class ContactForce(View):
             ends = [known.friction, *exact, *([] if known.pressure is None else [known.pressure])]
             self._known = extent([*ends, *([] if bound is None else [bound, -bound])])
             self._scaled_for = key
-            self.x.hold(key, *extent([run.interfaces[name].positions]))
+            self.x.hold(key, run.interfaces[name].positions)
         low, high = self._known
         most = MOST * max(abs(low), abs(high))
         least, largest = extent([f for f in (fields.friction, fields.pressure) if f is not None])
-        low, high = min(ROOM * low, max(least, -most)), max(ROOM * high, min(largest, most))
-        self.y.hold(key, low, high)
+        self.y.hold(key, [ROOM * low, ROOM * high], [max(least, -most), min(largest, most)])
 
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its nearest instant, and name it."""

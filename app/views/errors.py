@@ -8,13 +8,13 @@ import numpy as np
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
 from app.frame import Floats, Frame, Selection
-from app.views.axis import extent, rounded_up, whole
+from app.views.axis import rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
 from app.views.view import View, hover, key_of
 from app.worker.references import has_reference
 
-LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
-"""What is seen at least, which indicators do not widen, and the smallest error that is seen."""
+LEAST, MOST = 1e-4, 10.0
+"""What is seen at least, which indicators do not widen."""
 LEAST_IN_TIME, MOST_IN_TIME = 1e-2, 2.0
 """What is seen at least over run time."""
 SHORTEST = 20
@@ -79,10 +79,9 @@ class Convergence(ErrorPlot):
         column = "error_force" if len(error["x"]) else "estimated_error"
         self._plot("ghost", past, "iteration", column, self.ghost_name)
         ghosts = self.sources["ghost"].data
-        low, high = extent([[LEAST, MOST], error["y"], ghosts["y"]])
-        self.y.decades(run.number, max(low, FLOOR), high)
+        self.y.hold(run.number, [LEAST, MOST], error["y"], ghosts["y"])
         end = max(float(newest.iteration), *map(float, ghosts["x"][-1:]), SHORTEST)
-        self.x.hold(run.number, 0.0, rounded_up(end))
+        self.x.hold(run.number, [0.0, rounded_up(end)])
         is_back = frame is not newest and not frame.is_answer
         self.fill("shown", x=[frame.iteration] if is_back else [])
         foot = self.figure.y_range.reset_start
@@ -130,6 +129,5 @@ class ErrorTime(ErrorPlot):
         seconds = [run.reference_seconds] if np.isfinite(run.reference_seconds) else []
         self.fill("reference", x=seconds)
         if len(now["x"]) or len(ghosts["x"]):
-            self.x.decades(key_of(run), *extent([now["x"], ghosts["x"], seconds]))
-            low, high = extent([now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME]])
-            self.y.decades(run.number, max(low, FLOOR), high)
+            self.x.hold(key_of(run), now["x"], ghosts["x"], seconds)
+            self.y.hold(run.number, now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -103,6 +103,12 @@ def is_aside(act: Act) -> bool:
 def is_opposite(act: Act, other: Act) -> bool:
     """Whether two acts are the same pressure from both sides."""
     return act.unit == other.unit and np.array_equal(act.values, -other.values)
+
+
+@lru_cache(maxsize=16)
+def without_acts(geometry: Geometry) -> Geometry:
+    """A geometry of which nothing is drawn that acts, where that would be in the way."""
+    return replace(geometry, description=replace(geometry.description, acts=()))
 
 
 @lru_cache(maxsize=16)

@@ -10,7 +10,7 @@ from bokeh.models import Range1d
 
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
-from app.views.axis import extent, whole
+from app.views.axis import whole
 from app.views.colors import (
     BESIDE,
     ERROR,
@@ -58,8 +58,8 @@ class HysteresisLoop(View):
         reference = nothing if run.reference_loop is None else run.reference_loop
         beside = _beside(frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
-            low, high = extent([frame.loop[row], exact[row], reference[row], beside[row]])
-            axis.hold(end_of(frame), min(low, 0.0), max(high, 0.0), 0.08)
+            curves = frame.loop[row], exact[row], reference[row], beside[row]
+            axis.hold(end_of(frame), *curves, [0.0], margin=0.08)
         is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
         self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
@@ -118,7 +118,7 @@ class Cycles(CyclePlot):
         self.x.rename(*run.across)
         self.y.rename(*run.up)
         for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
-            axis.hold(key_of(run), *extent([values]), 0.08)
+            axis.hold(key_of(run), values, margin=0.08)
         x, y = self.x(loop[0]), self.y(loop[1])
         count, columns = len(cycles["energy"]), cycles["columns"]
         shown = thinned(count, MOST_LOOPS)
@@ -145,8 +145,7 @@ class CycleEnergy(CyclePlot):
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
-        low, high = extent([energy])
-        self.y.hold(key_of(frame.run), min(low, 0.0), max(1.1 * high, 0.0))
+        self.y.hold(key_of(frame.run), [0.0], energy, 1.1 * energy)
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
 
 
@@ -169,7 +168,7 @@ class Fretting(CyclePlot):
         x = run.interfaces[name].positions
         if len(x) != len(cycles["slip"]):
             return
-        self.x.hold((run.number, name), *extent([x]))
+        self.x.hold((run.number, name), x)
         work, slip = (float(cycles[name].max(initial=0.0)) for name in ("work", "slip"))
         unit = "J/m²" if run.settings.kind == "plane" else "J/m"
         title = f"friction work, at most {work:.3g} {unit}"

@@ -42,6 +42,8 @@ class Picture:
     frame: Frame
     column: int
     """Of the instant in it."""
+    geometry: Geometry
+    """That of its run, with what is to be seen of what acts."""
     layout: Layout
     factor: float
     """Where bodies lie, and how much displacements are magnified."""
@@ -51,8 +53,7 @@ class Picture:
     """Settings behind what acts, by where it does."""
 
     def __post_init__(self) -> None:
-        self._geometry = self.frame.run.geometry
-        self._described = self._geometry.description
+        self._described = self.geometry.description
         # Values of a description are not thinned.
         instant = self.frame.run.instants[self.column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
@@ -62,12 +63,12 @@ class Picture:
     @cached_property
     def nodes(self) -> Array:
         """Deformed nodes, px from the middle of the foot."""
-        return self._moved(self._geometry.nodes, self.frame.deformed.nodes[:, :, self.column])
+        return self._moved(self.geometry.nodes, self.frame.deformed.nodes[:, :, self.column])
 
     @cached_property
     def points(self) -> Array:
         """Contact points, px from the middle of the foot."""
-        places = self._geometry.points
+        places = self.geometry.points
         local = self._moved(places, self.frame.deformed.points[:, :, self.column])
         if self._described.height is not None and self._described.bodies == 1:
             # Of rods, a band is thinner than the room that is left for it.
@@ -108,7 +109,7 @@ class Picture:
 
     def columns(self, *, with_status: bool) -> dict[str, Columns]:
         """Columns of all sources, by their names, with the status of what rubs or without."""
-        parts = _drawn(self._geometry.outlines, self.nodes)
+        parts = _drawn(self.geometry.outlines, self.nodes)
         image = np.zeros((0, 2))
         if any(hold.kind == "image" for hold in self._described.holds):
             # The bodies go on below, turned by half a turn, as far as there is room.
@@ -134,12 +135,17 @@ class Picture:
         """Outline of the bodies as they begin to collapse, on the page."""
         size = float(np.abs(moved).max(initial=0.0)) or 1.0
         shown = MECHANISM * self.layout.top / size * moved
-        nodes = self.layout.local(self._geometry.nodes + shown)
-        return _pair(self._page(_drawn(self._geometry.outlines, nodes)))
+        nodes = self.layout.local(self.geometry.nodes + shown)
+        return _pair(self._page(_drawn(self.geometry.outlines, nodes)))
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""
         return turned(np.array([x, y]) - self.layout.origin, -self.tilt)
+
+    def many(self, lines: Array) -> Columns:
+        """Lines or patches, (n, k, 2), on the page, each by itself."""
+        x, y = np.moveaxis(np.round(self._page(lines), 1), -1, 0)
+        return {"xs": x.tolist(), "ys": y.tolist()}
 
     def _page(self, local: Array) -> Array:
         return self.layout.page(local, self.tilt)
@@ -149,7 +155,7 @@ class Picture:
 
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
-        away = ((self._geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
+        away = ((self.geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
         return self._moved(places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column])
 
     @cached_property
@@ -158,7 +164,7 @@ class Picture:
         if self._described.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
         body, place = self._described.broken
-        x, y = self._geometry.nodes.T
+        x, y = self.geometry.nodes.T
         is_there = np.abs(x - place) < 1e-4 * self._described.length
         row = np.floor(y * self._described.bodies / self.layout.top)
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
@@ -180,7 +186,7 @@ class Picture:
             for each in self.arrows
         ]
         return [
-            (_drawn(self._geometry.rims, self.nodes), EDGE, 1.4),
+            (_drawn(self.geometry.rims, self.nodes), EDGE, 1.4),
             (self._holds(), EDGE, 1.3),
             *bands,
             (gapped(self.nodes[self._at_break]), ERROR, 3.0),
@@ -198,7 +204,7 @@ class Picture:
 
     def _bands(self) -> Strokes:
         """What rubs, by its status, on a rim where there is contact."""
-        status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
+        status, chains = self.frame.deformed.status[:, self.column], self.geometry.chains
         lines = bands(self.points, chains, status)
         width = min(BAND, 0.35 * self.layout.size[1] / self._described.bodies)
         if chains.max() >= self._described.bodies:

@@ -11,10 +11,10 @@ from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.axis import extent
+from app.views.axis import edges, extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.view import ExtraView, color_bar, end_of, hover, joined, key_of
-from app.worker.extras import MOST_WIRES
+from app.worker.geometry import MOST_WIRES
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
 COLORS = [color for color in RANKS if color != ERROR]
@@ -102,20 +102,17 @@ class Unrolled(RopePlot):
     def _show(self, wires: Any, frame: Frame, selection: Selection) -> None:
         column = frame.run.column(selection.phase)
         count, places = len(wires["wire_layers"]), wires["places"]
+        ends = edges(places)[[0, -1]]
         self.x.rename(*(("x", "m") if wires["is_clamped"] else ("polar angle", "°")))
         self.y.rename("wire" if wires["is_clamped"] else "layer", "")
-        step = float(places[1] - places[0]) if len(places) > 1 else float(places[0])
-        ends = float(places[0]) - 0.5 * step, float(places[-1]) + 0.5 * step
         key = frame.run.number, wires["is_clamped"]
-        self.x.hold(key, *ends)
-        self.y.hold(key, 0.5, count + 0.5)
-        left, right = self.x(ends).tolist()
+        self.x.hold(key, ends)
+        self.y.hold(key, [0.5, count + 0.5])
         image = np.ascontiguousarray(wires["status"][:, :, column])
-        size = {"dw": [right - left], "dh": [count]}
-        self.fill("status", image=[image], x=[left], y=[0.5], **size)
+        self.draw_status(image, places, np.arange(1.0, count + 1.0))
         self.fill("wire_layers", y=np.flatnonzero(np.diff(wires["wire_layers"])) + 1.5)
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
-        middle, width = [0.5 * (left + right)], [right - left]
+        middle, width = self.x([ends.mean()]), self.x([np.ptp(ends)])
         self.fill("chosen", x=middle, y=[number + 1.0], width=width, height=[1.0])
 
 
@@ -134,7 +131,7 @@ class StressRanges(RopePlot):
     def _show(self, found: Any, frame: Frame, selection: Selection) -> None:
         count = len(found["wire_layers"])
         self.x.span(0.5, count + 0.5)
-        self.y.hold(key_of(frame.run), 0.0, 1.08 * float(found["ranges"].max()))
+        self.y.hold(key_of(frame.run), [0.0], 1.08 * found["ranges"])
         colors = [LAYERS[layer % len(LAYERS)] for layer in found["wire_layers"]]
         top, layer = self.y(found["ranges"]), found["wire_layers"] + 1
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
@@ -152,9 +149,9 @@ class AxialForces(ExtraView):
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
-        lines = [self.add(wire, width=2) for wire in WIRES]
+        self._lines = [self.add(wire, width=2) for wire in WIRES]
         self.legend(*WIRES, stuck="all stick", exact="closed form")
-        hover(made, lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
+        hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
         """Show the force in each wire, the broken one in its own colour."""
@@ -163,10 +160,10 @@ class AxialForces(ExtraView):
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
         key = (*end_of(frame), *names)
         along = run.interfaces[selection.interface_of(run)].positions
-        self.x.hold(key, *extent([x] if stuck is not None else [x, along]))
         bent = [] if stuck is None else [stuck]
-        low, high = extent([axial["force"], *(curve.up for curve in known), *bent])
-        self.y.hold(key, min(low, 0.0), max(high, 0.0), 0.05)
+        self.x.hold(key, x, *([] if bent else [along]))
+        ups = [curve.up for curve in known]
+        self.y.hold(key, axial["force"], *ups, *bent, [0.0], margin=0.05)
         self.draw("exact", *joined([(curve.across, curve.up[:, column]) for curve in known]))
         self.draw("stuck", *joined([(x, force[:, column]) for force in bent]))
         colors = iter(COLORS * 2)
@@ -175,7 +172,7 @@ class AxialForces(ExtraView):
                 self.draw(wire, [], [])
                 continue
             is_broken = "broken" in names[number]
-            look = (ERROR, 3.5) if is_broken else (next(colors), 2.0)
-            self.restyle(wire, *look)
+            color, width = (ERROR, 3.5) if is_broken else (next(colors), 2.0)
+            self._lines[number].glyph.update(line_color=color, line_width=width)
             title = names[number] if bent or number or len(names) == 1 else f"wire {names[0]}"
             self.draw(wire, x, axial["force"][number, :, column], title)

@@ -15,8 +15,8 @@ from bokeh.plotting import figure
 from app.frame import Frame, Selection
 from app.units import number, unit_for
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, KEYS, UNSEEN
-from app.views.layout import layout_of
+from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
+from app.views.layout import layout_of, without_acts
 from app.views.picture import Handle, Picture
 from app.views.view import View, bare, color_bar
 
@@ -26,6 +26,8 @@ NEAR, CLOSE = 22.0, 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
+WIDEST, LEAST = 9.0, 0.01
+"""Width of the line of the largest thrust, px, and the share of it below which none is drawn."""
 
 
 class Scene(View):
@@ -64,7 +66,7 @@ class Scene(View):
         look = {"size": 11, "fill_color": "white", "line_width": 2.5}
         self.add("marks", "Scatter", "x y line_color", **look)
         self.add(
-            "words", "Text", "x y text text_align text_color", text_font_size="14px",
+            "words", "Text", "x y text text_align text_color",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         self.mark(KEYS | {"note": UNSEEN})
@@ -76,7 +78,8 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        layout = layout_of(run.geometry, *self._size.values())
+        geometry = run.geometry if self.shows_status else without_acts(run.geometry)
+        layout = layout_of(geometry, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
@@ -85,7 +88,7 @@ class Scene(View):
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
         self.picture = picture = Picture(
-            frame, run.column(selection.phase), layout, self._factor, self._peaks,
+            frame, run.column(selection.phase), geometry, layout, self._factor, self._peaks,
             run.settings.behind(),
         )  # fmt: skip
         for name, columns in picture.columns(with_status=self.shows_status).items():
@@ -127,6 +130,7 @@ class Scene(View):
         if np.hypot(*(nearest.place - at)) <= NEAR:
             present = getattr(picture.frame.run.settings, nearest.setting)
             self._held = nearest, picture, float(present)
+            self.state.is_dragged = True
 
     def _drag(self, event: Any) -> None:
         if self._held is not None:
@@ -136,7 +140,7 @@ class Scene(View):
         if self._held is not None:
             name, value = self._held[0].setting, self._value(event)
             self._held = None
-            self.state.change(**{name: value})
+            self.state.release(name, value)
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
@@ -178,10 +182,11 @@ class Stress(Scene):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the stress at the selected instant, as far as the frame has it."""
         super().update(frame, selection, ghost)
-        if frame.extras.get("stress") is None or self.picture is None:
+        extra, picture = frame.extras.get("stress"), self.picture
+        if extra is None or picture is None:
             self.fill("quads", xs=[], ys=[], value=[])
             return
-        (title, si, values), picture = frame.extras["stress"], self.picture
+        title, si, values = extra
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
         # It seldom changes.
@@ -191,7 +196,36 @@ class Stress(Scene):
             palette=RdBu11 if signed else Cividis256, low=-high if signed else 0.0, high=high
         )
         self.bar.title = f"{title}, {unit.name}"
-        corners = picture.layout.page(picture.nodes[frame.run.geometry.quads], picture.tilt)
-        across, up = np.moveaxis(np.round(corners, 1), -1, 0)
-        now = values[:, picture.column] / unit.factor
-        self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=now)
+        corners = picture.many(picture.nodes[frame.run.geometry.quads])
+        self.fill("quads", **corners, value=values[:, picture.column] / unit.factor)
+
+
+class Thrust(Scene):
+    """How many bodies find their load its way: resultants of joints from middle to middle.
+
+    Lines are as wide as forces are large; the largest of all instants is the widest line.
+    """
+
+    name = "Thrust"
+    needs = frozenset({"thrust"})
+    shows_status = False
+    applies = staticmethod(lambda settings: settings.features.bricks > 2)
+
+    def _draw(self, made: figure) -> None:
+        super()._draw(made)
+        look = {"line_color": LATIN, "line_alpha": 0.8, "line_cap": "round"}
+        self.add("thrust", "MultiLine", "xs ys line_width", **look)
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the forces in all joints at the selected instant, as far as the frame has them."""
+        super().update(frame, selection, ghost)
+        extra, picture = frame.extras.get("thrust"), self.picture
+        if extra is None or picture is None:
+            self.fill("thrust", xs=[], ys=[], line_width=[])
+            return
+        largest = float(extra["forces"].max())
+        share = extra["forces"][:, picture.column] / (largest or 1.0)
+        is_drawn = share > LEAST
+        lines = picture.layout.local(extra["lines"][is_drawn, :, :, picture.column])
+        self.fill("thrust", **picture.many(lines), line_width=WIDEST * share[is_drawn])
+        self.show("note", f"widest line {unit_for(largest, 'N')(largest)}")

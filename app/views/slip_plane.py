@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, Selection
-from app.views.axis import extent
 from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE, UNSEEN
 from app.views.view import View
 from solver.laws import FrictionLaw
@@ -53,7 +52,7 @@ class SlipPlane(View):
         slip, corners = slips["slip"], slips["room"].T
         both = np.concatenate([slip, corners], axis=1)
         for axis, values in zip((self.x, self.y), both, strict=True):
-            axis.hold(frame.run.number, *extent([values]), 0.1)
+            axis.hold(frame.run.number, values, margin=0.1)
         self.draw("room", *corners)
         self.draw("path", *slip[:, : column + 1])
         self.draw("now", *slip[:, [column]])

@@ -8,7 +8,7 @@ import numpy as np
 from bokeh.events import Tap
 
 from app.frame import Floats, Frame, Selection
-from app.views.axis import extent
+from app.views.axis import edges
 from app.views.colors import CUT, ERROR, EXACT, KEYS
 from app.views.view import View, hover, joined
 
@@ -39,13 +39,9 @@ class StatusMap(View):
         fields, interface = frame.contact.get(name), run.interfaces[name]
         if fields is None:
             return
-        x, t = _edges(interface.positions), _edges(run.instants)
-        key = (run.number, name)
-        self.x.hold(key, *extent([interface.positions]))
-        self.y.hold(key, *extent([run.instants]))
-        (left, right), (low, high) = self.x(x[[0, -1]]), self.y(t[[0, -1]])
-        size = {"dw": [right - left], "dh": [high - low]}
-        self.fill("status", image=[fields.status.T], x=[left], y=[low], **size)
+        self.x.hold((run.number, name), interface.positions)
+        self.y.hold((run.number, name), run.instants)
+        self.draw_status(fields.status.T, interface.positions, run.instants)
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
         self.fill("place", x=self.x([] if selection.place is None else [selection.place]))
@@ -71,15 +67,9 @@ def _boundary(frame: Frame, selection: Selection) -> Floats:
     if name not in frame.contact:
         return np.zeros((4, 0))
     status = frame.contact[name].status
-    x, t = _edges(frame.run.interfaces[name].positions), _edges(frame.run.instants)
+    x, t = edges(frame.run.interfaces[name].positions), edges(frame.run.instants)
     i, j = np.nonzero(status[1:] != status[:-1])
     upright = np.stack([x[i + 1], t[j], x[i + 1], t[j + 1]])
     i, j = np.nonzero(status[:, 1:] != status[:, :-1])
     level = np.stack([x[i], t[j + 1], x[i + 1], t[j + 1]])
     return np.concatenate([upright, level], axis=1)
-
-
-def _edges(middles: Floats) -> Floats:
-    """Ends of cells of equal size about points."""
-    size = float(np.ptp(middles)) / max(len(middles) - 1, 1) or 1.0
-    return np.append(middles - 0.5 * size, middles[-1] + 0.5 * size)

@@ -10,7 +10,7 @@ from bokeh.events import Pan, Tap
 from bokeh.models import PanTool
 
 from app.frame import Frame, Run, Selection
-from app.units import number, unit_for
+from app.units import Unit, number, unit_for
 from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_opposite
@@ -33,7 +33,7 @@ class Timeline(View):
         made.yaxis.visible = False
         self._number = 0
         axis = made.xaxis
-        axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
+        axis.major_label_standoff = 1
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
         axis.axis_line_alpha = 0.4
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
@@ -47,9 +47,6 @@ class Timeline(View):
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             made.on_event(event, self._select)
-
-    def magnify(self, size: str) -> None:
-        """Keep the size of its type: there is no room for more."""
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
@@ -66,7 +63,7 @@ class Timeline(View):
         times = run.instants / np.float32(unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
         self.figure.x_range.update(start=ends[0], end=ends[1], bounds=ends)
-        titles, values, _ = zip(*paths_of(run)[: len(PATHS)], strict=True)
+        titles, values = zip(*paths_of(run)[: len(PATHS)], strict=True)
         ups = [np.float32(each / (np.abs(each).max(initial=0.0) or 1.0)) for each in values]
         # The first is on top.
         self.fill(
@@ -87,35 +84,22 @@ class Timeline(View):
             self.state.select(phase=min(max(event.x / end, 0.0), 1.0))
 
 
-def paths_of(run: Run) -> list[tuple[str, Array, bool]]:
-    """What is given over time: its name with its range, values, and whether these change.
-
-    Those that change come first.
-    """
+def paths_of(run: Run) -> list[tuple[str, Array]]:
+    """What is given over time, first what changes: its name with its range, and values."""
     described = run.geometry.description
-    paths = []
+    given: list[tuple[str, Array, Unit]] = []
     if described.tilt is not None:
-        paths.append(_path("tilt", np.degrees(described.tilt), described.instants, run, "°", 1.0))
-    shown: list[Any] = []
-    for act in described.acts:
-        if any(is_opposite(act, other) for other in shown):
-            continue
-        shown.append(act)
-        unit = unit_of(act)
-        values = act.values if act.values.ndim == 1 else act.values[len(act.values) // 2]
-        paths.append(_path(act.symbol, values, described.instants, run, unit.name, unit.factor))
-    if not paths:
-        paths.append(("nothing acts", np.zeros(len(run.instants)), False))
-    return sorted(paths, key=lambda path: not path[2])
-
-
-def _path(
-    symbol: str, values: Array, instants: Array, run: Run, unit: str, factor: float
-) -> tuple[str, Array, bool]:
-    # Adding 0 takes the sign from a zero.
-    low, high = float(values.min()) / factor + 0.0, float(values.max()) / factor + 0.0
-    changes = high - low > 1e-6 * max(abs(low), abs(high))
-    separator = "" if unit == "°" else " "
-    text = f"{number(low)} to {number(high)}" if changes else number(high)
-    sampled = np.interp(run.instants, instants, values)
-    return f"{symbol} = {text}{separator}{unit}", sampled, changes
+        given.append(("tilt", np.degrees(described.tilt), Unit("°")))
+    for place, act in enumerate(described.acts):
+        if not any(is_opposite(act, other) for other in described.acts[:place]):
+            values = act.values if act.values.ndim == 1 else act.values[len(act.values) // 2]
+            given.append((act.symbol, values, unit_of(act)))
+    changing, constant = [], []
+    for symbol, values, unit in given:
+        # Adding 0 takes the sign from a zero.
+        low, high = float(values.min()) + 0.0, float(values.max()) + 0.0
+        changes = high - low > 1e-6 * max(abs(low), abs(high))
+        text = f"{number(low / unit.factor)} to {unit(high)}" if changes else unit(high)
+        path = f"{symbol} = {text}", np.interp(run.instants, described.instants, values)
+        (changing if changes else constant).append(path)
+    return [*changing, *constant] or [("nothing acts", np.zeros(len(run.instants)))]

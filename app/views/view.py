@@ -23,49 +23,42 @@ from bokeh.models import (
     Legend,
     LegendItem,
     LinearColorMapper,
-    MultiLine,
-    Patch,
     Range1d,
     Scatter,
     Title,
     UnionRenderers,
-    VArea,
 )
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
-from app.frame import Floats, Frame, Run, Selection
+from app.frame import Bytes, Floats, Frame, Run, Selection
 from app.state import PageState
-from app.views.axis import Axis
+from app.views.axis import Axis, edges
 from app.views.colors import CUT, KEYS, STATUS
 from solver.settings import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
-TEXT = "12px"
-"""Size of text in plots, of which the theme takes shares."""
+TEXT, WORDS = "12px", "14px"
+"""Sizes of what is written in plots, and of what belongs to arrows."""
+KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
+"""Keeps sizes that are not the theme's, as the browser sets these when it draws a figure."""
 ABOVE = {"margin-left": "-44px", "top": "-3px"}
 """Has a legend begin at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 8px !important; }
-.bk-item { gap: 4px !important; cursor: pointer; }
+.bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
 """Lets a legend of seven entries stand in one line; the theme keeps them farther apart."""
 
 
-COPIED = "line_color", "line_alpha", "line_width", "line_dash"
-"""What a legend shows of a glyph."""
-WIDE = 8.0
-"""Width of a line from which on it is an area, px."""
 HIDE = """
-const place = items.indexOf(cb_obj.item)
-if (place == -1) return
-const {line_alpha} = copies.data
-for (const each of drawn[place]) each.visible = !each.visible
-line_alpha[place] *= drawn[place][0].visible ? 5 : 0.2
-copies.change.emit()
+const [shown] = cb_obj.item.renderers
+const is_mark = shown.name == null
+const others = (each) => each.name == shown.name && each != shown
+for (const each of is_mark ? [shown] : plot.renderers.filter(others)) each.visible = !each.visible
 """
-"""Hides a glyph and fades its copy in the legend, or shows it again."""
+"""Hides the glyph that a copy in the legend is of, or shows it again; marks stay as they are."""
 
 
 class View:
@@ -86,8 +79,6 @@ class View:
         self.state, self._type = state, TEXT
         self._made: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
-        self._drawn: dict[str, list[GlyphRenderer]] = {}
-        self._looks: dict[str, tuple[Any, ...]] = {}
         self._marks: dict[str, tuple[GlyphRenderer, int]] = {}
         self._items: dict[str, LegendItem] = {}
 
@@ -109,8 +100,18 @@ class View:
                 self._size_type()
 
     def _size_type(self) -> None:
-        for model in (self._made, *self._made.legend):
-            model.styles = {**model.styles, "font-size": self._type}
+        """Size what is written, each by itself: an em is 13 pixels to axes, whatever the style."""
+        made, size, keep = self._made, self._type, CustomJS(code=KEEP)
+        for model in (made, *made.legend):
+            model.styles = {**model.styles, "font-size": size}
+        for words in made.select(models.Text):
+            words.text_font_size = WORDS if size == TEXT else size
+        for model in (*made.axis, *made.select(Title), *made.select(ColorBar)):
+            names = [name for name in model.properties() if name.endswith("text_font_size")]
+            sizes = dict.fromkeys(names, size)
+            model.update(tags=[sizes] if size != TEXT else [], **sizes)
+            if not model.js_property_callbacks:
+                model.js_on_change(names[0], keep)
 
     def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
@@ -166,16 +167,14 @@ class View:
             on, look = name, {column: column for column in columns.split()} | look
             self.source(name, *columns.split(), *also.split())
         kind = getattr(models, glyph)
-        renderer = self._render(self.sources[on], kind(**visuals(kind, look)))
-        self._drawn.setdefault(name, []).append(renderer)
-        self._looks[name] = _copy_of(kind, look)
-        return renderer
+        return self._render(self.sources[on], kind(**visuals(kind, look)), name)
 
-    def _render(self, source: ColumnDataSource, glyph: Glyph) -> GlyphRenderer:
+    def _render(
+        self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
+    ) -> GlyphRenderer:
         without = {f"{state}_glyph": None for state in ("selection", "nonselection", "muted")}
         view = CDSView(filter=self._filter)
-        renderer: GlyphRenderer = self._made.add_glyph(source, glyph, view=view, **without)
-        return renderer
+        return self._made.add_glyph(source, glyph, name=name, view=view, **without)
 
     def source(self, name: str, *columns: str) -> None:
         """Add an empty source."""
@@ -190,6 +189,12 @@ class View:
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
         return self.add("status", "Image", "image x y dw dh", color_mapper=colors)
 
+    def draw_status(self, status: Bytes, x: Floats, y: Floats) -> None:
+        """Draw statuses, shape (n_y, n_x), about places in SI."""
+        (left, right), (low, high) = self.x(edges(x)[[0, -1]]), self.y(edges(y)[[0, -1]])
+        size = {"dw": [right - left], "dh": [high - low]}
+        self.fill("status", image=[status], x=[left], y=[low], **size)
+
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
         """Marks that stand in the legend only, by name; they share a glyph, as each costs time."""
         nowhere = [np.nan] * len(colors)
@@ -201,49 +206,25 @@ class View:
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their own names or by titles.
 
-        It shows a copy of them: it is made anew whenever what it shows gets other data.
+        It shows copies of them without data: it is made anew whenever the data of what it shows
+        change.
         """
         titles = {name: name for name in names} | titles
-        copied = {name: self._looks[name] for name in titles if name not in self._marks}
-        if copied:
-            self._copy(copied)
+        drawn = {r.name: r for r in reversed(self._made.renderers) if r.name in titles}
+        columns = {column for each in drawn.values() for column in each.data_source.data}
+        nowhere = self._source({column: [np.nan] for column in columns})
+        copies = {
+            name: (self._render(nowhere, each.glyph, name), None) for name, each in drawn.items()
+        }
+        marks = self._marks | copies
         self._items = {
-            name: LegendItem(
-                label=value(title), renderers=[self._marks[name][0]], index=self._marks[name][1]
-            )
+            name: LegendItem(label=value(title), renderers=[marks[name][0]], index=marks[name][1])
             for name, title in titles.items()
         }
         box = legend(self._made, list(self._items.values()), place)
-        if copied:
-            items = [self._items[name] for name in copied]
-            drawn = [self._drawn[name] for name in copied]
-            args = {"items": items, "drawn": drawn, "copies": self._copies}
-            box.js_on_event(LegendItemClick, CustomJS(args=args, code=HIDE))
+        box.click_policy = "hide"
+        box.js_on_event(LegendItemClick, CustomJS(args={"plot": self._made}, code=HIDE))
         return box
-
-    def _copy(self, looks: Mapping[str, tuple[Any, ...]]) -> None:
-        """Have marks that look as glyphs do: lines, and squares for what is as wide as an area."""
-        columns = dict(zip(COPIED, map(list, zip(*looks.values(), strict=True)), strict=True))
-        nowhere = {"x": [np.nan] * len(looks), "xs": [[] for _ in looks]}
-        self._copies = self._source(nowhere | columns)
-        square = {"marker": "square", "fill_color": "line_color", "fill_alpha": "line_alpha"}
-        line = dict(zip(COPIED, COPIED, strict=True))
-        kinds = {
-            False: lambda: MultiLine(xs="xs", ys="xs", **line),
-            True: lambda: Scatter(x="x", y="x", line_color=None, **square),
-        }
-        is_wide = [width >= WIDE for width in columns["line_width"]]
-        shown = {wide: self._render(self._copies, kinds[wide]()) for wide in set(is_wide)}
-        self._marks |= {name: (shown[is_wide[n]], n) for n, name in enumerate(looks)}
-
-    def restyle(self, name: str, color: str, width: float) -> None:
-        """Give a curve another look, and its copy in the legend."""
-        for renderer in self._drawn[name]:
-            renderer.glyph.update(line_color=color, line_width=width)
-        place = self._marks[name][1]
-        for column, new in (("line_color", color), ("line_width", width)):
-            if self._copies.data[column][place] != new:
-                self._copies.patch({column: [(place, new)]})
 
     def show(self, name: str, wanted: bool | str) -> None:
         """Show or hide an entry of the legend, or give it another title."""
@@ -296,8 +277,7 @@ def color_bar(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     """A bar beside a figure that says what its colours mean."""
     bar = ColorBar(
         color_mapper=colors, width=9, padding=2, margin=0, title_standoff=4,
-        title_text_font_size="11px", title_text_font_style="normal",
-        major_label_text_font_size="11px", background_fill_alpha=0.0, **look,
+        title_text_font_style="normal", background_fill_alpha=0.0, **look,
     )  # fmt: skip
     made.add_layout(bar, "right")
     return bar
@@ -316,13 +296,6 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
         both = [trait] if trait in names else [f"line_{trait}", f"fill_{trait}"]
         properties |= {name: given for name in both if name in names}
     return properties
-
-
-def _copy_of(kind: type[Glyph], look: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Colour, opacity, width and dash of a glyph."""
-    line = {trait.removeprefix("line_"): given for trait, given in look.items()}
-    width = WIDE if kind in (Patch, VArea) else line.get("width", 1.0)
-    return line.get("color"), line.get("alpha", 1.0), width, line.get("dash", "solid")
 
 
 def _equal(old: Any, new: Any) -> bool:
@@ -349,6 +322,8 @@ def legend(made: figure, items: Sequence[Any], place: str = "above") -> Legend:
         padding=0,
         margin=2,
         label_height=12,
+        glyph_height=12,
+        glyph_width=18,
         background_fill_alpha=0.0,
         styles={"font-size": TEXT} | (ABOVE if place == "above" else {}),
         stylesheets=[CLOSE],

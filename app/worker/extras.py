@@ -12,9 +12,7 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import DrawnRods, floats, thinned
-from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
-from app.worker.thrust import thrust
+from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.definitions import SettingError
 from solver.discrete import Problem
 from solver.latin import Iterate
@@ -33,8 +31,8 @@ if TYPE_CHECKING:
 
 MOST_SPECTRA, MOST_VALUES = 24, 64
 """Substructures, and singular values of each, that are shown at most."""
-MOST_WIRES, MOST_PLACES, MOST_MODES = 6, 201, 5
-"""Wires, places along them, and modes that are shown at most."""
+MOST_MODES = 5
+"""Modes that are shown at most."""
 
 
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
@@ -44,35 +42,6 @@ def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
     return [floats(np.asarray(part) / largest) for part in shown]
-
-
-def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Axial force in rods or wires at all instants; None where there are none.
-
-    "x" of the middles of elements, (n_places,), m; "force", (n_wires, n_places, n_instants), N;
-    "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
-    of a strand that is bent, else None.
-    """
-    if sampler.rope is not None:
-        return axial_force_of_rope(sampler.rope, sampler, iterate, needs)
-    drawn = sampler.drawn
-    if not isinstance(drawn, DrawnRods):
-        return None
-    force = drawn.axial
-    count = int(force.wires.max()) + 1
-    places = thinned(len(force.wires) // count, MOST_PLACES)
-    broken = int(getattr(sampler.settings, "broken", 0))
-    wires = sorted({*thinned(count, MOST_WIRES).tolist(), *([broken - 1] if broken else [])})
-    values = drawn.axial_force(iterate)
-    shown = values.reshape(count, -1, values.shape[1])[np.ix_(wires, places)]
-    return {
-        "x": floats(force.positions[places]),
-        "force": floats(shown),
-        "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires]
-        if count > 1
-        else ["rod"],
-        "stuck": None,
-    }
 
 
 def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
@@ -163,12 +132,11 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     "x", (n_places,), m; "space", (n_modes, n_places), over the largest entry of each; "time",
     (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the basis.
     """
-    bases = iterate.reduction
-    if bases is None:
+    if not iterate.bases:
         return None
-    last = len(bases.modes) - 1
+    last = len(iterate.bases) - 1
     place = last if needs.substructure is None else min(max(needs.substructure, 0), last)
-    basis, record, problem = bases.modes[place], bases.records[place], sampler.problem
+    basis, problem = iterate.bases[place], sampler.problem
     x, space = _along(basis, problem, place)
     size = _signed_size(space)
     time = basis.time_functions[:MOST_MODES, sampler.columns] * problem.scales.displacement
@@ -177,7 +145,7 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
         "space": floats(space / size[:, None]),
         "time": floats(time * size[:, None]),
         "substructure": place,
-        "text": f"substructure {place + 1}: {record.modes} modes, {record.added} added",
+        "text": f"substructure {place + 1}: {basis.n_modes} modes, {basis.record.added} added",
     }
 
 
@@ -189,7 +157,7 @@ def _along(basis: Modes, problem: Problem, substructure: int) -> tuple[Floats, F
     positions = problem.positions[dofs]
     x = positions if positions.ndim == 1 else positions[:, 0]
     order = np.argsort(x, kind="stable")
-    order = order[thinned(len(order), MOST_PLACES)]
+    order = order[thinned(len(order), MOST_POINTS)]
     return x[order], basis.displacement_modes[first[order], :MOST_MODES].T
 
 
@@ -214,9 +182,9 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     """
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
-    fitted, bases = clips_in(sampler.settings, iterate), iterate.reduction
-    pieces = of_bases(iterate, bases) if bases is not None else None
-    if bases is None and len(sampler.problem.substructures) > 1:
+    fitted, bases = clips_in(sampler.settings, iterate), iterate.bases
+    pieces = of_bases(iterate, bases) if bases else None
+    if not bases and len(sampler.problem.substructures) > 1:
         pieces = in_pieces(iterate)
     return {
         "table": fitted.given.size,
@@ -280,15 +248,10 @@ def _loop_beside(
 
 EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
     "spectra": spectra,
-    "axial force": axial_force,
     "slips": slips,
     "cycles": cycles,
     "modes": modes,
     "clips": clips,
     "beside": beside,
-    "thrust": thrust,
-    "stress": lambda sampler, iterate, needs: sampler.drawn.stress(iterate, sampler.settings),
 }
-"""By the name that a view needs them by."""
-OF_ROPE = {"section": section, "all_wires": all_wires, "wire_ranges": wire_ranges}
-"""Those of a strand that is bent, which have it as their first argument."""
+"""By the name that a view needs them by; bodies of one kind have more (`Drawn.extras`)."""

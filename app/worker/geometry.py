@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
+from app.messages import Needs
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
@@ -19,8 +23,10 @@ from solver.settings import Settings
 
 THICKNESS, PITCH = 0.08, 0.1
 """Of a rod as it is drawn, which has none in the model, and between two rods; shares of length."""
-MOST_POINTS = 200
-"""Contact points of an interface, and nodes of a rod, that are drawn at most."""
+MOST_POINTS = 201
+"""Contact points of an interface, and nodes of a rod, that are shown at most."""
+MOST_WIRES = 6
+"""Wires whose axial force is shown at most, beside a broken one."""
 NONE = -1
 """In place of a degree of freedom."""
 MOST_QUADS = 400
@@ -30,6 +36,8 @@ BREAK = -1
 """Stands between two lines in a list of nodes."""
 StressField = tuple[str, str, Floats]
 """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
+Extras = dict[str, Callable[[Iterate, Needs], Any]]
+"""What only some views need of an iterate, by the name that they need it by."""
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
@@ -70,7 +78,8 @@ class Drawn:
             dofs.append(np.pad(own, ((0, 0), (0, 2 - len(moving))), constant_values=NONE))
             chains.append(np.full(len(kept), number))
             first += len(points)
-        self._points, self._columns = np.concatenate(chosen), columns
+        self._problem, self._columns = problem, columns
+        self._points = np.concatenate(chosen)
         self._dofs = np.concatenate(dofs)
         places = problem.positions[self._dofs[:, 0]]
         if heights is not None:
@@ -93,11 +102,17 @@ class Drawn:
         """Displacement of the nodes, of bodies in the plane, by that of degrees of freedom."""
         raise NotImplementedError
 
+    @property
+    def extras(self) -> Extras:
+        """What only some views need of the bodies."""
+        raise NotImplementedError
+
 
 class DrawnRods(Drawn):
     """Rods as rectangles above each other; they rub between them, or on what is below."""
 
-    def __init__(self, problem: Problem, description: Description, columns: Indices) -> None:
+    def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
+        description = settings.structure().described()
         per_rod = len(problem.substructures) // description.bodies
         length, between = description.length, 0.5 * (PITCH - THICKNESS)
         kept, corners, parts, lows, elements = [], [], [], [], []
@@ -116,19 +131,46 @@ class DrawnRods(Drawn):
             size += 2 * len(places)
             first_element += len(part.dofs) - 1
         self._along = np.concatenate(kept)
-        self.axial, self._elements = AxialForce(problem, columns), np.concatenate(elements)
+        self._force, self._elements = AxialForce(problem, columns), np.concatenate(elements)
+        self._broken = None if description.broken is None else description.broken[0]
         nodes = np.stack([problem.positions[self._along], np.concatenate(lows)], axis=1)
         quads = np.concatenate(corners).astype(np.int32)
         mesh = floats(nodes), quads, np.concatenate(parts)
         super().__init__(problem, description, columns, mesh, heights)
 
-    def stress(self, iterate: Iterate, settings: Settings) -> StressField:
-        """Axial force, as rods have no height."""
-        return "axial force", "N", floats(self.axial_force(iterate)[self._elements])
+    @property
+    def extras(self) -> Extras:
+        """Stress, and the force in each rod."""
+        return {"stress": self._stress, "axial force": self._axial_force}
 
-    def axial_force(self, iterate: Iterate) -> Array:
-        """That in all elements, shape (n_elements, n_instants), N."""
-        return self.axial(iterate.displacement[:, self._columns])
+    def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
+        """Axial force, as rods have no height."""
+        return "axial force", "N", floats(self._forces(iterate)[self._elements])
+
+    def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+        """Axial force in some rods at all instants.
+
+        "x" of the middles of elements, (n_places,), m; "force", (n_rods, n_places, n_instants), N;
+        "names" of the rods; "stuck", what the force would be if nothing slipped, of a strand that
+        is bent, else None.
+        """
+        count, broken = int(self._force.wires.max()) + 1, self._broken
+        places = thinned(len(self._force.wires) // count, MOST_POINTS)
+        shown = sorted(
+            {*thinned(count, MOST_WIRES).tolist(), *([] if broken is None else [broken])}
+        )
+        names = [f"{n + 1}, broken" if n == broken else str(n + 1) for n in shown]
+        forces = self._forces(iterate).reshape(count, -1, len(self._columns))
+        return {
+            "x": floats(self._force.positions[places]),
+            "force": floats(forces[np.ix_(shown, places)]),
+            "names": names if count > 1 else ["rod"],
+            "stuck": None,
+        }
+
+    def _forces(self, iterate: Iterate) -> Array:
+        """Those in all elements, shape (n_elements, n_instants), N."""
+        return self._force(iterate.displacement[:, self._columns])
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         """They move along themselves."""
@@ -140,23 +182,68 @@ class DrawnRods(Drawn):
 class DrawnMesh(Drawn):
     """Plane bodies, each with its mesh thinned where that is a grid."""
 
-    def __init__(self, problem: Problem, description: Description, columns: Indices) -> None:
+    def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         self._inside = problem.inside
+        self._poisson, self._state = (settings.values()[name] for name in ("poisson", "plane"))
+        self._has_bricks = bool(settings.features.bricks)
         self._nodes, quads, self._quad = thinned_mesh(problem.inside)
         self._counts = np.bincount(self._quad)
         parts = np.zeros(len(self._counts), dtype=np.intp)
         parts[self._quad] = problem.inside.parts
         mesh = floats(problem.inside.nodes[self._nodes]), quads, parts
-        super().__init__(problem, description, columns, mesh, None)
+        super().__init__(problem, settings.structure().described(), columns, mesh, None)
 
-    def stress(self, iterate: Iterate, settings: Settings) -> StressField:
+    @property
+    def extras(self) -> Extras:
+        """Stress, and lines of thrust through bricks."""
+        return {"stress": self._stress} | ({"thrust": self._thrust} if self._has_bricks else {})
+
+    def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Von Mises' equivalent stress, its mean in every quadrilateral."""
-        values, means = settings.values(), []
+        means = []
         for moved in np.moveaxis(self._moved(iterate), -1, 0):
             stress = self._inside.stress(moved)
-            shown = von_mises(stress, values["poisson"], values["plane"])
+            shown = von_mises(stress, self._poisson, self._state)
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
         return "von Mises stress", "Pa", floats(np.stack(means, axis=1))
+
+    def _thrust(self, iterate: Iterate, needs: Needs) -> dict[str, Floats]:
+        """Resultant force in every joint of bricks, and where it acts.
+
+        "lines" go from the middle of one brick over the point where the resultant acts to the
+        middle of the other, (n_joints, 3, 2, n_instants), m; on a support they end there. "forces"
+        are their sizes, (n_joints, n_instants), N.
+        """
+        lines, forces = [], []
+        for name, (places, above, below) in self._joints.items():
+            components = self._problem.contact_places[name]
+            normal, tangential = (
+                iterate.contact_force[own][:, self._columns] for own in components
+            )
+            pressed = np.maximum(normal, 0.0)
+            whole = pressed.sum(axis=0)
+            share = pressed / np.where(whole > 0.0, whole, 1.0)
+            point = places.T @ np.where(whole > 0.0, share, 1.0 / len(places))
+            ends = above, point, point if below is None else below
+            lines.append(np.stack(np.broadcast_arrays(*ends)))
+            forces.append(np.hypot(whole, tangential.sum(axis=0)))
+        return {"lines": floats(np.stack(lines)), "forces": floats(np.stack(forces))}
+
+    @cached_property
+    def _joints(self) -> dict[str, tuple[Array, Array, Array | None]]:
+        """Points of each joint, (n_points, 2), and middles of its bricks, (2, 1), m."""
+        problem, inside = self._problem, self._inside
+        centres = inside.nodes[inside.elements].mean(axis=1)
+        middles = np.zeros((problem.n_dofs, 2))
+        for number, part in enumerate(problem.substructures):
+            middles[part.dofs] = centres[inside.parts == number].mean(axis=0)
+        joints = {}
+        for name, law in problem.rubbing.items():
+            _, pairs = np.unique(law.points, return_index=True)
+            sides = [problem.row_dofs[rows[pairs]] for rows in law.tangent.sides]
+            ends = [middles[dofs[0]][:, None] for dofs in sides]
+            joints[name] = problem.positions[sides[0]], ends[0], (*ends, None)[1]
+        return joints
 
     def nodes_of(self, displacement: Array) -> Floats:
         """Displacement of the nodes, (n_nodes, 2), of that of degrees of freedom, (n_dofs,), m."""

@@ -10,13 +10,12 @@ import numpy as np
 
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
-from app.worker.extras import EXTRAS, OF_ROPE
+from app.worker.extras import EXTRAS
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
-from solver.discrete.rope import Rope
 from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.status import CANCELLED
@@ -41,7 +40,7 @@ class Sampler:
 
     `run` is what all frames share, to which `complete` adds the reference. Of what is solved,
     `columns` are the instants, and `rows` the points by interface, that are shown; `drawn` is the
-    bodies as they are drawn, and `rope` the strand if it is one that is bent.
+    bodies as they are drawn.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
@@ -51,14 +50,8 @@ class Sampler:
             name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
         }
         self.loop = settings.structure().loop(problem)
-        structure = settings.structure()
-        self.rope = structure if isinstance(structure, Rope) else None
-        self.drawn: DrawnRods | DrawnMesh | DrawnRope
-        if self.rope is not None:
-            self.drawn = DrawnRope(self.rope, self.columns)
-        else:
-            kind = DrawnRods if problem.inside is None else DrawnMesh
-            self.drawn = kind(problem, structure.described(), self.columns)
+        kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
+        self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(problem, settings, self.columns)
         self.run = Run(
             number=number,
             settings=settings,
@@ -98,7 +91,7 @@ class Sampler:
     ) -> Frame:
         """What is shown of an iterate, with the extras that views need."""
         solution = Solution(iterate, list(history), status or CANCELLED)
-        run = FinishedRun(self.settings, solution, self.loop)
+        run = FinishedRun(self.settings, solution, made_loop=self.loop)
         kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
         scalars = {n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS}
         return Frame(
@@ -118,12 +111,9 @@ class Sampler:
         )
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        names, rope = needs.extras, self.rope
+        names, drawn = needs.extras, self.drawn.extras
         extras = {name: EXTRAS[name](self, iterate, needs) for name in names & EXTRAS.keys()}
-        if rope is not None:
-            of_rope = names & OF_ROPE.keys()
-            extras |= {name: OF_ROPE[name](rope, self, iterate, needs) for name in of_rope}
-        return extras
+        return extras | {name: drawn[name](iterate, needs) for name in names & drawn.keys()}
 
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Interfaces whose contact a frame has."""
@@ -164,7 +154,4 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = self.loop.force
-        force = force if isinstance(force, np.ndarray) else force(shown)
-        both = self.loop.displacement(shown.displacement), force
-        return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
+        return floats(np.stack(self.loop.along(shown))[:, self.columns])

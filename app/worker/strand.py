@@ -7,16 +7,26 @@ at any place; the outermost fibre is below.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
+from scipy.interpolate import make_interp_spline
 
 from app.frame import Bytes, DeformedGeometry, Geometry
 from app.messages import Needs
-from app.worker.geometry import Indices, StressField, floats, outlines_of, thinned
+from app.worker.geometry import (
+    MOST_POINTS,
+    Extras,
+    Indices,
+    StressField,
+    floats,
+    outlines_of,
+    thinned,
+)
 from solver.arrays import Array
+from solver.discrete import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import (
     cut_at,
@@ -29,13 +39,8 @@ from solver.latin import Iterate
 from solver.settings import Settings
 from solver.study.quantities.cycles import ends_of
 
-if TYPE_CHECKING:
-    from app.worker.sampling import Sampler
-
 A_TURN, FEWEST, MOST = 20, 40, 100
 """Steps along the strand for each turn of an outer wire, and their number in any case."""
-MOST_PLACES = 200
-"""Places along a wire that are shown at most."""
 SHOWN_SHARE = 0.12 * np.pi
 """Angle from the edges of what is in front within which a wire has no line of contact."""
 
@@ -47,8 +52,10 @@ class DrawnRope:
     fibre to the innermost; the other half is its mirror image.
     """
 
-    def __init__(self, rope: Rope, columns: Indices) -> None:
-        self._rope, self._columns = rope, columns
+    def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
+        rope = settings.structure()
+        assert isinstance(rope, Rope)
+        self._rope, self._columns, self._ends = rope, columns, ends_of(settings)
         description = rope.described()
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
@@ -76,7 +83,18 @@ class DrawnRope:
         moved = floats(self._nodes_moved), floats(self._points_moved)
         return DeformedGeometry(*moved, status.astype(np.int8))
 
-    def stress(self, iterate: Iterate, settings: Settings) -> StressField:
+    @property
+    def extras(self) -> Extras:
+        """Stress, and what is shown of all wires and of the selected one."""
+        return {
+            "stress": self._stress,
+            "axial force": self._axial_force,
+            "section": self._section,
+            "all_wires": self._all_wires,
+            "wire_ranges": self._wire_ranges,
+        }
+
+    def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Mean stress over the section of every wire."""
         stress = wire_stresses(self._rope, iterate.displacement, self._columns)
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
@@ -111,8 +129,7 @@ class DrawnRope:
         return nodes, place.reshape(-1, 4).astype(np.int32)
 
     def _nearest(self, numbers: Array, place: Array) -> tuple[Indices, Indices, Indices, Bytes]:
-        """Wire, contact point, element and sign of slip at places on outer wires."""
-        elements = self._rope.elements
+        """Wire, contact point, node and sign of slip at places on outer wires."""
         wires, sides = self._first + numbers, np.ones(len(place), dtype=np.int8)
         share = place / self._z[-1]
         if not self._rope.is_clamped:
@@ -120,8 +137,13 @@ class DrawnRope:
             wires = np.full(len(place), self._first)
             share = np.arccos(np.cos(turned)) / np.pi
             sides = np.where(np.sin(turned) < 0.0, -1, 1).astype(np.int8)
+        return wires, *self._points_at(wires, share), sides
+
+    def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
+        """The nearest contact points, and their nodes, at shares of the length of wires."""
+        elements = self._rope.elements
         node = np.clip(np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1))
-        return wires, wires * (elements - 1) + node - 1, node, sides
+        return wires * (elements - 1) + node - 1, node
 
     def _lines(self) -> tuple[Array, Indices, Indices, Bytes]:
         """Contact points along the wires in front, broken by NaN, and what each belongs to."""
@@ -136,11 +158,7 @@ class DrawnRope:
 
     def _moved(self, places: Array) -> Array:
         """Displacement of places, (n, 2, n_instants): sections stay plane and at right angles."""
-        up, slope = self._bent()
-        share = np.interp(places[:, 0], self._z, np.arange(len(self._z), dtype=float))
-        low = np.minimum(share.astype(np.intp), len(self._z) - 2)
-        part = (share - low)[:, None]
-        up, slope = ((1.0 - part) * one[low] + part * one[low + 1] for one in (up, slope))
+        up, slope = (make_interp_spline(self._z, each, k=1)(places[:, 0]) for each in self._bent())
         across = np.nan_to_num(places[:, 1:]) - self._radius
         return np.stack([-slope * across, up], axis=1)
 
@@ -161,80 +179,73 @@ class DrawnRope:
             slope = slope - slope[middle]
         return up, slope
 
+    def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+        """Axial force in the selected wire, as in rods, and what it would be if nothing slipped."""
+        rope, columns = self._rope, self._columns
+        names = [wire.name for wire in rope.wires]
+        number = names.index(needs.interface) if needs.interface in names else 0
+        wire, places = rope.wires[number], thinned(rope.elements, MOST_POINTS)
+        nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
+        stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
+        force = wire_forces(rope, iterate.displacement, columns)[number]
+        middles = 0.5 * (wire.along[1:] + wire.along[:-1])
+        return {
+            "x": floats(np.asarray(middles)[places]),
+            "force": floats(force[None, places]),
+            "names": names[number : number + 1],
+            "stuck": floats(stuck[places]),
+        }
 
-def axial_force_of_rope(
-    rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs
-) -> dict[str, Any]:
-    """Axial force in the selected wire, and what it would be if nothing slipped."""
-    names = [wire.name for wire in rope.wires]
-    name = needs.interface if needs.interface in names else names[0]
-    number, columns = names.index(name), sampler.columns
-    wire, places = rope.wires[number], thinned(rope.elements, MOST_PLACES)
-    nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
-    stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
-    force = wire_forces(rope, iterate.displacement, columns)[number]
-    middles = 0.5 * (wire.along[1:] + wire.along[:-1])
-    return {
-        "x": floats(np.asarray(middles)[places]),
-        "force": floats(force[None, places]),
-        "names": [name],
-        "stuck": floats(stuck[places]),
-    }
+    def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+        """All wires that a section at the selected place cuts, or at the clamp; first the core.
 
+        "place" along the strand, m; "wires", the interface of each, -1 for the core, (n,);
+        "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean "stress", Pa, and
+        "slips", its status, (n, n_instants).
+        """
+        rope, columns = self._rope, self._columns
+        place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
+        cut = cut_at(rope, place)
+        lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
+        points, _ = self._points_at(cut.wire, cut.arc / lengths)
+        slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
+        core = rope.section.core
+        stretched = core.young / rope.section.stiffness * rope.tension[columns]
+        stress = stress_at(rope, cut, wire_stresses(rope, iterate.displacement, columns))
+        radii = [0.5 * rope.wires[number].made.diameter for number in cut.wire]
+        return {
+            "place": place,
+            "wires": np.append(-1, cut.wire),
+            "centres": floats(np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])),
+            "radii": floats(np.array([0.5 * core.diameter, *radii])),
+            "stress": floats(np.concatenate([stretched[None], stress])),
+            "slips": np.concatenate([np.zeros((1, len(columns))), slips]).astype(np.int8),
+        }
 
-def section(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-    """All wires that a section at the selected place cuts, or at the clamp; the core is the first.
+    def _all_wires(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+        """Status of every wire, along it.
 
-    "place" along the strand, m; "wires", the interface of each, -1 for the core, (n,); "centres",
-    (n, 2), and "radii", (n,), m, the outermost fibre below; mean "stress", Pa, and "slips", its
-    status, (n, n_instants).
-    """
-    columns = sampler.columns
-    place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
-    cut = cut_at(rope, place)
-    lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
-    node = np.round(cut.arc / lengths * rope.elements).astype(np.intp)
-    points = cut.wire * (rope.elements - 1) + np.clip(node - 1, 0, rope.elements - 2)
-    slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
-    core = rope.section.core
-    stretched = core.young / rope.section.stiffness * rope.tension[columns]
-    stress = stress_at(rope, cut, wire_stresses(rope, iterate.displacement, columns))
-    radii = [0.5 * rope.wires[number].diameter for number in cut.wire]
-    return {
-        "place": place,
-        "wires": np.append(-1, cut.wire),
-        "centres": floats(np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])),
-        "radii": floats(np.array([0.5 * core.diameter, *radii])),
-        "stress": floats(np.concatenate([stretched[None], stress])),
-        "slips": np.concatenate([np.zeros((1, len(columns))), slips]).astype(np.int8),
-    }
+        "places" along the strand, m, or polar angles, degrees, where it is bent alike all along,
+        and not beside a clamp ("is_clamped"): then each wire stands for its layer; "wire_layers" of
+        them, from 0, (n_wires,); "status", (n_wires, n_places, n_instants).
+        """
+        rope = self._rope
+        kept = thinned(rope.elements - 1, MOST_POINTS)
+        status = iterate.status[:, self._columns].reshape(len(rope.wires), rope.elements - 1, -1)
+        length = rope.seen_length if rope.is_clamped else 180.0
+        return {
+            "places": floats((kept + 1.0) / rope.elements * length),
+            "is_clamped": rope.is_clamped,
+            "wire_layers": np.array([wire.layer for wire in rope.wires]),
+            "status": np.ascontiguousarray(status[:, kept]),
+        }
 
+    def _wire_ranges(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+        """How far the stress of every wire swings in the last cycle, or throughout without one.
 
-def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-    """Status of every wire, along it.
-
-    "places" along the strand, m, or polar angles, degrees, where it is bent alike all along, and
-    not beside a clamp ("is_clamped"): then each wire stands for its layer; "wire_layers" of them,
-    from 0, (n_wires,); "status", (n_wires, n_places, n_instants).
-    """
-    points = rope.elements - 1
-    kept = thinned(points, MOST_PLACES)
-    status = iterate.status[:, sampler.columns].reshape(len(rope.wires), points, -1)
-    length = rope.seen_length if rope.is_clamped else 180.0
-    return {
-        "places": floats((kept + 1.0) / rope.elements * length),
-        "is_clamped": rope.is_clamped,
-        "wire_layers": np.array([wire.layer for wire in rope.wires]),
-        "status": np.ascontiguousarray(status[:, kept]),
-    }
-
-
-def wire_ranges(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-    """How far the stress of every wire swings in the last cycle, or throughout if there is none.
-
-    "wire_layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
-    """
-    ends = ends_of(sampler.settings)
-    last = slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else slice(None)
-    ranges = stress_ranges(rope, iterate.displacement, last)
-    return {"wire_layers": np.array([wire.layer for wire in rope.wires]), "ranges": floats(ranges)}
+        "wire_layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
+        """
+        last = slice(self._ends[-2], self._ends[-1] + 1) if len(self._ends) > 1 else slice(None)
+        ranges = stress_ranges(self._rope, iterate.displacement, last)
+        layers = np.array([wire.layer for wire in self._rope.wires])
+        return {"wire_layers": layers, "ranges": floats(ranges)}

@@ -53,17 +53,10 @@ class Joint(NamedTuple):
 
 
 def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> list[Brick]:
-    """Bricks of a wall, course by course from below.
+    """Bricks of a wall, course by course from below: of so many in a course, and courses.
 
-    Parameters
-    ----------
-    bond
-        "running": every second course begins and ends with a half. "stack": all joints are one
-        above the other.
-    columns, courses
-        Bricks of a course, and courses.
-    size
-        Elements of a brick along, even in a running bond, and up.
+    In a running bond every second course begins and ends with a half, in a stack bond all joints
+    are one above the other. `size` is elements of a brick along, even in a running bond, and up.
     """
     along, up = size
     bricks = []
@@ -112,14 +105,9 @@ def with_opening(
 
 
 def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indices:
-    """Group of each brick, of a number of groups: the largest is halved where it is longest.
+    """Group of each brick, of `count` groups: the largest is halved where it is longest.
 
-    Parameters
-    ----------
-    bricks, size
-        All of them, and elements of one along and up.
-    count
-        Of the groups; as many as there are bricks at most.
+    There are as many as bricks at most; `size` is elements of one along and up.
     """
     x, y, columns, rows = np.array(bricks).T
     centres = np.stack([(x + 0.5 * columns) / size[0], (y + 0.5 * rows) / size[1]])
@@ -134,19 +122,17 @@ def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indic
 
 def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
     """All joints of rectangles that do not overlap: with the support, beds, and upright ones."""
-    x, y, columns, rows = np.array(bricks).T
+    lying = np.array(bricks).T
+    upright = lying[[1, 0, 3, 2]]
     joints = []
     for above, brick in enumerate(bricks):
         if brick.y == 0:
             joints.append(Joint(above, None, brick.x, brick.x + brick.columns))
-        for below in np.flatnonzero(y + rows == brick.y):
-            first = max(brick.x, int(x[below]))
-            last = min(brick.x + brick.columns, int(x[below] + columns[below]))
-            if last > first:
-                joints.append(Joint(above, int(below), first, last))
-        for left in np.flatnonzero(x + columns == brick.x):
-            first = max(brick.y, int(y[left]))
-            last = min(brick.y + brick.rows, int(y[left] + rows[left]))
-            if last > first:
-                joints.append(Joint(above, int(left), first, last, is_upright=True))
+        for is_upright, (x, y, columns, rows) in enumerate((lying, upright)):
+            ends = x + columns
+            for below in np.flatnonzero(y + rows == y[above]).tolist():
+                first = int(max(x[above], x[below]))
+                last = int(min(ends[above], ends[below]))
+                if last > first:
+                    joints.append(Joint(above, below, first, last, bool(is_upright)))
     return joints

@@ -7,7 +7,7 @@ Poisson's effect; K.-O. Papailiou, IEEE Trans. Power Delivery 12, 1997).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -192,18 +192,10 @@ class CrossSection:
         return np.array(below[::-1]), np.array(above[::-1])
 
     def friction_bounds(self, tension: Array, friction: float, factors: Array | None) -> Array:
-        """Friction that the wires of every layer can take, from below and from above.
+        """Friction that the wires of every layer can take, from below and from above, N/m.
 
-        Parameters
-        ----------
-        tension
-            Of the strand, shape (n_instants,), N.
-        friction, factors
-            mu, and that of every layer on what it lies on over it, shape (n_layers,); None is 1.
-
-        Returns
-        -------
-        Shape (n_layers, n_instants), N per metre of wire.
+        Shape (n_layers, n_instants), per metre of wire, under the tension of the strand,
+        (n_instants,), N; `factors` are mu of every layer on what it lies on over `friction`.
         """
         below, above = self.line_pressures(tension)
         if factors is not None:
@@ -212,16 +204,22 @@ class CrossSection:
         return friction * (below + above)
 
 
+def laid(rows: Iterable[Sequence[float]]) -> CrossSection:
+    """Strand of rows as `CrossSection.rows` has them."""
+    core, *layers = (
+        WireLayer(int(wires), diameter, young, float(np.radians(lay)))
+        for wires, diameter, lay, young in rows
+    )
+    return CrossSection(core, tuple(layers))
+
+
 def seven_wire() -> CrossSection:
     """Seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
 
     Six wires of 5.2 mm on one of 5.4 mm, with a lay length of 16 diameters (14 to 18 are allowed).
     """
-    diameter, radius = 15.7e-3, 5.3e-3
-    lay = float(np.arctan(2.0 * np.pi * radius / (16.0 * diameter)))
-    return CrossSection(
-        WireLayer(1, 5.4e-3, PRESTRESSING), (WireLayer(6, 5.2e-3, PRESTRESSING, lay),)
-    )
+    lay = np.degrees(np.arctan(2.0 * np.pi * 5.3e-3 / (16.0 * 15.7e-3)))
+    return laid([(1, 5.4e-3, 0.0, PRESTRESSING), (6, 5.2e-3, lay, PRESTRESSING)])
 
 
 def mooring(layers: int) -> CrossSection:
@@ -231,14 +229,8 @@ def mooring(layers: int) -> CrossSection:
     so much thicker that the wires of a layer have room beside each other. Three layers are 35 mm
     thick, and break at some 1100 kN.
     """
-    lay = np.radians(17.0)
-    return CrossSection(
-        WireLayer(1, 5.3e-3, STEEL),
-        tuple(
-            WireLayer(6 * (number + 1), 5e-3, STEEL, float(lay * (-1) ** number))
-            for number in range(layers)
-        ),
-    )
+    around = ((6 * number, 5e-3, -17.0 * (-1) ** number, STEEL) for number in range(1, layers + 1))
+    return laid([(1, 5.3e-3, 0.0, STEEL), *around])
 
 
 def conductor() -> CrossSection:
@@ -248,27 +240,17 @@ def conductor() -> CrossSection:
     and 11 times the diameter over the layer, within what the standard allows. It breaks at 140 kN.
     """
     steel, aluminium = 3.454e-3, 4.442e-3
-    over = np.array([3.0 * steel, 3.0 * steel + 2.0 * aluminium, 3.0 * steel + 4.0 * aluminium])
-    radii = 0.5 * (over - np.array([steel, aluminium, aluminium]))
-    lays = np.arctan(2.0 * np.pi * radii / (np.array([25.0, 13.0, 11.0]) * over))
-    first, second, third = (float(lay) for lay in lays)
-    return CrossSection(
-        WireLayer(1, steel, STEEL),
-        (
-            WireLayer(6, steel, STEEL, first),
-            WireLayer(10, aluminium, ALUMINIUM, -second),
-            WireLayer(16, aluminium, ALUMINIUM, third),
-        ),
+    wires = np.array([steel, aluminium, aluminium])
+    over = steel + 2.0 * np.cumsum(wires)
+    lays = np.degrees(np.arctan(np.pi * (over - wires) / (np.array([25.0, 13.0, 11.0]) * over)))
+    return laid(
+        [
+            (1, steel, 0.0, STEEL),
+            (6, steel, lays[0], STEEL),
+            (10, aluminium, -lays[1], ALUMINIUM),
+            (16, aluminium, lays[2], ALUMINIUM),
+        ]
     )
-
-
-def laid(rows: Sequence[Sequence[float]]) -> CrossSection:
-    """Strand of one's own, of rows as `CrossSection.rows` has them."""
-    core, *layers = (
-        WireLayer(int(wires), diameter, young, float(np.radians(lay)))
-        for wires, diameter, lay, young in rows
-    )
-    return CrossSection(core, tuple(layers))
 
 
 CONSTRUCTIONS: Mapping[str, Callable[[int], CrossSection]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,8 +17,6 @@ from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfe
 if TYPE_CHECKING:
     from solver.discrete.rods import End, Rods
 
-COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 MACRO_DEGREE = 1
 """Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
 them both sides balance each other but slowly: 1 % of the friction force then takes more than 200
@@ -30,20 +28,9 @@ SIDES = {"left": "support", "right": "load"}
 """Interfaces of the ends, by their side."""
 
 
-def rod_stiffness(elements: int, element_stiffness: float | Array) -> sparse.csr_array:
-    """Assemble the stiffness of linear elements in a row.
-
-    Parameters
-    ----------
-    elements
-        Their number.
-    element_stiffness
-        ES/h of each of them, or of all alike.
-
-    Returns
-    -------
-    Shape (elements + 1, elements + 1).
-    """
+def rod_stiffness(element_stiffness: Array) -> sparse.csr_array:
+    """Stiffness of linear elements in a row, (n + 1, n + 1), of ES/h of each of them, (n,)."""
+    elements = len(element_stiffness)
     diagonal = np.zeros(elements + 1)
     diagonal[:-1] = element_stiffness
     diagonal[1:] += element_stiffness
@@ -72,21 +59,14 @@ def substructure_sizes(elements: int, substructures: int) -> list[int]:
     return [size + 1] * extra + [size] * (substructures - extra)
 
 
-def resampled(values: Array, elements: int) -> Array:
-    """Values at the nodes of equal elements, linear between the nodes of others along one rod."""
-    places = np.linspace(0.0, len(values) - 1.0, elements + 1)
-    left = np.minimum(places.astype(np.intp), len(values) - 2)
-    share = (places - left).reshape(-1, *[1] * (values.ndim - 1))
-    return np.asarray(values[left] + share * (values[left + 1] - values[left]))
-
-
 class CutRods:
     """Parallel rods that are all cut alike, and the numbers of degrees of freedom and rows.
 
-    Degrees of freedom run along rod after rod; a broken one has two at its break, and no boundary
-    row there. Rows are ordered by law, so that those of one law follow each other: the lower sides
-    of all contacts, if they are between rods, the upper sides of all contacts, then the left ends
-    and the right ends, cut by cut.
+    Each rod rubs on a support of its own, or on the rods before and behind it. Degrees of freedom
+    run along rod after rod; a broken one has two at its break, and no boundary row there. Rows are
+    ordered by law, so that those of one law follow each other: the lower sides of all contacts, if
+    they are between rods, the upper sides of all contacts, then the left ends and the right ends,
+    cut by cut.
 
     Parameters
     ----------
@@ -94,9 +74,8 @@ class CutRods:
         Elements of the pieces of a rod.
     rods
         Number of rods.
-    contacts
-        Rod above and rod below of every interface with friction, from 0; below is None on a
-        support, for all of them or for none.
+    on_supports
+        Whether rods rub on supports.
     rub_at_ends
         Whether the first and the last node of a rod rub.
     broken
@@ -114,17 +93,19 @@ class CutRods:
         Node of every degree of freedom, one array per rod.
     left, right
         Rows of the ends, shape (n_pieces, n_rods), `NO_ROW` at the break.
+    lower
+        Number of contacts that have a rod below.
     """
 
     def __init__(
         self,
         sizes: Sequence[int],
         rods: int,
-        contacts: Sequence[tuple[int, int | None]],
+        on_supports: bool,
         rub_at_ends: tuple[bool, bool],
         broken: tuple[int, int] | None = None,
     ) -> None:
-        self.sizes, self.contacts, self.broken = sizes, contacts, broken
+        self.sizes, self.broken = sizes, broken
         self.starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
         self.rubbing = [np.arange(size + 1) for size in sizes]
         if not rub_at_ends[0]:
@@ -142,16 +123,10 @@ class CutRods:
             ends[1, before, rod] = ends[0, before + 1, rod] = False
         self._first_dof = np.concatenate([[0], np.cumsum([len(x) for x in self.nodes_of_dofs])])
         self._first_row = np.concatenate([[0], np.cumsum([len(own) for own in self.rubbing])])
-        self._lower = sum(below is not None for _, below in contacts)
-        self._sides: list[list[int]] = [[] for _ in range(rods)]
-        for number, (above, _) in enumerate(contacts):
-            self._sides[above].append(self._lower + number)
-        for number, (_, below) in enumerate(contacts):
-            if below is not None:
-                self._sides[below].append(number)
-        first = (self._lower + len(contacts)) * self._first_row[-1]
-        rows = np.where(ends.ravel(), first - 1 + np.cumsum(ends.ravel()), NO_ROW)
-        self.left, self.right = rows.reshape(ends.shape)
+        self.lower = 0 if on_supports else rods - 1
+        sides = rods if on_supports else 2 * (rods - 1)
+        rows = sides * self._first_row[-1] - 1 + np.cumsum(ends.ravel())
+        self.left, self.right = np.where(ends.ravel(), rows, NO_ROW).reshape(ends.shape)
 
     def dofs(self, rod: int, piece: int) -> Indices:
         """Degrees of freedom of one piece."""
@@ -160,13 +135,11 @@ class CutRods:
             start += 1
         return np.arange(start, start + self.sizes[piece] + 1)
 
-    def above(self, contact: int) -> Indices:
-        """Rows of the upper side of a contact, 0 the first."""
-        return self._side(self._lower + contact)
-
-    def below(self, contact: int) -> Indices | None:
-        """Rows of the lower side of a contact, or None on a support."""
-        return None if self.contacts[contact][1] is None else self._side(contact)
+    def component(self, rod: int) -> Component:
+        """Rows of a rod on its support, or on the rod before it."""
+        if not self.lower:
+            return Component(self._side(rod))
+        return Component(self._side(self.lower + rod - 1), self._side(rod - 1))
 
     def _side(self, number: int) -> Indices:
         size = self._first_row[-1]
@@ -175,17 +148,37 @@ class CutRods:
     def rows(self, rod: int, piece: int) -> tuple[Indices, Indices, int]:
         """Rows of one piece, the node of it under each, and how many, the last, are its ends."""
         some = slice(self._first_row[piece], self._first_row[piece + 1])
-        sides = [self._side(number)[some] for number in self._sides[rod]]
+        numbers = [rod]
+        if self.lower:
+            # On the rod before it, and below the one behind it.
+            numbers = [self.lower + rod - 1] * (rod > 0) + [rod] * (rod < self.lower)
+        sides = [self._side(number)[some] for number in numbers]
         ends = np.array([self.left[piece, rod], self.right[piece, rod]])
         there = ends != NO_ROW
         held = np.array([0, self.sizes[piece]])[there]
         trace = np.concatenate([*[self.rubbing[piece]] * len(sides), held])
         return np.concatenate([*sides, ends[there]]), trace, len(held)
 
+    def points(self, rod: int) -> Indices:
+        """Point of every pair of what a rod rubs on; there are two at a break of either rod."""
+        places: Indices = self.nodes - self.nodes[0]
+        if self.broken is not None and self.broken[0] in (rod, rod - 1):
+            piece = np.repeat(np.arange(len(self.sizes)), [len(own) for own in self.rubbing])
+            places += piece > self.broken[1]
+        return places
+
     def weights(self, element_length: float) -> Array:
         """Tributary lengths of all pairs of one contact."""
         pieces = zip(self.sizes, self.rubbing, strict=True)
         return np.concatenate([tributary(size, element_length)[own] for size, own in pieces])
+
+    def macro(self) -> sparse.csr_array | None:
+        """Macro basis of a contact between rods: polynomials on every piece."""
+        if not self.lower:
+            return None
+        counts = [len(nodes) for nodes in self.rubbing]
+        bases = [np.vander(np.linspace(-1.0, 1.0, n), min(MACRO_DEGREE + 1, n)) for n in counts]
+        return sparse.csr_array(block_diag(*bases))
 
     def cuts(self) -> Iterator[tuple[str, Interface]]:
         """Cuts through all rods by name; the macro problem balances the force of each rod."""
@@ -204,36 +197,10 @@ def discretise_rods(rods: Rods) -> Problem:
     above. Its points run along the rods; at the break of either there are two, one for each of the
     parts that have come apart.
 
-    The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
-    substructure. On the friction points it is that of a density ES/l_sub^2 over one element's
-    length, the same at every node and on both sides of a contact: with the halved tributary length
-    at the two sides of a cut, the iterations miss the figures that an independent implementation
-    reports (displacement error 0.15 against 0.21 at iteration 10 of its test), with the whole
-    element length they meet them.
+    Elements are dealt to substructures, with a cut at the break. Between rods held ends do not rub:
+    nothing slips there, and friction could not be told from the reactions.
     """
-    cut = _cut(rods)
-    shared: dict[tuple[bytes, bytes, tuple[int, ...]], Elasticity] = {}
-    return Problem(
-        substructures=tuple(
-            _substructure(rods, cut, rod, piece, shared)
-            for rod in range(rods.wires)
-            for piece in range(len(cut.sizes))
-        ),
-        interfaces=dict(_interfaces(rods, cut)),
-        positions=np.concatenate([rods.nodes[nodes] for nodes in cut.nodes_of_dofs]),
-        instants=rods.instants,
-        carried=None if rods.settlement is None else rods.settlement / rods.length,
-        scales=Scales(rods.length, rods.stiffness, rods.duration),
-    )
-
-
-def _cut(rods: Rods) -> CutRods:
-    """Deal the elements to substructures, and cut at the break.
-
-    Between rods held ends do not rub: nothing slips there, and friction could not be told from the
-    reactions.
-    """
-    sizes, broken = substructure_sizes(rods.elements, rods.substructures), None
+    sizes, broken, rubs = substructure_sizes(rods.elements, rods.substructures), None, (True, True)
     if rods.broken is not None:
         node, count = rods.broken[1], max(rods.substructures, 2)
         beyond = rods.elements - node
@@ -241,23 +208,72 @@ def _cut(rods: Rods) -> CutRods:
         before = min(max(before, 1, count - beyond), node, count - 1)
         sizes = substructure_sizes(node, before) + substructure_sizes(beyond, count - before)
         broken = rods.broken[0] - 1, before - 1
-    if rods.wires == 1:
-        return CutRods(sizes, 1, [(0, None)], (True, True), broken)
-    contacts = [(wire + 1, wire) for wire in range(rods.wires - 1)]
-    rubs = not rods.left.is_prescribed, not rods.right.is_prescribed
-    return CutRods(sizes, rods.wires, contacts, rubs, broken)
+    names = ["friction"]
+    if rods.wires > 1:
+        rubs = not rods.left.is_prescribed, not rods.right.is_prescribed
+        names = [f"contact {number}-{number + 1}" for number in range(1, rods.wires)]
+    cut = CutRods(sizes, rods.wires, rods.wires == 1, rubs, broken)
+    scales = Scales(rods.length, rods.stiffness, rods.duration)
+    return assembled(cut, [rods] * rods.wires, [rods.nodes] * rods.wires, names, scales)
+
+
+def assembled(
+    cut: CutRods,
+    rods: Sequence[Rods],
+    places: Sequence[Array],
+    names: Sequence[str],
+    scales: Scales,
+) -> Problem:
+    """Discrete problem of rods that are cut alike, and have ends and instants alike.
+
+    The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
+    substructure. On the friction points it is that of a density ES/l_sub^2 over one element's
+    length, the same at every node and on both sides of a contact: with the halved tributary length
+    at the two sides of a cut, the iterations miss the figures that an independent implementation
+    reports (displacement error 0.15 against 0.21 at iteration 10 of its test), with the whole
+    element length they meet them.
+
+    Each is one of `rods`; `places` are those of its nodes, shape (n_nodes,), m, and `names` are of
+    the interfaces on supports, or between two rods.
+    """
+    shared: dict[tuple[object, ...], Elasticity] = {}
+    first, carried = rods[0], rods[0].settlement
+    rubbing = range(len(rods) - len(names), len(rods))
+    interfaces: dict[str, Interface] = {
+        name: _friction(cut, rod, rods[rod], places[rod], scales)
+        for name, rod in zip(names, rubbing, strict=True)
+    }
+    interfaces[SIDES["left"]] = _held_or_pulled(first, first.left, cut.left[0], 0, scales)
+    interfaces |= cut.cuts()
+    interfaces[SIDES["right"]] = _held_or_pulled(first, first.right, cut.right[-1], -1, scales)
+    return Problem(
+        substructures=tuple(
+            _substructure(cut, rod, piece, rods[rod], scales, shared)
+            for rod in range(len(rods))
+            for piece in range(len(cut.sizes))
+        ),
+        interfaces=interfaces,
+        positions=np.concatenate(
+            [own[nodes] for own, nodes in zip(places, cut.nodes_of_dofs, strict=True)]
+        ),
+        instants=first.instants,
+        carried=None if carried is None else carried / scales.displacement,
+        scales=scales,
+    )
 
 
 def _substructure(
-    rods: Rods,
     cut: CutRods,
     rod: int,
     piece: int,
-    shared: dict[tuple[bytes, bytes, tuple[int, ...]], Elasticity],
+    rods: Rods,
+    scales: Scales,
+    shared: dict[tuple[object, ...], Elasticity],
 ) -> Substructure:
     size, start = cut.sizes[piece], cut.starts[piece]
     rows, trace, ends = cut.rows(rod, piece)
-    section = np.ones(0) if rods.section is None else rods.section[start : start + size]
+    length, stiffness = rods.length / scales.displacement, _stiffness(rods, scales)
+    stiffness = stiffness[start : start + size]
     springs = {
         node: end
         for node, end, is_there in (
@@ -266,28 +282,39 @@ def _substructure(
         )
         if is_there and end.is_on_spring
     }
-    key = trace.tobytes(), section.tobytes(), tuple(springs)
+    key = trace.tobytes(), stiffness.tobytes(), length, tuple(springs)
     if key not in shared:
-        unit = rods.stiffness / rods.length
-        added = {node: end.spring / unit for node, end in springs.items()}
-        shared[key] = _elasticity(size, rods.elements, trace, ends, section, added)
+        part = size * (element := length / rods.elements)
+        at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
+        direction = np.full(len(trace), at_ends)
+        direction[: len(trace) - ends] = at_ends * element / part
+        matrix = rod_stiffness(stiffness * (rods.elements / length))
+        for node, end in springs.items():
+            matrix[node, node] += end.spring / (scales.force / scales.displacement)
+        shared[key] = Elasticity(matrix, trace, direction)
     forces: list[Array] = []
     if rods.body_force is not None:
-        own = np.s_[None] if rods.body_force.ndim == 1 else np.s_[start : start + size + 1]
-        scaled = rods.body_force[own] * rods.length / rods.stiffness
-        forces.append(tributary(size, 1.0 / rods.elements)[:, None] * scaled)
+        along = np.broadcast_to(rods.body_force, (rods.elements + 1, len(rods.instants)))
+        scaled = along[start : start + size + 1] * scales.displacement / scales.force
+        forces.append(tributary(size, length / rods.elements)[:, None] * scaled)
     strain = rods.free_strain
     needed = None
     if strain is not None:
-        needed = strain[start : start + size] * (section[:, None] if len(section) else 1.0)
+        needed = strain[start : start + size] * stiffness[:, None]
         # Elements push against their nodes with the force that would keep them as they were.
         forces.append(np.diff(-needed, axis=0, prepend=0.0, append=0.0))
     for node, end in springs.items():
         pulled = np.zeros((size + 1, len(rods.instants)))
-        pulled[node] = end.spring / rods.stiffness * _seen(rods, end, start + node)
+        pulled[node] = end.spring / scales.force * _seen(rods, end, start + node)
         forces.append(pulled)
     body_force = sum(forces[1:], forces[0]) if forces else None
     return Substructure(shared[key], cut.dofs(rod, piece), rows, body_force, needed)
+
+
+def _stiffness(rods: Rods, scales: Scales) -> Array:
+    """ES of every element of a rod, scaled."""
+    section = np.ones(rods.elements) if rods.section is None else rods.section
+    return np.asarray(section * (rods.stiffness / scales.force))
 
 
 def _seen(rods: Rods, end: End, node: int) -> Array:
@@ -297,84 +324,31 @@ def _seen(rods: Rods, end: End, node: int) -> Array:
     return np.asarray(end.displacement - settled)
 
 
-def _elasticity(
-    size: int,
-    elements: int,
-    trace: Indices,
-    ends: int,
-    section: Array,
-    springs: Mapping[int, float],
-) -> Elasticity:
-    """Operator of a piece, whose last rows are its ends; no `section` is 1 throughout.
-
-    `springs` hold nodes, and are part of it.
-    """
-    element = 1.0 / elements
-    part = size * element
-    varies = len(section) > 0
-    at_ends = 1.0 / part / float(np.mean(1.0 / section)) if varies else 1.0 / part
-    direction = np.full(len(trace), at_ends)
-    direction[: len(trace) - ends] = at_ends * element / part
-    stiffness = rod_stiffness(size, elements * section if varies else float(elements))
-    for node, spring in springs.items():
-        stiffness[node, node] += spring
-    return Elasticity(stiffness, trace, direction)
-
-
-def _interfaces(rods: Rods, cut: CutRods) -> Iterator[tuple[str, Interface]]:
-    for number, (above, below) in enumerate(cut.contacts):
-        name = "friction" if below is None else f"contact {below + 1}-{above + 1}"
-        yield name, _friction(rods, cut, number)
-    yield SIDES["left"], _held_or_pulled(rods, rods.left, cut.left[0], 0)
-    yield from cut.cuts()
-    yield SIDES["right"], _held_or_pulled(rods, rods.right, cut.right[-1], -1)
-
-
-def _held_or_pulled(rods: Rods, end: End, rows: Indices, node: int) -> Interface:
-    """Law of an end; a spring that holds it is part of the rod."""
+def _held_or_pulled(rods: Rods, end: End, rows: Indices, node: int, scales: Scales) -> Interface:
+    """Law of the ends of all rods; a spring that holds one is part of the rod."""
     if end.is_prescribed:
-        return Dirichlet(rows, np.tile(_seen(rods, end, node) / rods.length, (rods.wires, 1)))
+        held = _seen(rods, end, node) / scales.displacement
+        return Dirichlet(rows, np.tile(held, (len(rows), 1)))
     force = np.zeros(len(rods.instants)) if end.force is None else end.force
-    pulled = np.tile(force / rods.stiffness, (rods.wires, 1))
-    return Neumann(rows, pulled, np.eye(rods.wires))
+    return Neumann(rows, np.tile(force / scales.force, (len(rows), 1)), np.eye(len(rows)))
 
 
-def _friction(rods: Rods, cut: CutRods, number: int) -> Contact:
-    weights = rods.length * cut.weights(1.0 / rods.elements)
-    node = cut.nodes
-    place = node.copy()
-    if cut.broken is not None and cut.broken[0] in cut.contacts[number]:
-        piece = np.repeat(np.arange(len(cut.sizes)), [len(own) for own in cut.rubbing])
-        place += piece > cut.broken[1]
-    points = place - place[0]
+def _friction(cut: CutRods, rod: int, rods: Rods, places: Array, scales: Scales) -> Contact:
+    weights, points = rods.length * cut.weights(1.0 / rods.elements), cut.points(rod)
     positions = np.zeros(points[-1] + 1)
-    positions[points] = rods.nodes[node]
-    below = cut.below(number)
-    known = rods.bounds[node] * weights[:, None] / rods.stiffness
+    positions[points] = places[cut.nodes]
+    known = rods.bounds[cut.nodes] * weights[:, None] / scales.force
     if rods.factors is not None:
-        known = known * rods.factors[number]
-    component, scales = Component(cut.above(number), below), (rods.length, rods.stiffness)
+        known = known * rods.factors[rod - 1]
+    # Around a node are half an element on either side, in series.
+    soft = np.pad(1.0 / _stiffness(rods, scales), 1, mode="edge")
+    around = 2.0 / (soft[:-1] + soft[1:]) * (scales.displacement / rods.length)
+    component, units = cut.component(rod), (scales.displacement, scales.force)
     return Contact(
-        tangential=rods.friction_law.at(component, weights, scales, known=known),
+        tangential=rods.friction_law.at(component, weights, units, known=known),
         points=points,
         positions=positions,
         weights=weights,
-        around=Rod(_modulus(rods, node)),
-        macro=None if below is None else _macro(cut.rubbing),
+        around=Rod(around[cut.nodes]),
+        macro=cut.macro(),
     )
-
-
-def _modulus(rods: Rods, node: Indices) -> Array | None:
-    """Stiffness around nodes: of half an element on either side, in series."""
-    if rods.section is None:
-        return None
-    soft = np.pad(1.0 / rods.section, 1, mode="edge")
-    around: Array = 2.0 / (soft[:-1] + soft[1:])
-    return around[node]
-
-
-def _macro(rubbing: list[Indices]) -> sparse.csr_array:
-    """Macro basis of a contact between rods: polynomials on every piece."""
-    counts = [len(nodes) for nodes in rubbing]
-    bases = [np.vander(np.linspace(-1.0, 1.0, n), min(MACRO_DEGREE + 1, n)) for n in counts]
-    return sparse.csr_array(block_diag(*bases))

@@ -37,20 +37,12 @@ def von_mises(stress: Array, poisson: float, state: str) -> Array:
     return np.asarray(np.sqrt(0.5 * squares + 3.0 * xy**2))
 
 
-def shares(order: int) -> Array:
-    """Each node's share of an edge's length, shape (order + 1,): trapezium or Simpson's rule.
-
-    They are what a force of constant density puts on the nodes.
-    """
-    return np.asarray(edge_mass(order).sum(axis=0))
-
-
 @cache
 def edge_mass(order: int) -> Array:
     """Matrix from a traction at an edge's nodes to their forces, for an edge of length 1.
 
     Shape (order + 1, order + 1), read-only; exact where the traction varies like the shape
-    functions.
+    functions. Its sums are each node's share of the length: trapezium or Simpson's rule.
     """
     places, weights = leggauss(order + 1)
     values = np.array([_shape(order, xi)[0] for xi in places])
@@ -111,8 +103,8 @@ def projected_strain_matrix(xi: float, eta: float, width: float, height: float) 
     for right, up, share in _gauss_points(3):
         # 1, xi and eta are orthogonal; their squares have means of 1, 1/3 and 1/3.
         kernel = share * (1.0 + 3.0 * xi * right + 3.0 * eta * up)
-        projected += kernel * _dilatation(strain_matrix(2, right, up, width, height))
-    matrix[:2] += 0.5 * (projected - _dilatation(matrix))
+        projected += kernel * strain_matrix(2, right, up, width, height)[:2].sum(axis=0)
+    matrix[:2] += 0.5 * (projected - matrix[:2].sum(axis=0))
     return matrix
 
 
@@ -121,10 +113,6 @@ def _gauss_points(count: int) -> list[tuple[float, float, float]]:
     places, weights = (values.tolist() for values in leggauss(count))
     along = list(zip(places, weights, strict=True))
     return [(xi, eta, 0.25 * one * other) for eta, one in along for xi, other in along]
-
-
-def _dilatation(strain: Array) -> Array:
-    return np.asarray(strain[0] + strain[1])
 
 
 def _bending(xi: float, eta: float, width: float, height: float) -> Array:

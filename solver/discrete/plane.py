@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -14,9 +13,9 @@ from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import (
+    edge_mass,
     element_stiffness,
     projected_strain_matrix,
-    shares,
     strain_matrix,
 )
 
@@ -81,13 +80,6 @@ class Rectangle:
         return np.stack([corner.ravel() for corner in corners], axis=1)
 
     @cached_property
-    def outline(self) -> Indices:
-        """Nodes on the outline, in ascending order."""
-        inner = np.zeros_like(self.nodes, dtype=bool)
-        inner[1:-1, 1:-1] = True
-        return np.asarray(self.nodes[~inner])
-
-    @cached_property
     def stiffness(self) -> sparse.csc_array:
         """Stiffness of all nodes, two degrees of freedom each, shape (2 n_nodes, 2 n_nodes)."""
         own = element_stiffness(self.order, self.width, self.height, self.elastic)
@@ -97,16 +89,17 @@ class Rectangle:
         size = 2 * self.n_nodes
         return sparse.csc_array((values, (rows.ravel(), columns.ravel())), shape=(size, size))
 
+    @cached_property
+    def outline(self) -> SchurComplement:
+        """Its stiffness, seen from the degrees of freedom on its outline."""
+        is_outer = np.ones_like(self.nodes, dtype=bool)
+        is_outer[1:-1, 1:-1] = False
+        return SchurComplement(self.stiffness, dofs_of(self.nodes[is_outer]))
+
     def edge(self, side: str) -> Indices:
         """Nodes of a side in ascending order of their coordinate."""
-        nodes = self.nodes
-        sides: dict[str, Indices] = {
-            "left": nodes[:, 0],
-            "right": nodes[:, -1],
-            "bottom": nodes[0],
-            "top": nodes[-1],
-        }
-        return sides[side]
+        lines = self.nodes if side in ("bottom", "top") else self.nodes.T
+        return np.asarray(lines[0 if side in ("bottom", "left") else -1])
 
     def edge_weights(self, side: str) -> Array:
         """Length of a side that belongs to each of its nodes, scaled."""
@@ -133,7 +126,7 @@ class Rectangle:
 def edge_lengths(order: int, count: int, step: float) -> Array:
     """Length that belongs to each node of edges of elements in a row, of one length each."""
     lengths = np.zeros(order * count + 1)
-    for place, share in enumerate(shares(order)):
+    for place, share in enumerate(edge_mass(order).sum(axis=0)):
         lengths[place : place + order * count : order] += step * share
     return lengths
 
@@ -150,16 +143,8 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
     at the wavenumber q, where d is the depth behind it. Bending waves that are long beside d are so
     soft that no k suits both them and the waves shorter than d: the macro forces are to balance
     them. Those softer than E d / l^2 over the length l, as soft as its stretching, number
-    some 0.7 times the root of l / d.
-
-    Parameters
-    ----------
-    rectangle, side
-        Whose, and which one.
-    n_points
-        Points of the side that have rows.
-    degree
-        Of a side that is not long.
+    some 0.7 times the root of l / d. `n_points` of the side have rows, and `degree` is that of one
+    that is not long.
     """
     ratio = rectangle.columns * rectangle.width / (rectangle.rows * rectangle.height)
     slenderness = ratio if side in ("bottom", "top") else 1.0 / ratio
@@ -173,6 +158,8 @@ class SchurComplement:
 
     Attributes
     ----------
+    kept
+        These degrees of freedom, ascending.
     stiffness
         Of what is kept, shape (n_kept, n_kept), dense, symmetric.
 
@@ -183,7 +170,7 @@ class SchurComplement:
     """
 
     def __init__(self, whole: sparse.csc_array | Array, kept: Indices) -> None:
-        self._size, self._kept = whole.shape[0], kept
+        self._size, self.kept = whole.shape[0], kept
         self._rest = np.setdiff1d(np.arange(self._size), kept)
         stiffness = _block(whole, kept, kept)
         if len(self._rest):
@@ -201,13 +188,13 @@ class SchurComplement:
     def condense(self, force: Array) -> Array:
         """Bring forces, shape (n, n_columns), onto what is kept, shape (n_kept, n_columns)."""
         if not len(self._rest):
-            return np.asarray(force[self._kept])
-        return np.asarray(force[self._kept] - self._response.T @ force[self._rest])
+            return np.asarray(force[self.kept])
+        return np.asarray(force[self.kept] - self._response.T @ force[self._rest])
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all, shape (n, n_columns), from that of what is kept, under forces."""
         whole = np.empty((self._size, kept.shape[1]))
-        whole[self._kept] = kept
+        whole[self.kept] = kept
         if len(self._rest):
             rest = -(self._response @ kept)
             if force is not None:
@@ -223,7 +210,9 @@ def _block(whole: sparse.csc_array | Array, rows: Indices, columns: Indices) -> 
 
 
 class Condensed:
-    """A rectangle seen from its outline, or from some degrees of freedom of that alone.
+    """A rectangle seen from some degrees of freedom of its outline.
+
+    Condensation onto the whole outline is shared with others of the rectangle.
 
     Attributes
     ----------
@@ -231,43 +220,27 @@ class Condensed:
         The mesh.
     dofs
         What is kept, among the degrees of freedom of the rectangle, ascending.
+    stiffness
+        Of what is kept, shape (n_kept, n_kept), dense, symmetric.
+
+    Raises
+    ------
+    np.linalg.LinAlgError
+        Where holding what is kept would leave the rectangle free to move.
     """
 
-    def __init__(self, rectangle: Rectangle) -> None:
-        self.rectangle = rectangle
-        self.dofs = dofs_of(rectangle.outline)
-        self._steps = [SchurComplement(rectangle.stiffness, self.dofs)]
-
-    def keep(self, dofs: Indices) -> Condensed:
-        """Condense further, onto some of the outline's degrees of freedom, ascending.
-
-        Raises
-        ------
-        np.linalg.LinAlgError
-            Where holding these would leave the rectangle free to move.
-        """
-        further = copy(self)
-        further.dofs = dofs
-        step = SchurComplement(self.stiffness, np.searchsorted(self.dofs, dofs))
-        further._steps = [*self._steps, step]
-        return further
-
-    @property
-    def stiffness(self) -> Array:
-        """Shape (n_kept, n_kept), dense, symmetric."""
-        return self._steps[-1].stiffness
+    def __init__(self, rectangle: Rectangle, dofs: Indices) -> None:
+        self.rectangle, self.dofs, self._outline = rectangle, dofs, rectangle.outline
+        places = np.searchsorted(self._outline.kept, dofs)
+        self._inner = SchurComplement(self._outline.stiffness, places)
+        self.stiffness = self._inner.stiffness
 
     def condense(self, force: Array) -> Array:
         """Bring nodal forces, shape (2 n_nodes, n), onto what is kept, shape (n_kept, n)."""
-        for step in self._steps:
-            force = step.condense(force)
-        return force
+        return self._inner.condense(self._outline.condense(force))
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all nodes, (n_nodes, 2, n), by that of what is kept, under forces."""
-        forces = [force]
-        for step in self._steps[:-1]:
-            forces.append(None if forces[-1] is None else step.condense(forces[-1]))
-        for step, own in zip(reversed(self._steps), reversed(forces), strict=True):
-            kept = step.recover(kept, own)
-        return kept.reshape(-1, 2, kept.shape[1])
+        on_outline = None if force is None else self._outline.condense(force)
+        whole = self._outline.recover(self._inner.recover(kept, on_outline), force)
+        return whole.reshape(-1, 2, kept.shape[1])

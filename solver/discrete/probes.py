@@ -7,6 +7,7 @@ problem once, by the transpose of their recovery; then a probe costs as much as 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
@@ -14,6 +15,9 @@ from scipy import sparse
 from solver.arrays import Array, Indices, without_residue
 from solver.discrete.plane_parts import Inside
 from solver.discrete.problem import Problem
+
+if TYPE_CHECKING:
+    from solver.discrete.structure import LoopFields
 
 AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
 
@@ -40,6 +44,14 @@ class Probe:
         terms = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
         return without_residue(self.weights @ moved + self.constant, terms)
 
+    def times(self, factor: float) -> Probe:
+        """It, so many times as large."""
+        return Probe(self.dofs, factor * self.weights, factor * self.constant)
+
+    def of(self, fields: LoopFields) -> Array:
+        """Evaluate it for an iterate, or a reference."""
+        return self(fields.displacement)
+
 
 def constant(values: Array) -> Probe:
     """Probe of what is known beforehand, shape (n_instants,)."""
@@ -52,13 +64,9 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
     The side is "left", "right", "bottom" or "top"; the component 0 along x, 1 along y.
     """
     inside = _inside(problem)
-    first, second, _ = _edges(inside, side)
-    lengths = np.linalg.norm(inside.nodes[second] - inside.nodes[first], axis=1)
-    share = 0.5 * lengths / lengths.sum()
-    weights = np.zeros_like(inside.nodes)
-    for ends in (first, second):
-        np.add.at(weights[:, component], ends, share)
-    return _probe(inside, weights)
+    ends, _ = _edges(inside, side)
+    whole = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1).sum()
+    return _integral(inside, ends, component, np.full(ends.shape, 1.0 / whole))
 
 
 def end_rotation(problem: Problem, side: str = "right") -> Probe:
@@ -68,21 +76,14 @@ def end_rotation(problem: Problem, side: str = "right") -> Probe:
     traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height t.
     """
     inside = _inside(problem)
-    first, second, bodies = _edges(inside, side)
+    ends, bodies = _edges(inside, side)
     _, bodies = np.unique(bodies, return_inverse=True)
-    y = inside.nodes[:, 1]
-    count = int(bodies.max()) + 1
+    y, count = inside.nodes[ends, 1], int(bodies.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
-    for ends in (first, second):
-        np.minimum.at(low, bodies, y[ends])
-        np.maximum.at(high, bodies, y[ends])
-    height, middle = (high - low)[bodies], 0.5 * (low + high)[bodies]
-    length = np.abs(y[second] - y[first])
-    weights = np.zeros_like(inside.nodes)
-    for one, other in ((first, second), (second, first)):
-        lever = (2.0 * (y[one] - middle) + (y[other] - middle)) / 6.0
-        np.add.at(weights[:, 0], one, -12.0 / height**3 * lever * length / count)
-    return _probe(inside, weights)
+    np.minimum.at(low, bodies, y.min(axis=0))
+    np.maximum.at(high, bodies, y.max(axis=0))
+    lever = y - (0.5 * (low + high))[bodies]
+    return _integral(inside, ends, 0, -12.0 / count / ((high - low) ** 3)[bodies] * lever)
 
 
 def reaction(problem: Problem, name: str, component: int | None = None) -> Probe:
@@ -153,16 +154,20 @@ def _inside(problem: Problem) -> Inside:
     return problem.inside
 
 
-def _edges(inside: Inside, side: str) -> tuple[Indices, Indices, Indices]:
-    """Both ends of all element edges along an outer side, and their bodies."""
+def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
+    """Both ends, (2, n), of all element edges along an outer side, and their bodies, (n,)."""
     places = inside.nodes[:, AXES[side]]
     outermost = places.min() if side in ("left", "bottom") else places.max()
-    first, second = inside.elements, np.roll(inside.elements, -1, axis=1)
-    along = (places[first] == outermost) & (places[second] == outermost)
-    return first[along], second[along], inside.bodies[np.nonzero(along)[0]]
+    ends = np.stack([inside.elements, np.roll(inside.elements, -1, axis=1)])
+    along = np.all(places[ends] == outermost, axis=0)
+    return ends[:, along], inside.bodies[np.nonzero(along)[0]]
 
 
-def _probe(inside: Inside, weights: Array) -> Probe:
+def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> Probe:
+    """Integral of displacement over edges times a density that is linear between their ends."""
+    length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
+    weights = np.zeros_like(inside.nodes)
+    np.add.at(weights[:, component], ends, length / 6.0 * (density + density.sum(axis=0)))
     kept, constant = inside.adjoint(weights)
     dofs = np.flatnonzero(kept)
     return Probe(dofs, kept[dofs], constant)

@@ -64,9 +64,6 @@ class Problem:
     rest
         Displacement that the method may start from, scaled, shape (n_dofs, n_instants): that of a
         body which falls onto its support as if it were rigid. None is no displacement.
-    motions
-        Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent; None
-        where there are none, or where no digits are lost beside them.
     carried
         Displacement of the support that rods lie on, scaled, shape (n_dofs, n_instants), where it
         moves: all displacements of the problem are seen from it.
@@ -79,7 +76,6 @@ class Problem:
     scales: Scales
     inside: Inside | None = None
     rest: Array | None = None
-    motions: Array | None = None
     carried: Array | None = None
 
     def at_rest(self, displacement: Array) -> Array:
@@ -172,26 +168,18 @@ class Problem:
         return [(law.first, law.second) for law in glued]
 
     @cached_property
-    def sliding(self) -> tuple[Indices, Array]:
-        """Rows of all tangential components, of both sides, and their weights (m, or m^2)."""
-        laws = self.rubbing.values()
-        pairs = [(rows, law.weights) for law in laws for rows in law.tangent.sides]
-        rows, weights = zip(*pairs, strict=True)
-        return np.concatenate(rows), np.concatenate(weights)
+    def rubbing_rows(self) -> tuple[slice | Indices, NDArray[np.bool_]]:
+        """Rows of all components of the bodies above at interfaces with friction.
 
-    @cached_property
-    def rubbing_rows(self) -> slice | Indices:
-        """Rows of all components of the bodies above at interfaces with friction."""
-        rows = [side.above for law in self.rubbing.values() for side in law.components]
-        return as_slice(np.unique(np.concatenate(rows)))
-
-    @cached_property
-    def rubbing_is_normal(self) -> NDArray[np.bool_]:
-        """Which of these rows are along the normal of their interface."""
-        rows = np.arange(self.n_rows)[self.rubbing_rows]
+        And which of them are along the normal of their interface.
+        """
+        is_normal = np.zeros(self.n_rows, dtype=bool)
         laws = self.rubbing.values()
-        normal = [law.normal.component.above for law in laws if law.normal is not None]
-        return np.isin(rows, np.concatenate([np.zeros(0, dtype=np.intp), *normal]))
+        for law in laws:
+            if law.normal is not None:
+                is_normal[law.normal.component.above] = True
+        rows = np.unique(np.concatenate([one.above for law in laws for one in law.components]))
+        return as_slice(rows), is_normal[rows]
 
     @cached_property
     def friction(self) -> Contact:
@@ -218,10 +206,7 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces whose macro forces are in equilibrium, and their load.
 
-        Returns
-        -------
-        P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
-        solver/README.md, 2).
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README, 2).
         """
         entries, rows, columns, loads = [], [], [], []
         n_macro = 0
@@ -260,10 +245,8 @@ class Problem:
 
     @cached_property
     def sum_of_contact(self) -> sparse.csr_array:
-        """Sum over the rows of each point and component of all interfaces with friction.
+        """Sum over the rows of each point and component of interfaces with friction.
 
-        Returns
-        -------
         Shape (n_forces, n_rows). The forces on the body above are stacked interface by interface:
         all normal forces, where it may open, and then all friction forces.
         """
@@ -288,11 +271,16 @@ class Problem:
         return places
 
     @cached_property
-    def prescribed(self) -> tuple[Indices, Array]:
-        """Degrees of freedom with prescribed displacement, each once, and its values.
+    def motions(self) -> Array | None:
+        """Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent.
 
-        Shapes (n,) and (n, n_instants).
+        None where there are none, or where no digits are lost beside them, along rods.
         """
+        return None if self.inside is None else self.inside.rigid_motions(self.prescribed[0])
+
+    @cached_property
+    def prescribed(self) -> tuple[Indices, Array]:
+        """Degrees of freedom with prescribed displacement, (n,), and values, (n, n_instants)."""
         given = self.given_displacements
         rows = np.concatenate([np.zeros(0, dtype=np.intp), *(part.rows for part in given)])
         values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]

@@ -41,12 +41,9 @@ class Loss:
 
 
 def wrench(stack: Stack) -> tuple[Array, Array, Array]:
-    """Resultants of tractions and body forces on a single body.
+    """Resultants of tractions and body forces on a single body, shape (n_instants,) each.
 
-    Returns
-    -------
-    Forces along x and y, N, and the counter-clockwise moment about the lower left corner, N m,
-    shape (n_instants,) each.
+    Forces along x and y, N, and the counter-clockwise moment about the lower left corner, N m.
     """
     length, height = stack.length, stack.height
     force, moment = np.zeros((2, len(stack.instants))), np.zeros(len(stack.instants))
@@ -136,15 +133,12 @@ def _without_slip(stack: Stack, pressing: Array) -> Array:
 
 
 def rigid_rest(stack: Stack) -> Array | None:
-    """Rigid motion that brings the body onto its support.
+    """Rigid motion that brings the body onto its support, shape (2, n_instants).
 
-    The body is rigid, the support an elastic bedding (Winkler), so that a curved side rests on a
-    patch and not on a point. While nothing presses the body stays where it is.
-
-    Returns
-    -------
-    Displacement upwards of the lower left corner, m, and counter-clockwise rotation about it, shape
-    (2, n_instants); None where a side holds the body up, or where it rests already.
+    Displacement upwards of the lower left corner, m, and counter-clockwise rotation about it; None
+    where a side holds the body up, or where it rests already. The body is rigid, the support an
+    elastic bedding (Winkler), so that a curved side rests on a patch and not on a point. While
+    nothing presses the body stays where it is.
     """
     if stack.support is None or len(stack.rectangles) > 1 or is_held_up(stack):
         return None

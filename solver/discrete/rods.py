@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cut_rods import COARSEST, SIDES, discretise_rods, resampled
+from solver.discrete.cut_rods import SIDES, discretise_rods
 from solver.discrete.probes import Probe, constant, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError, check_range
 
@@ -171,6 +171,11 @@ class Rods:
         return self.bound if self.bound.ndim == 2 else self.bound[:, None]
 
     @property
+    def ends(self) -> dict[Side, End]:
+        """Both, by their side."""
+        return {"right": self.right, "left": self.left}
+
+    @property
     def load(self) -> Array:
         """Force on the right end of a rod that rubs nowhere, shape (n_instants,), N."""
         if self.right.is_prescribed:
@@ -202,32 +207,6 @@ class Rods:
         """Neighbours of the broken rod."""
         return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
 
-    def coarser(self) -> Iterator[Self]:
-        """Yield the same uncut rods on ever fewer elements, as long as a front is seen.
-
-        A break stands at the nearest node between the ends.
-        """
-        rods = self
-        while (elements := rods.elements // 2) >= COARSEST:
-            force, strain, broken = rods.body_force, rods.strain, self.broken
-            settled, section = rods.settlement, rods.section
-            if force is not None and force.ndim == 2:
-                force = resampled(force, elements)
-            if broken is not None:
-                broken = broken[0], node_at(broken[1] / self.elements, elements)
-            rods = replace(
-                rods,
-                elements=elements,
-                substructures=1,
-                bound=resampled(rods.bound, elements),
-                broken=broken,
-                body_force=force,
-                strain=None if strain is None else _means(strain, elements),
-                settlement=None if settled is None else resampled(settled, elements),
-                section=None if section is None else 1.0 / _means(1.0 / section, elements),
-            )
-            yield rods
-
     def discretise(self) -> Problem:
         """Make the discrete problem."""
         return discretise_rods(self)
@@ -237,33 +216,26 @@ class Rods:
 
         Where no end is: what a right end does, or the force that holds it, over what drives.
         """
-        side = self.driven_end or "right"
-        end, moved = self._end(side), self._moved(problem, side)
-        force = self.end_force(problem, side)
-        drive = self._drive
+        side, drive = self.driven_end or "right", self._drive
+        moved, force = self._moved(problem, side), self.end_force(problem, side).of
         if self.driven_end is None and drive is not None:
             title, unit, values = drive
-            across = (title, unit)
-            if end.displacement is not None:
-                return Loop(across, ("Force", "N"), constant(values), force)
-            follow = lambda fields: moved(fields.displacement)  # noqa: E731
-            return Loop(across, ("End displacement", "m"), constant(values), follow)
-        of, up = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
-        return Loop((f"{of} displacement", "m"), (up, "N"), moved, force)
+            up = "Force", "N"
+            if self.ends[side].displacement is None:
+                up, force = ("End displacement", "m"), moved.of
+            return Loop((title, unit), up, constant(values), force)
+        of, what = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
+        return Loop((f"{of} displacement", "m"), (what, "N"), moved, force)
 
-    def end_force(self, problem: Problem, side: Side) -> Array | Callable[[LoopFields], Array]:
-        """Mean axial force at the ends of a side, N, positive to the right; or what finds it."""
-        end, rows = self._end(side), problem.interfaces[SIDES[side]].rows
+    def end_force(self, problem: Problem, side: Side) -> Probe:
+        """Mean axial force at the ends of a side, N, positive to the right."""
+        end = self.ends[side]
+        if end.displacement is None:
+            return constant(np.zeros(len(self.instants)) if end.force is None else end.force)
         if end.is_prescribed:
-            held = reaction(problem, SIDES[side])
-            return lambda fields: held(fields.displacement) / len(rows)
-        if end.displacement is not None:
-            given, spring, moved = end.displacement, end.spring, self._moved(problem, side)
-            return lambda fields: spring * (given - moved(fields.displacement))
-        return np.zeros(len(self.instants)) if end.force is None else end.force
-
-    def _end(self, side: Side) -> End:
-        return self.left if side == "left" else self.right
+            return reaction(problem, SIDES[side]).times(1.0 / self.wires)
+        moved, spring = self._moved(problem, side).times(-end.spring), end.spring
+        return replace(moved, constant=moved.constant + spring * end.displacement)
 
     def _moved(self, problem: Problem, side: Side) -> Probe:
         """Mean displacement of the ends of a side, which stand on no support, m."""
@@ -275,9 +247,7 @@ class Rods:
     @property
     def driven_end(self) -> Side | None:
         """The end that is pulled or moved, the right one before the left one, or None."""
-        sides: tuple[Side, ...] = "right", "left"
-        for side in sides:
-            end = self._end(side)
+        for side, end in self.ends.items():
             if np.any(end.force) if end.displacement is None else np.any(end.displacement):
                 return side
         return None
@@ -312,39 +282,31 @@ class Rods:
     def _acts(self) -> Iterator[Act]:
         right, pulled = OUTWARD["right"], self.wires if self.wires <= SEVERAL else 1
         heights = (np.arange(pulled) + 0.5) / pulled
-        for side, x, end in (("right", 1.0, self.right), ("left", 0.0, self.left)):
-            places = np.stack([np.full(pulled, x), heights], axis=1)
+        for side, end in self.ends.items():
             if end.displacement is not None:
-                where = places[:1] if side == "left" else places
-                yield Act(f"{side} x", "u", where, right, OUTWARD[side], end.displacement, "m")
+                places = on_side(side, heights[:1] if side == "left" else heights)
+                yield Act(f"{side} x", "u", places, right, end.displacement, "m")
             elif end.force is not None:
-                yield Act(f"{side} x", "F", places, right, OUTWARD[side], end.force, "N")
+                yield Act(f"{side} x", "F", on_side(side, heights), right, end.force, "N")
+        shown = np.rint(SHOWN * self.elements).astype(np.intp)
         if self.body_force is not None:
             is_uniform = self.body_force.ndim == 1
-            along = np.array([0.5]) if is_uniform else SHOWN
-            values = self.body_force if is_uniform else self._shown(self.body_force)
-            places = np.stack([along, np.full(len(along), 0.5)], axis=1)
-            yield Act("body", "b", places, right, right, values, "N/m")
+            values = self.body_force if is_uniform else self.body_force[shown]
+            places = on_side("body", [0.5] if is_uniform else SHOWN)
+            yield Act("body", "b", places, right, values, "N/m")
         if self.strain is not None:
             values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
-            yield Act("body strain", "ε₀", np.zeros((0, 2)), right, right, values, "")
+            yield Act("body strain", "ε₀", on_side("body", []), right, values, "")
         if self.settlement is not None:
-            places = np.stack([SHOWN, np.zeros_like(SHOWN)], axis=1)
-            values = self._shown(self.settlement)
-            yield Act("bottom x", "s", places, right, OUTWARD["bottom"], values, "m")
-        most = self.bounds.max(axis=1)
-        rubs = SHOWN[np.interp(SHOWN, self.nodes / self.length, most) > 0.0]
+            places = on_side("bottom", SHOWN)
+            yield Act("bottom x", "s", places, right, self.settlement[shown], "m")
+        rubs = SHOWN[np.interp(SHOWN, self.nodes / self.length, self.bounds.max(axis=1)) > 0.0]
         if self.pressure is not None and len(rubs):
-            places = np.stack([rubs, np.ones_like(rubs)], axis=1)
-            ways = OUTWARD["bottom"], OUTWARD["top"]
-            yield Act("top y", "p", places, *ways, self.pressure, "N/m")
-
-    def _shown(self, values: Array) -> Array:
-        """Values at the nodes nearest to where arrows are drawn."""
-        return np.asarray(values[np.rint(SHOWN * self.elements).astype(np.intp)])
+            places = on_side("top", rubs)
+            yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")
 
     def _holds(self) -> Iterator[Hold]:
-        for side, end in (("left", self.left), ("right", self.right)):
+        for side, end in self.ends.items():
             if end.is_on_spring:
                 yield Hold("spring", side, moved=end.displacement)
             elif end.is_prescribed and (side == "left" or not np.any(end.displacement)):
@@ -356,17 +318,6 @@ class Rods:
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements
                 yield Hold("support", "bottom", (float(first), float(last)))
-
-
-def _means(values: Array, elements: int) -> Array:
-    """Means over equal elements of what others along one rod have, (n_elements, ...)."""
-    sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
-    return np.diff(resampled(sums, elements), axis=0) * (elements / len(values))
-
-
-def node_at(share: float, elements: int) -> int:
-    """Nearest node between the ends at a share of the length."""
-    return min(max(round(share * elements), 1), elements - 1)
 
 
 def neighbours(wire: int, wires: int) -> int:

@@ -8,36 +8,71 @@ Lengths are scaled by the longest wire, forces by E A of the stiffest (solver/RE
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Self
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection
-from solver.discrete.cut_rods import (
-    COARSEST,
-    CutRods,
-    resampled,
-    rod_stiffness,
-    substructure_sizes,
-    tributary,
-)
-from solver.discrete.helical_wire import RopeWire
+from solver.discrete.cross_section import CrossSection, WireLayer
+from solver.discrete.cut_rods import CutRods, assembled, substructure_sizes
+from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem, Scales
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop
-from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import (
-    Component,
-    Contact,
-    Dirichlet,
-    FrictionLaw,
-    Interface,
-    Rod,
-)
+from solver.discrete.rods import End, Rods
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
+from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
+
+
+@dataclass(frozen=True, eq=False)
+class RopeWire:
+    """A wire of a strand, between two of its places that do not slip.
+
+    Attributes
+    ----------
+    layer, number
+        From 0 on, inside out and around.
+    helix
+        Its geometry and stiffness E A.
+    made
+        Of what: the wire's cross-section and Young's modulus.
+    length
+        Of the wire, m.
+    bound
+        Friction bound per length of wire, N/m: a number, or over time, shape (n_instants,).
+    curvature
+        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
+    tension
+        Its force before it is bent, shape (n_instants,), N.
+    stands_for
+        Number of wires that are this one, each at another place along the strand.
+    """
+
+    layer: int
+    number: int
+    helix: HelicalWire
+    made: WireLayer
+    length: float
+    bound: float | Array
+    curvature: Array
+    tension: Array
+    stands_for: int = 1
+
+    @property
+    def name(self) -> str:
+        """What its interface is called: numbers of layer and wire, from 1 on."""
+        return f"wire {self.layer + 1}.{self.number + 1}"
+
+    @property
+    def arc(self) -> Array:
+        """Arc lengths of the nodes, shape (n_nodes,), m."""
+        return np.linspace(0.0, self.length, len(self.curvature))
+
+    @property
+    def along(self) -> Array:
+        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
+        return np.asarray(np.cos(self.helix.lay) * self.arc)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +126,6 @@ class Rope:
                 f"wires with a curvature of one shape, [n_nodes, {len(self.instants)}]",
                 "give all wires the same number of nodes",
             )
-        if min(float(np.min(wire.bound)) for wire in self.wires) < 0.0:
-            raise RefusedError("RopeWire.bound", "below 0", "0 or more", "give no bound below zero")
 
     @property
     def elements(self) -> int:
@@ -115,36 +148,34 @@ class Rope:
         """Axial stiffness of the stiffest wire, N."""
         return max(wire.helix.stiffness for wire in self.wires)
 
-    def coarser(self) -> Iterator[Self]:
-        """Yield the same uncut wires on ever fewer elements, as long as a front is seen."""
-        rope = self
-        while (elements := rope.elements // 2) >= COARSEST:
-            wires = [
-                replace(one, curvature=resampled(one.curvature, elements)) for one in rope.wires
-            ]
-            rope = replace(rope, wires=wires, substructures=1)
-            yield rope
-
     def discretise(self) -> Problem:
-        """Cut all wires alike and write the laws of their interfaces.
+        """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
 
-        The search direction of cuts and ends is E A / l_sub of the wire, that of the points which
-        rub its density over the length of an element (`discretise_rods`).
+        Positions are those along the strand.
         """
-        sizes = substructure_sizes(self.elements, self.substructures)
-        contacts = [(number, None) for number in range(len(self.wires))]
-        cut = CutRods(sizes, len(self.wires), contacts, (False, False))
-        shared: dict[tuple[bytes, float], Elasticity] = {}
-        return Problem(
-            substructures=tuple(
-                part
-                for number in range(len(self.wires))
-                for part in _substructures(self, cut, number, shared)
-            ),
-            interfaces=dict(_interfaces(self, cut)),
-            positions=np.concatenate([wire.along for wire in self.wires]),
+        sizes, wires = substructure_sizes(self.elements, self.substructures), self.wires
+        return assembled(
+            CutRods(sizes, len(wires), on_supports=True, rub_at_ends=(False, False)),
+            [self._rod(wire) for wire in wires],
+            [wire.along for wire in wires],
+            [wire.name for wire in wires],
+            Scales(self.length, self.stiffness, self.duration),
+        )
+
+    def _rod(self, wire: RopeWire) -> Rods:
+        held = End(displacement=np.zeros(len(self.instants)))
+        return Rods(
+            length=wire.length,
+            stiffness=wire.helix.stiffness,
+            elements=self.elements,
+            substructures=self.substructures,
+            bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
+            left=held,
+            right=held,
             instants=self.instants,
-            scales=Scales(self.length, self.stiffness, self.duration),
+            duration=self.duration,
+            body_force=wire.helix.body_force(wire.arc, wire.curvature),
+            friction_law=self.friction_law,
         )
 
     def moment(self) -> Probe:
@@ -168,21 +199,16 @@ class Rope:
 
     def loop(self, problem: Problem) -> Loop:
         """Moment over the curvature, which drives it."""
-        moment = self.moment()
-        across = "Curvature at the clamp" if self.is_clamped else "Curvature"
-        return Loop(
-            (across, "1/m"),
-            ("Moment", "N·m"),
-            constant(self.curvature),
-            lambda fields: moment(fields.displacement),
-        )
+        title = "Curvature at the clamp" if self.is_clamped else "Curvature"
+        across, moment = constant(self.curvature), self.moment().of
+        return Loop((title, "1/m"), ("Moment", "N·m"), across, moment)
 
     def described(self) -> Description:
         """The strand in words, for whoever draws it."""
-        end, right = np.array([[1.0, 0.5]]), OUTWARD["right"]
+        end = on_side("right", [0.5])
         acts = (
-            Act("right y", "κ", end, OUTWARD["top"], right, self.curvature, "1/m"),
-            Act("right x", "T", end, right, right, self.tension, "N"),
+            Act("right y", "κ", end, OUTWARD["top"], self.curvature, "1/m"),
+            Act("right x", "T", end, OUTWARD["right"], self.tension, "N"),
         )
         # Beside a clamp wires move, unlike a bar, as far as anywhere.
         clamp = Hold("clamp", "left", moved=np.zeros(len(self.instants)))
@@ -194,46 +220,3 @@ class Rope:
             acts=acts,
             holds=(clamp,) if self.is_clamped else (),
         )
-
-
-def _substructures(
-    rope: Rope, cut: CutRods, number: int, shared: dict[tuple[bytes, float], Elasticity]
-) -> Iterator[Substructure]:
-    wire = rope.wires[number]
-    force = wire.helix.body_force(wire.arc, wire.curvature) / rope.stiffness
-    element = wire.length / rope.elements
-    scaled = wire.helix.stiffness / rope.stiffness * rope.length / element
-    for piece, size in enumerate(cut.sizes):
-        rows, trace, ends = cut.rows(number, piece)
-        key = trace.tobytes(), scaled
-        if key not in shared:
-            direction = np.full(len(trace), scaled / size)
-            direction[:-ends] /= size
-            shared[key] = Elasticity(rod_stiffness(size, scaled), trace, direction)
-        start = cut.starts[piece]
-        body_force = tributary(size, element)[:, None] * force[start : start + size + 1]
-        yield Substructure(shared[key], cut.dofs(number, piece), rows, body_force)
-
-
-def _interfaces(rope: Rope, cut: CutRods) -> Iterator[tuple[str, Interface]]:
-    for number, wire in enumerate(rope.wires):
-        yield wire.name, _friction(rope, cut, number)
-    still = np.zeros((len(rope.wires), len(rope.instants)))
-    yield "near end", Dirichlet(cut.left[0], still)
-    yield from cut.cuts()
-    yield "far end", Dirichlet(cut.right[-1], still)
-
-
-def _friction(rope: Rope, cut: CutRods, number: int) -> Contact:
-    wire = rope.wires[number]
-    weights = cut.weights(wire.length / rope.elements)
-    known = np.outer(weights, np.atleast_1d(wire.bound)) / rope.stiffness
-    component, scales = Component(cut.above(number)), (rope.length, rope.stiffness)
-    modulus = wire.helix.stiffness / rope.stiffness * rope.length / wire.length
-    return Contact(
-        tangential=rope.friction_law.at(component, weights, scales, known=known),
-        points=cut.nodes - 1,
-        positions=wire.along[1:-1],
-        weights=weights,
-        around=Rod(np.full(len(weights), modulus)),
-    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import discretise_stack
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, ends_of
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
 
 SIDES = "left", "right", "top", "bottom"
@@ -231,18 +231,42 @@ class Stack:
     def loop(self, problem: Problem) -> Loop:
         """Spring force on a slope, shear force on a support, or what bends the end."""
         if self.tilt is not None and self.spring is not None:
-            return _spring_over_angle(self.tilt)
-        if self.support is not None and len(self.rectangles) > 1:
-            return _driven_top(self, problem)
-        if self.support is not None:
-            return _shear(self, problem)
-        bent = self.sides["right"].y
-        if bent.prescribed or np.any(bent.mean):
-            titles = "Deflection of the end", "Transverse force"
-            given = None if bent.prescribed else self.end_force
-            return _over_mean(problem, "right", 1, titles, given)
-        rotation, moment = end_rotation(problem), _moment(self)
-        return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
+            # The spring's force lags behind on the way back.
+            return Loop(
+                ("Angle of the slope", "°"),
+                ("Spring force", "N"),
+                constant(np.degrees(self.tilt)),
+                lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
+            )
+        bent, rests = self.sides["right"].y, self.support is not None
+        if not rests and not bent.prescribed and not np.any(bent.mean):
+            rotation, moment = end_rotation(problem), constant(self._moment()).of
+            return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
+        side, component, across, up = "right", 1, "Deflection of the end", "Transverse force"
+        if rests:
+            side = "top" if len(self.rectangles) > 1 else self._driven_side()
+            component, across, up = 0, f"Displacement of the {side}", "Shear force"
+        given = self.sides[side][component]
+        if rests and len(self.rectangles) == 1:
+            force = _shear_force
+        elif given.prescribed:
+            force = reaction(problem, side, component).of
+        else:
+            whole = self.size[0] if rests else self.longest * self.height
+            force = constant(np.broadcast_to(given.mean * whole, self.instants.shape)).of
+        return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
+
+    def _driven_side(self) -> str:
+        """Side of a body on a support that is driven."""
+        sides = ((name, self.sides[name]) for name in DRIVEN)
+        moved = (name for name, side in sides if not all(given.is_zero for given in side))
+        return next(moved, DRIVEN[0])
+
+    def _moment(self) -> Array:
+        """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
+        given, size = self.sides["right"].x, self.longest * self.height**2
+        bodies = 1 if given.each_body else len(self.rectangles)
+        return np.broadcast_to(-bodies * size / 6.0 * given.slope, self.instants.shape)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""
@@ -263,18 +287,18 @@ class Stack:
                 continue
             for component, given in enumerate(side):
                 act = _given(given, name, component)
-                yield replace(act, places=self._open(act)) if self.is_pile else act
+                yield replace(act, places=self._open(name, act.places))
         size = np.hypot(*self.weight)
         towards = self.weight / np.where(size > 0.0, size, 1.0)
-        yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), size, "N")
+        yield Act("body", "W", on_side("body", [0.5]), towards, size, "N")
 
-    def _open(self, act: Act) -> Array:
-        """Places of what acts on a side, where bodies of other lengths lie open to it."""
-        places, side = act.places.copy(), act.where.partition(" ")[0]
-        bodies = len(self.rectangles)
+    def _open(self, side: str, places: Array) -> Array:
+        """Places on a side of all bodies, brought to those bodies that are there."""
+        x, y, columns, rows = np.array(self.rectangles).T
+        places, (along, up) = places.copy(), self.grid
         for place in places:
-            there = np.flatnonzero(self.reach >= place[0])
-            low, high = there[0] / bodies, (there[-1] + 1) / bodies
+            is_there = (x <= place[0] * along) & (place[0] * along <= x + columns)
+            low, high = y[is_there].min() / up, (y + rows)[is_there].max() / up
             ends = {"top": (high, high), "bottom": (low, low)}.get(side, (low, high))
             place[1] = ends[0] + place[1] * (ends[1] - ends[0])
         return places
@@ -294,74 +318,19 @@ class Stack:
 
 def _given(given: Given, side: str, component: int) -> Act:
     """What is given along a side: evenly in the middle, unevenly at both ends."""
-    towards, away = ((1.0, 0.0), (0.0, 1.0))[component], OUTWARD[side]
-    first, last = ends_of(side)
+    towards, along = ((1.0, 0.0), (0.0, 1.0))[component], "xy"[component]
     unit = "m" if given.prescribed else "Pa"
-    is_normal = away[component] != 0.0
-    along = "xy"[component]
+    is_normal = OUTWARD[side][component] != 0.0
     symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
-    where = f"{side} {along}"
+    shares, values = [0.7 if is_normal else 0.15], given.mean
     if np.any(given.slope):
+        shares = [0.0, 1.0]
         values = np.stack([given.mean - given.slope, given.mean + given.slope])
-        return Act(where, symbol, np.stack([first, last]), towards, away, values, unit)
-    several = is_normal and not given.prescribed
-    share = np.array([0.15, 0.5, 0.85] if several else [0.7 if is_normal else 0.15])
-    places = first + share[:, None] * (last - first)
-    return Act(where, symbol, places, towards, away, given.mean, unit)
-
-
-def _spring_over_angle(tilt: Array) -> Loop:
-    """Spring's force over the angle: it lags behind on the way back."""
-    return Loop(
-        ("Angle of the slope", "°"),
-        ("Spring force", "N"),
-        constant(np.degrees(tilt)),
-        lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
-    )
-
-
-def _shear(stack: Stack, problem: Problem) -> Loop:
-    """Shear force on the support over the horizontal displacement of the driven side."""
-    driven = (name for name in DRIVEN if not all(given.is_zero for given in stack.sides[name]))
-    side = next(driven, DRIVEN[0])
-    return Loop(
-        (f"Displacement of the {side}", "m"),
-        ("Shear force", "N"),
-        side_mean(problem, side, 0),
-        _shear_force,
-    )
-
-
-def _driven_top(stack: Stack, problem: Problem) -> Loop:
-    """Shear force that moves the top over the displacement of the top; given, or what holds it."""
-    given, force = stack.sides["top"].x, None
-    if not given.prescribed:
-        force = np.broadcast_to(given.mean * stack.size[0], stack.instants.shape)
-    return _over_mean(problem, "top", 0, ("Displacement of the top", "Shear force"), force)
+    elif is_normal and not given.prescribed:
+        shares = [0.15, 0.5, 0.85]
+    return Act(f"{side} {along}", symbol, on_side(side, shares), towards, values, unit)
 
 
 def _shear_force(fields: LoopFields) -> Array:
     force = -fields.contact("support").tangential_force
     return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
-
-
-def _over_mean(
-    problem: Problem, side: str, component: int, titles: tuple[str, str], given: Array | None
-) -> Loop:
-    """Force on a side over its mean displacement; the force is given, or that which holds it."""
-    force: Array | Callable[[LoopFields], Array]
-    if given is None:
-        held = reaction(problem, side)
-        force = lambda fields: held(fields.displacement)  # noqa: E731
-    else:
-        force = given
-    across, up = titles
-    return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
-
-
-def _moment(stack: Stack) -> Array:
-    """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
-    given = stack.sides["right"].x
-    several = stack.longest * stack.height**2
-    size = several if given.each_body else len(stack.rectangles) * several
-    return np.broadcast_to(-size / 6.0 * given.slope, stack.instants.shape)

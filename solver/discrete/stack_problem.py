@@ -8,20 +8,24 @@ themselves, and need no interface. Contact forces are lumped at the nodes.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy import sparse
+from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.bricks import Brick, Joint, joints_of
 from solver.discrete.cut_rods import substructure_sizes
 from solver.discrete.elements import edge_mass, elastic_matrix
 from solver.discrete.plane import Condensed, Rectangle, edge_lengths, side_basis
-from solver.discrete.plane_parts import Part, Trace, lined_up, number_rows, problem_of
+from solver.discrete.plane_parts import Inside, Part
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rigid_stack import rigid_rest, rigid_slide
+from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import (
     Bodies,
     Component,
@@ -30,7 +34,6 @@ from solver.laws import (
     FrictionLaw,
     Interface,
     Perfect,
-    PointOfBody,
     Unilateral,
 )
 
@@ -41,17 +44,23 @@ SIDES = "left", "right", "bottom", "top"
 
 
 def discretise_stack(stack: Stack) -> Problem:
-    """Cut the bodies into rectangles and write the laws of their interfaces."""
+    """Cut the bodies into rectangles and write the laws of their interfaces.
+
+    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
+    contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
+    """
     cut = _Cut(stack)
-    skeleton = number_rows(cut.parts)
-    return problem_of(
-        cut.parts,
-        skeleton,
-        cut.positions,
-        dict(cut.interfaces()),
-        scales=Scales(stack.length, stack.young * stack.length, stack.duration),
+    skeleton = np.unique(np.concatenate([part.dofs for part in cut.parts]))
+    scales = Scales(stack.length, stack.young * stack.length, stack.duration)
+    places = cut.positions[skeleton // 2]
+    return Problem(
+        substructures=tuple(cut.substructures(skeleton)),
+        interfaces=dict(cut.interfaces()),
+        positions=places * scales.displacement,
         instants=stack.instants,
-        rest=_rest(stack, cut.positions[skeleton // 2], skeleton % 2),
+        scales=scales,
+        inside=Inside(cut.parts, cut.positions, skeleton, scales, len(stack.instants)),
+        rest=_rest(stack, places, skeleton % 2),
     )
 
 
@@ -102,6 +111,38 @@ def _pieces(stack: Stack) -> Iterator[_Piece]:
                 yield _Piece(own, column, row, body)
 
 
+@dataclass(frozen=True)
+class _Trace:
+    """Boundary rows along a side of a substructure.
+
+    Attributes
+    ----------
+    side
+        "left", "right", "bottom" or "top".
+    components
+        Displacements that have rows, 0 along x and 1 along y.
+    first, last
+        Nodes of the side that have rows, as a slice.
+    has_macro
+        Whether macro forces are to balance there; parts that differ in it share no operator.
+    """
+
+    side: str
+    components: tuple[int, ...] = (0, 1)
+    first: int = 0
+    last: int | None = None
+    has_macro: bool = False
+
+    def dofs(self, rectangle: Rectangle) -> Indices:
+        """Degrees of freedom of a rectangle under the rows, shape (n_nodes, n_components)."""
+        nodes = rectangle.edge(self.side)[self.first : self.last]
+        return np.add.outer(2 * nodes, self.components)
+
+    def weights(self, rectangle: Rectangle) -> Array:
+        """Length of the whole side that belongs to each node, shape (n_nodes,), scaled."""
+        return rectangle.edge_weights(self.side)[self.first : self.last]
+
+
 class _Cut:
     """The bodies, cut into substructures.
 
@@ -110,7 +151,7 @@ class _Cut:
     positions
         Of all nodes, shape (n_nodes, 2), in lengths of a body.
     parts
-        All substructures. Equal ones share what is condensed; their rows are still to be numbered.
+        All substructures. Equal ones share what is condensed.
     """
 
     def __init__(self, stack: Stack) -> None:
@@ -138,10 +179,54 @@ class _Cut:
         self._joints = [
             one for one in joints if order * (one.last - one.first) + 1 > sum(self._left_out(one))
         ]
-        self._outlines: dict[tuple[int, int, float], Condensed] = {}
-        self._kept: dict[tuple[object, ...], Condensed] = {}
-        traces = self._traces()
-        self.parts = [self._part(number, own) for number, own in enumerate(traces)]
+        self._mesh, self._operator = cache(self._mesh_of), cache(self._operator_of)
+        # Rows are numbered part by part and trace by trace, by the name of a side or the joint.
+        self._traces = list(self._all_traces())
+        self.parts: list[Part] = []
+        self._operators: list[Elasticity] = []
+        self._rows: list[dict[Hashable, Indices]] = []
+        n_rows = 0
+        for (own, *_, body), traces in zip(self._pieces, self._traces, strict=True):
+            modulus, number = stack.modulus(body), len(self.parts)
+            mesh = self._mesh(own.columns, own.rows, modulus)
+            force = self._force(number, mesh)
+            # Members of a group have body forces on all or on none, and see the same macro forces.
+            condensed, operator = self._operator(
+                mesh, modulus, tuple(traces.values()), force is not None
+            )
+            brick = stack.rectangles[body]
+            along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(order)
+            self.parts.append(Part(condensed, self._nodes[body][up, along], body, force))
+            self._operators.append(operator)
+            self._rows.append({})
+            for name, trace in traces.items():
+                dofs = trace.dofs(mesh)
+                self._rows[-1][name] = n_rows + np.arange(dofs.size).reshape(dofs.shape)
+                n_rows += dofs.size
+
+    def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
+        elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
+        return Rectangle(columns, rows, *self._element, elastic, self.stack.order)
+
+    def _operator_of(
+        self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
+    ) -> tuple[Condensed, Elasticity]:
+        dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
+        condensed = Condensed(mesh, np.unique(dofs))
+        density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
+        k = [np.repeat(density * one.weights(mesh), len(one.components)) for one in traces]
+        trace = np.searchsorted(condensed.dofs, dofs)
+        return condensed, Elasticity(condensed.stiffness, trace, np.concatenate(k))
+
+    def substructures(self, skeleton: Indices) -> Iterator[Substructure]:
+        """All substructures, of the degrees of freedom of all nodes that any of them keeps."""
+        for part, operator, rows in zip(self.parts, self._operators, self._rows, strict=True):
+            yield Substructure(
+                elasticity=operator,
+                dofs=np.searchsorted(skeleton, part.dofs),
+                rows=np.concatenate([own.ravel() for own in rows.values()]),
+                body_force=None if part.force is None else part.condensed.condense(part.force),
+            )
 
     def _outer(self, number: int) -> Iterator[str]:
         """Sides of a substructure on which nothing is but what is given for such a side."""
@@ -194,13 +279,13 @@ class _Cut:
         last = joint.last == self.stack.grid[0] and sides["right"].y.prescribed
         return int(first), int(last)
 
-    def _traces(self) -> Iterator[dict[Hashable, Trace]]:
+    def _all_traces(self) -> Iterator[dict[Hashable, _Trace]]:
         """Rows of every substructure: all at an interface, or those of prescribed components.
 
         A support of known bound has the component along it.
         """
         stack, order = self.stack, self.stack.order
-        traces: list[list[tuple[Hashable, Trace]]] = [[] for _ in self._pieces]
+        traces: list[list[tuple[Hashable, _Trace]]] = [[] for _ in self._pieces]
         for joint in self._joints:
             is_known = joint.below is None and stack.support and stack.support.bound is not None
             before, after = self._left_out(joint)
@@ -210,7 +295,7 @@ class _Cut:
                 first, last = order * (joint.first - start) + before, order * (joint.last - start)
                 end = None if last - after == order * size else last - after + 1
                 held = (0,) if is_known else (0, 1)
-                trace = Trace(side, held, first, end, has_macro=self._has_macro(joint))
+                trace = _Trace(side, held, first, end, has_macro=self._has_macro(joint))
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             is_lowest = self._pieces[number][2:] == (0, 0)
@@ -218,34 +303,10 @@ class _Cut:
                 given = enumerate(stack.sides[side])
                 components = tuple(component for component, one in given if one.prescribed)
                 if components:
-                    named.append((side, Trace(side, components)))
+                    named.append((side, _Trace(side, components)))
                 elif side == "right" and stack.spring is not None and is_lowest:
-                    named.append(("spring", Trace(side, (0, 1), 0, 1)))
+                    named.append(("spring", _Trace(side, (0, 1), 0, 1)))
             yield dict(sorted(named, key=lambda each: SIDES.index(each[1].side)))
-
-    def _part(self, number: int, traces: dict[Hashable, Trace]) -> Part:
-        stack, (own, *_, body) = self.stack, self._pieces[number]
-        shape = own.columns, own.rows, stack.modulus(body)
-        if shape not in self._outlines:
-            elastic = elastic_matrix(shape[2], stack.poisson, stack.state)
-            self._outlines[shape] = Condensed(
-                Rectangle(*shape[:2], *self._element, elastic, stack.order)
-            )
-        kind = shape, *traces.values()
-        if kind not in self._kept:
-            outline = self._outlines[shape]
-            edges = [trace.dofs(outline.rectangle).ravel() for trace in traces.values()]
-            self._kept[kind] = outline.keep(np.unique(np.concatenate(edges)))
-        brick = stack.rectangles[body]
-        along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(stack.order)
-        return Part(
-            condensed=self._kept[kind],
-            nodes=self._nodes[body][up, along],
-            body=body,
-            traces=traces,
-            modulus=shape[2],
-            force=self._force(number, self._outlines[shape].rectangle),
-        )
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
@@ -258,8 +319,7 @@ class _Cut:
             for component, given in enumerate(stack.sides[side]):
                 if given.prescribed or given.is_zero:
                     continue
-                along = self._along(self._pieces[number], side, given)
-                traction = (given.mean + along * given.slope) / stack.young
+                traction = self._values(number, side, given) / stack.young
                 force = step * np.matmul(edge_mass(order), traction[edges])
                 np.add.at(total[:, component], nodes[edges], force)
         if stack.body_force is not None:
@@ -268,18 +328,18 @@ class _Cut:
             total += areas.reshape(-1, 1, 1) * density
         return total.reshape(-1, len(stack.instants)) if total.any() else None
 
-    def _along(self, piece: _Piece, side: str, given: Given) -> Array:
-        """2 s / length - 1 at the nodes of a substructure on an outer side, (n_nodes, 1)."""
-        own, (columns, rows) = piece.rectangle, self.stack.grid
+    def _values(self, number: int, side: str, given: Given) -> Array:
+        """What is given at the nodes of a substructure on an outer side, (n_nodes, n_instants)."""
+        (own, *_, body), (columns, rows) = self._pieces[number], self.stack.grid
         first, count, whole = own.x, own.columns, columns
         if side in ("left", "right"):
             first, count, whole = own.y, own.rows, rows
             if given.each_body:
-                brick = self.stack.rectangles[piece.body]
+                brick = self.stack.rectangles[body]
                 first, whole = own.y - brick.y, brick.rows
         order = self.stack.order
         nodes = np.arange(order * first, order * (first + count) + 1)[:, None]
-        return np.asarray(2.0 * nodes / (order * whole) - 1.0)
+        return np.asarray(given.mean + (2.0 * nodes / (order * whole) - 1.0) * given.slope)
 
     def interfaces(self) -> Iterator[tuple[str, Interface]]:
         """All interfaces by name: contacts, then cuts, then prescribed sides."""
@@ -293,32 +353,25 @@ class _Cut:
             yield "spring", self._spring(stack.spring)
         cuts = [one for one in self._joints if self._is_cut(one)]
         for joint in sorted(cuts, key=lambda one: (one.sides[1][0], not one.is_upright)):
-            below, side = joint.sides[1]
-            part, other = self.parts[below], self.parts[joint.above].rows[joint]
-            own = part.rows[joint]
-            basis = side_basis(part.rectangle, side, len(own), stack.macro_degree)
-            macro = np.asarray(np.kron(basis, np.eye(2)))
-            yield self._name(joint), Perfect(own.ravel(), other.ravel(), macro)
+            above, below = self._rows_of([joint])
+            macro = np.asarray(np.kron(self._basis(joint, 1), np.eye(2)))
+            yield self._name(joint), Perfect(below.ravel(), above.ravel(), macro)
         for side, given in stack.sides.items():
             if any(one.prescribed for one in given):
                 yield from self._prescribed(side, given)
 
     def _contact(self, joints: Sequence[Joint]) -> Contact:
         """Law of a body on what is below or to the left of it."""
-        stack, is_upright = self.stack, joints[0].is_upright
-        upper = [(self.parts[one.above], one) for one in joints]
-        rows, macro = lined_up(upper, stack.macro_degree)
-        under = [(self.parts[one.below], one) for one in joints if one.below is not None]
-        lower = np.concatenate([part.rows[one] for part, one in under]) if under else None
+        stack, axis, under = self.stack, int(joints[0].is_upright), joints[0].below
         node, weights = map(np.concatenate, zip(*map(self._points, joints), strict=True))
         touching, points = np.unique(node, return_inverse=True)
-        body, axis = self._pieces[joints[0].above].body, 1 if is_upright else 0
-        size = (stack.height if is_upright else stack.length) / stack.elements[axis]
-        support = None if under else stack.support
+        body, size = self._pieces[joints[0].above].body, (stack.length, stack.height)[axis]
+        support = stack.support if under is None else None
         gap = np.zeros(len(node)) if support is None else support.gap[node] / stack.length
+        rows = self._rows_of(joints)
         along, *across = (
-            Component(rows[:, one], None if lower is None else lower[:, one])
-            for one in (axis, 1 - axis)[: rows.shape[1]]
+            Component(*(own[:, one] for own in rows))
+            for one in (axis, 1 - axis)[: rows[0].shape[1]]
         )
         areas = stack.length * weights
         law, scales = stack.friction_law, (stack.length, stack.young * stack.length)
@@ -336,17 +389,38 @@ class _Cut:
         if across:
             softness = law.softness_across(areas, scales)
             normal = Unilateral(component=across[0], gap=gap, softness=softness)
-        below = stack.modulus(under[0][0].body) if under else np.inf
+        macro = None
+        if self._has_macro(joints[0]):
+            bases = [self._basis(joint, 0) for joint in joints]
+            # Most joints of a wall have one part, and SciPy takes long for one block.
+            macro = sparse.csr_array(bases[0] if len(bases) == 1 else block_diag(*bases))
+        below = np.inf if under is None else stack.modulus(self.parts[under].body)
         depth = stack.height * (stack.rectangles[body].rows / stack.elements[1])
         return Contact(
             normal=normal,
             tangential=friction,
             points=points,
-            positions=touching * (size / stack.order),
+            positions=touching * (size / stack.elements[axis] / stack.order),
             weights=areas,
             around=Bodies(moduli=(stack.modulus(body), below), depth=depth),
-            macro=macro if self._has_macro(joints[0]) else None,
+            macro=macro,
         )
+
+    def _rows_of(self, joints: Sequence[Joint]) -> list[Indices]:
+        """Rows of each side of joints in a row, the one above first, (n_points, n_components)."""
+        sides = zip(*(joint.sides for joint in joints), strict=True)
+        return [
+            np.concatenate(
+                [self._rows[number][one] for (number, _), one in zip(side, joints, strict=True)]
+            )
+            for side in sides
+        ]
+
+    def _basis(self, joint: Joint, which: int) -> Array:
+        """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
+        number, side = joint.sides[which]
+        mesh, count = self.parts[number].condensed.rectangle, len(self._rows[number][joint])
+        return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _points(self, joint: Joint) -> tuple[Indices, Array]:
         """Numbers of the pairs of a joint on the grid of all nodes, and the length of each."""
@@ -362,8 +436,8 @@ class _Cut:
     def _spring(self, spring: Spring) -> Contact:
         """Law of a spring: it pushes to the right, as if from the left."""
         stack = self.stack
-        (part,) = (one for one in self.parts if "spring" in one.traces)
-        rows = part.rows["spring"]
+        (number,) = (number for number, rows in enumerate(self._rows) if "spring" in rows)
+        rows, mesh = self._rows[number]["spring"], self.parts[number].condensed.rectangle
         return Contact(
             normal=Unilateral(
                 component=Component(rows[:, 0]),
@@ -373,22 +447,20 @@ class _Cut:
             tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
             points=np.zeros(1, dtype=np.intp),
             positions=np.array([stack.length]),
-            weights=stack.length * part.traces["spring"].weights(part.rectangle),
-            around=PointOfBody(stack.modulus(0)),
+            weights=stack.length * self._traces[number]["spring"].weights(mesh),
+            around=Bodies(moduli=(stack.modulus(0), np.inf)),
         )
 
     def _prescribed(self, side: str, given: Side) -> Iterator[tuple[str, Dirichlet]]:
         rows, values = [], []
-        for number, part in enumerate(self.parts):
-            if side not in part.traces:
+        for number, traces in enumerate(self._traces):
+            if side not in traces:
                 continue
-            for column, component in enumerate(part.traces[side].components):
-                one = given[component]
-                along = self._along(self._pieces[number], side, one)
-                moved = one.mean + along * one.slope
+            for column, component in enumerate(traces[side].components):
+                moved = self._values(number, side, given[component])
                 if side in ("left", "right"):
                     self._settle_corners(number, side, component, moved)
-                rows.append(part.rows[side][:, column])
+                rows.append(self._rows[number][side][:, column])
                 values.append(moved / self.stack.length)
         if rows:
             yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))

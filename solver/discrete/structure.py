@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solver.arrays import Array
 from solver.discrete.contacts import ContactFields
@@ -23,11 +24,15 @@ OUTWARD = {
 Way = tuple[float, float]
 
 
-def ends_of(side: str) -> Array:
-    """Both ends of a side, the lower or the left one first, as shares of length and height."""
-    x = {"left": (0.0, 0.0), "right": (1.0, 1.0)}.get(side, (0.0, 1.0))
-    y = {"bottom": (0.0, 0.0), "top": (1.0, 1.0)}.get(side, (0.0, 1.0))
-    return np.array([x, y]).T
+def on_side(side: str, shares: ArrayLike) -> Array:
+    """Places on a side from its lower or left end on, (n, 2), as shares of length and height.
+
+    `shares` of the side, shape (n,); on no side ("body") they are along the middle.
+    """
+    along = np.asarray(shares, dtype=float)
+    x = {"left": 0.0, "right": 1.0}.get(side, along)
+    y = {"bottom": 0.0, "top": 1.0, "body": 0.5}.get(side, along)
+    return np.stack([np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +49,6 @@ class Act:
         Where on the undeformed bodies, shape (n, 2), as shares of their length and height.
     towards
         Direction of positive values, a unit vector, or one of each instant, (2, n_instants).
-    away
-        Direction in which there is room for an arrow, a unit vector.
     values
         Over time, shape (n_instants,) or, of each place, (n, n_instants).
     unit
@@ -56,9 +59,13 @@ class Act:
     symbol: str
     places: Array
     towards: Way | Array
-    away: Way
     values: Array
     unit: str
+
+    @property
+    def away(self) -> Way:
+        """Direction in which there is room for an arrow, a unit vector."""
+        return OUTWARD.get(self.where.partition(" ")[0], OUTWARD["right"])
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,13 +155,26 @@ class Loop:
     displacement
         Of m, or 1 for a rotation; or what drives.
     force
-        Over time, N, shape (n_instants,), where it is given; else what finds it.
+        What finds it, N, shape (n_instants,).
     """
 
     across: tuple[str, str]
     up: tuple[str, str]
     displacement: Probe
-    force: Array | Callable[[LoopFields], Array]
+    force: Callable[[LoopFields], Array]
+
+    @property
+    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Titles and units of displacement and force."""
+        return self.across, self.up
+
+    def along(self, fields: LoopFields) -> tuple[Array, Array]:
+        """Displacement and force of an iterate, or of a reference, each (n_instants,)."""
+        return self.displacement.of(fields), self.force(fields)
+
+    def finds_force(self, problem: Problem) -> bool:
+        """Whether its displacement is given in a problem, so that its force is found."""
+        return bool(np.isin(self.displacement.dofs, problem.prescribed[0]).all())
 
 
 class Structure(Protocol):

@@ -78,18 +78,15 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
 
 def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
     """Mean stresses over the sections of all wires in their elements, as `wire_forces`, Pa."""
-    areas = np.array([wire.area for wire in rope.wires])
+    areas = np.array([wire.made.area for wire in rope.wires])
     return np.asarray(wire_forces(rope, displacement, columns) / areas[:, None, None])
 
 
 def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     """Mean stress of every wire that is cut, from `wire_stresses`.
 
-    It is linear between the middles of elements, and beyond the first and the last of them.
-
-    Returns
-    -------
-    Shape (n_cut, n_columns), Pa.
+    Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the first and
+    the last of them.
     """
     if rope.elements == 1:
         return np.asarray(stress[cut.wire, 0])
@@ -108,7 +105,7 @@ def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
     """
     axial = wire_stresses(rope, displacement, some)
     curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
-    outer = np.array([0.5 * wire.young * wire.diameter for wire in rope.wires])
+    outer = np.array([0.5 * wire.made.young * wire.made.diameter for wire in rope.wires])
     bent = outer[:, None, None] * 0.5 * (curvature[:, 1:] + curvature[:, :-1])
     swings = [np.ptp(axial + way * bent, axis=2).max(axis=1) for way in (-1.0, 1.0)]
     return np.asarray(np.maximum(*swings))

@@ -1,7 +1,8 @@
 """The multiscale LATIN method: parts to put one together, its iterates, and a driver to an end."""
 
 from solver.latin.anderson import Anderson
-from solver.latin.directions import Auto, FromStatus, Paper
+from solver.latin.directions import Auto, Paper
+from solver.latin.from_status import FromStatus
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.linear_stage import Full

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from functools import cache
-from itertools import accumulate, pairwise
+from itertools import pairwise
 
 import scipy.linalg  # noqa: F401  # brings its own BLAS, which is looked for below
 from threadpoolctl import ThreadpoolController
@@ -59,14 +59,3 @@ def one_blas_thread() -> AbstractContextManager[object]:
     """Have BLAS work on one thread meanwhile: products of few rows take longer on several."""
     limit: AbstractContextManager[object] = _libraries().limit(limits=1, user_api="blas")
     return limit
-
-
-def at_once(n_instants: int) -> Blocks:
-    """All instants as one block."""
-    return Blocks(1, n_instants)
-
-
-def in_a_row(sizes: Sequence[int]) -> list[slice]:
-    """Places of parts of these sizes that are put one after the other."""
-    ends = accumulate(sizes, initial=0)
-    return [slice(first, last) for first, last in pairwise(ends)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -10,7 +12,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate, read_only
 from solver.latin.status_step import Certificate
-from solver.reduction.basis import Reduction
+from solver.reduction.basis import Modes, ReductionRecord
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""
@@ -24,13 +26,14 @@ def finished(
     certificate: Certificate,
     number: int = 1,
     seconds: float = 0.0,
-    searched: Reduction | None = None,
+    searched: tuple[Modes, ...] = (),
 ) -> Iterate:
     """The iterate that a certified solution is, of this number after so many seconds.
 
     Its linear and its local stage are the same fields, a fixed point of the method for every k, of
     the rows, (n_rows,), read-only. `searched` are the bases of the search, if it had any.
     """
+    bases = (replace(basis, record=ReductionRecord.idle(basis.n_modes)) for basis in searched)
     scales, solution = problem.scales, certificate.solution
     deformation = solution.deformation / scales.displacement
     force = row_forces(problem, deformation, solution.contact_force / scales.force)
@@ -47,7 +50,7 @@ def finished(
         incoming=incoming,
         local_displacement=local,
         local_incoming=incoming,
-        reduction=searched and searched.at_rest,
+        bases=tuple(bases),
         residual=certificate.residual,
         force=force,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks, at_once, in_a_row
+from solver.latin.blocks import Blocks
 
 if TYPE_CHECKING:
     from solver.latin.linear_stage import Group
@@ -29,11 +30,9 @@ class CoarseProblem:
     group share the part of P that they see, so their macro forces are one product.
     """
 
-    def __init__(
-        self, problem: Problem, groups: Sequence[Group], blocks: Blocks | None = None
-    ) -> None:
+    def __init__(self, problem: Problem, groups: Sequence[Group], blocks: Blocks) -> None:
         basis, load = problem.macro
-        self._blocks = blocks or at_once(problem.n_instants)
+        self._blocks = blocks
         self._members = []
         seen, systems = [], []
         constant = load.astype(float)
@@ -56,8 +55,8 @@ class CoarseProblem:
         self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
         system = self._spread @ _diagonal(systems) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
-
-        self._places = in_a_row([member.size for member in self._members])
+        ends = accumulate((member.size for member in self._members), initial=0)
+        self._places = [slice(first, last) for first, last in pairwise(ends)]
 
     def add_multiplier(self) -> None:
         """Add W~ to the targets of all groups."""
@@ -119,36 +118,18 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     whole = sparse.csr_array(stacked.T)
     if counts.max() == 1:
         return carrying, np.eye(len(carrying)), whole
-    chosen, local = [], np.zeros((0, 0))
+    chosen: list[Indices] = []
     for first in range(0, stacked.shape[0], len(carrying)):
-        seen, shown = _seen(stacked, slice(first, first + len(carrying)))
-        chosen.append(seen)
+        seen = sparse.csr_array(stacked[first : first + len(carrying)])
+        columns = seen.indices[np.sort(np.unique(seen.indices, return_index=True)[1])]
+        shown = seen[:, columns].toarray()
         if first == 0:
             local = shown
         elif not np.array_equal(shown, local):
             return carrying, np.eye(len(carrying)), whole
-    columns = np.concatenate(chosen)
-    shape = (basis.shape[1], len(columns))
-    ones = np.ones(len(columns))
-    return (
-        carrying,
-        local,
-        sparse.csr_array((ones, (columns, np.arange(len(columns)))), shape=shape),
-    )
-
-
-def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
-    """Columns in which rows have entries, in the order of these, and the basis there."""
-    starts = basis.indptr[rows.start : rows.stop + 1]
-    entries = slice(starts[0], starts[-1])
-    row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    columns, first, place = np.unique(
-        basis.indices[entries], return_index=True, return_inverse=True
-    )
-    order = np.argsort(row[first], kind="stable")
-    dense = np.zeros((len(starts) - 1, len(columns)))
-    dense[row, place] = basis.data[entries]
-    return columns[order], dense[:, order]
+        chosen.append(columns)
+    sums = sparse.eye_array(basis.shape[1], format="csc")[:, np.concatenate(chosen)]
+    return carrying, local, sparse.csr_array(sums)
 
 
 def _diagonal(blocks: list[Array]) -> sparse.csr_array:

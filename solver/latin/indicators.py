@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array
 from solver.discrete.contacts import ContactGroup
@@ -35,6 +36,38 @@ def latin_indicator(iterate: Iterate) -> float:
     size = weighted(iterate.outgoing) + weighted(iterate.incoming)
     size += weighted(local_outgoing) + weighted(iterate.local_incoming)
     return ratio(2.0 * distance, size)
+
+
+CREEP = 1e-2
+"""Share of the largest slip of an interface from which on a slip is one whatever the stages differ
+by, so that an early iterate shows where it slips."""
+
+
+def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np.int8]:
+    """Contact status of the local stage, as `Iterate.status`, shape (n_points, n_instants).
+
+    A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
+    no more than both stages still differ by (measured). So what counts as slip is more than
+    they differ by in any slip of the interface, though never more than `creep` times the
+    largest, (n_interfaces,) or one for all. In a certified solution, where they agree, all that is
+    more than rounding counts. Bar of 50 elements at its end, with the paper's options: all statuses
+    are right; with rounding alone as the limit 23.5 % are wrong.
+    """
+    moved, force = iterate.local_displacement, iterate.boundary_local_force
+    linear = iterate.boundary_displacement, iterate.boundary_force
+    groups = iterate.problem.contact_groups
+    creep = np.broadcast_to(creep, len(iterate.problem.rubbing))
+    n_points = sum(len(group.points) for group in groups)
+    status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
+    for group in groups:
+        slip = group.slip(moved, force)
+        apart, far, normal = np.abs(slip - group.slip(*linear)), np.abs(slip), group.law.normal
+        if normal is not None:
+            touches = group.law.by_point(force[normal.component.above]) > 0.0
+            far, apart = np.where(touches, far, 0.0), np.where(touches, apart, 0.0)
+        still = np.minimum(creep[group.numbers] * group.largest(far), group.largest(apart))
+        status[group.points] = group.status(moved, force, slip=slip, still=still)
+    return status
 
 
 SMALL_CONTACT = 1e3
@@ -132,27 +165,25 @@ def ratio(part: float, whole: float) -> float:
 
 
 SHARE = 8
-"""A number that is awaited is computed again at the latest after this part of the iterations."""
+"""What may be low enough is computed again at the latest after this part of the iterations."""
 
 
-class Awaited:
-    """The next iteration at which a number that falls towards a level is worth computing.
+class Look:
+    """The next iteration at which a number that falls is worth computing.
 
-    Half way to where its last two values would have it cross the level; while it does not fall,
-    after half of the longest wait. So it is missed by little, and only if it falls suddenly.
+    Half way to where its last two values, over what is low enough, would have it fall to 1; while
+    it does not fall, after half of the longest wait. So it is missed by little, and only if it
+    falls suddenly.
     """
 
     def __init__(self) -> None:
-        self.next = 0
-        self._last = (0, math.nan)
+        self.next, self._last = 0, (0, math.nan)
 
-    def saw(self, iteration: int, value: float, level: float) -> None:
+    def saw(self, iteration: int, value: float) -> None:
         """Take in a value."""
-        before, last = self._last
+        (before, last), left = self._last, 0.0
         self._last = iteration, value
-        left = 0.0
-        if level < value < last and iteration > before:
-            rate = math.log(last / value) / (iteration - before)
-            left = 0.5 * math.log(value / level) / rate
-        least = 0 if value <= level else iteration // (2 * SHARE)
+        if 1.0 < value < last and iteration > before:
+            left = 0.5 * math.log(value) / math.log(last / value) * (iteration - before)
+        least = 0 if value <= 1.0 else iteration // (2 * SHARE)
         self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)

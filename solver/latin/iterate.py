@@ -12,12 +12,8 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contacts import ContactFields, contact_fields
 from solver.discrete.problem import Problem
-from solver.latin.indicators import behaviour_of, latin_indicator
-from solver.reduction.basis import Modes, Reduction
-
-CREEP = 1e-2
-"""Share of the largest slip of an interface from which on a slip is one whatever the stages differ
-by, so that an early iterate shows where it slips."""
+from solver.latin.indicators import behaviour_of, contact_status, latin_indicator
+from solver.reduction.basis import Modes
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,28 +26,31 @@ class UpdateProgress:
         Whether k is that of the start and may change ("first"), another ("updated"), or that of the
         start for good ("returned").
     k
-        Search direction of the rows, shape (n_rows,).
+        Search direction of the rows in the next iteration, shape (n_rows,).
     count
         First: iterations on end with hardly a change of status. Updated: iterations since the last
         trial.
-    is_due
-        Whether the next iteration begins with an update, or the judgement of one.
     status
-        Contact status of the iteration before, shape (n_points, n_instants), where k follows it;
-        None after the first phase, and before the first iteration.
-    kept
-        Updated: W and F of the linear stage at the last trial, shape (n_rows, n_instants) each.
+        Contact status of the last iteration, shape (n_points, n_instants), where k follows it.
+    fields
+        W and F of the linear stage at the last trial, shape (n_rows, n_instants) each: from where
+        the next iteration goes on if its k is another.
     violation
-        Updated: the k-free indicator of these.
+        The k-free indicator of these.
     """
 
     phase: Literal["first", "updated", "returned"]
     k: Array
     count: int = 0
-    is_due: bool = False
     status: NDArray[np.int8] | None = None
-    kept: tuple[Array, Array] | None = None
+    fields: tuple[Array, ...] = ()
     violation: float = np.inf
+
+    @property
+    def outgoing(self) -> Array:
+        """W + F/k of these with the k of the next iteration, read-only."""
+        displacement, force = self.fields
+        return read_only(displacement + force / self.k[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +63,8 @@ class Checkpoint:
         Iterations done and time taken so far.
     outgoing
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
-    reduction
-        The separated bases that hold it, if any do.
+    bases
+        The separated bases that hold it, one per substructure, if any do.
     course
         How far the update of k has come; None where the fields are those of another run.
     """
@@ -73,7 +72,7 @@ class Checkpoint:
     number: int
     seconds: float
     outgoing: Array
-    reduction: Reduction | None = None
+    bases: tuple[Modes, ...] = ()
     course: UpdateProgress | None = None
 
 
@@ -97,11 +96,11 @@ class Iterate:
         W^ of the local stage, same shape, bit by bit as the laws gave it.
     local_incoming
         W - F/k that the local stage read, which is its own W^ - F^/k.
-    reduction
-        The separated bases that hold the linear stage, if any do; of a certified solution those of
-        the search that led to it, which hold less than it is.
+    bases
+        The separated bases that hold the linear stage, one per substructure, if any do; of a
+        certified solution those of the search that led to it, which hold less than it is.
     course
-        How far the update of k has come.
+        How far the update of k has come, with the k of the next iteration.
     residual
         Of an iterate that is a certified solution (`solver.latin.certified`), its KKT residual
         relative to the contact force; None of all others.
@@ -121,7 +120,7 @@ class Iterate:
     incoming: Array
     local_displacement: Array
     local_incoming: Array
-    reduction: Reduction | None = None
+    bases: tuple[Modes, ...] = ()
     course: UpdateProgress | None = None
     residual: float | None = None
     force: Array | None = None
@@ -135,13 +134,16 @@ class Iterate:
     @property
     def checkpoint(self) -> Checkpoint:
         """What is needed to go on from here."""
-        bases = self.reduction if self.residual is None else None
+        new = self.new_course
+        if new is not None:
+            return Checkpoint(self.number, self.seconds, new.outgoing, course=new)
+        bases = self.bases if self.residual is None else ()
         return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
 
     @property
-    def bases(self) -> tuple[Modes, ...]:
-        """Modes of every substructure, as `reduction`; none when the linear stage is full."""
-        return self.reduction.modes if self.reduction else ()
+    def new_course(self) -> UpdateProgress | None:
+        """Where the next iteration has another k, its course."""
+        return None if self.course is None or self.course.k is self.k else self.course
 
     @property
     def boundary_displacement(self) -> Array:
@@ -211,33 +213,7 @@ class Iterate:
         -1 is slip backward, 0 stick, +1 slip forward, `OPEN` without contact. Points of all
         interfaces with friction, one interface after the other.
         """
-        return self.status_with(np.full(len(self.problem.rubbing), CREEP))
-
-    def status_with(self, creep: Array) -> NDArray[np.int8]:
-        """Contact status, as `status`, with the `creep` of each interface, (n_interfaces,).
-
-        A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
-        no more than both stages still differ by (measured). So what counts as slip is more than
-        they differ by in any slip of the interface, though never more than `creep` times the
-        largest. In a certified solution, where they agree, all that is more than rounding counts.
-        Bar of 50 elements at its end, with the paper's options: all statuses are right; with
-        rounding alone as the limit 23.5 % are wrong.
-        """
-        moved, force = self.local_displacement, self.boundary_local_force
-        linear = self.boundary_displacement, self.boundary_force
-        places = self.problem.contact_points.values()
-        n_points = max(place.stop for place in places)
-        status = np.empty((n_points, self.problem.n_instants), dtype=np.int8)
-        for group in self.problem.contact_groups:
-            slip = group.slip(moved, force)
-            apart, far, normal = np.abs(slip - group.slip(*linear)), np.abs(slip), group.law.normal
-            if normal is not None:
-                touches = group.law.by_point(force[normal.component.above]) > 0.0
-                far, apart = np.where(touches, far, 0.0), np.where(touches, apart, 0.0)
-            still = creep[group.numbers] * group.largest(far)
-            still = np.minimum(still, group.largest(apart))
-            status[group.points] = group.status(moved, force, slip=slip, still=still)
-        return status
+        return contact_status(self)
 
 
 def read_only(field: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import count
 
 from numpy.linalg import LinAlgError
@@ -45,12 +46,16 @@ def iterations(
         iteration = Iteration(problem, latin, start)
     for number in count(start.number + 1 if start else 1):
         with one_blas_thread():
-            iteration.choose_direction()
             iteration.local_stage()
             iteration.linear_stage()
+            iterate = iteration.snapshot(number)
         seconds += time.perf_counter() - began
-        yield iteration.snapshot(number, seconds)
+        iterate = replace(iterate, seconds=seconds)
+        yield iterate
         began = time.perf_counter()
+        if iterate.new_course is not None:
+            with one_blas_thread():
+                iteration = Iteration(problem, latin, iterate.checkpoint)
 
 
 class Iteration:
@@ -68,17 +73,7 @@ class Iteration:
     def __init__(self, problem: Problem, latin: Latin, start: Checkpoint | None = None) -> None:
         self._problem, self._latin = problem, latin
         self._course = latin.direction.begin(problem, start)
-        self._assemble()
-        if start is None and problem.rest is not None:
-            start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
-        elif start is None and latin.start is not None:
-            start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
-        self._go_to(start)
-        self._read = self.incoming
-
-    def _assemble(self) -> None:
-        """Assemble the parts for one search direction; the linear stage is factored."""
-        problem, latin, self.k = self._problem, self._latin, self._course.k
+        self.k = self._course.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         try:
             self.linear = LinearStage(
@@ -96,37 +91,22 @@ class Iteration:
         if latin.acceleration is not None and self.linear.is_full:
             memory, motion = latin.acceleration.memory, self.local.motion
             self._mixture = AndersonState(problem, self.linear, memory, motion, blocks)
-
-    def _go_to(self, start: Checkpoint | None) -> None:
-        """Go to the state of a checkpoint, or to that in which all is zero."""
+        if start is None and problem.rest is not None:
+            start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
+        elif start is None and latin.start is not None:
+            start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
         self.linear.go_to(start)
         self._show()
+        self._read = self.incoming
 
     def _show(self) -> None:
         self.incoming = read_only(self.linear.incoming())
         self.outgoing = read_only(self.linear.outgoing())
 
-    def choose_direction(self) -> None:
-        """Change k if it is time to; W and F stay, or go back to earlier ones."""
-        if not self._course.is_due:
-            return
-        displacement = 0.5 * (self.outgoing + self.incoming)
-        force = self.k[:, None] * (self.outgoing - displacement)
-        fields = displacement, force
-        self._course, kept = self._latin.direction.update(self._problem, self._course, fields)
-        if kept is None:
-            return
-        self._assemble()
-        displacement, force = kept
-        self._go_to(Checkpoint(0, 0.0, displacement + force / self.k[:, None]))
-
     def local_stage(self) -> None:
         """Obey the laws along E+ (paper, problem 2.1)."""
         self.linear.read(self.local(self.incoming))
         self._read = read_only(self.local.incoming)
-        self._course = self._latin.direction.observe(
-            self._problem, self._course, self.local.displacement, self._read
-        )
 
     def linear_stage(self) -> None:
         """Solve elasticity along E- (paper, problem 2.2), relax, accelerate."""
@@ -138,17 +118,18 @@ class Iteration:
             mix.mix()
         self._show()
 
-    def snapshot(self, number: int, seconds: float) -> Iterate:
-        """The iterate of this number, after so many seconds."""
-        return Iterate(
+    def snapshot(self, number: int) -> Iterate:
+        """The iterate of this number, with what follows for k."""
+        iterate = Iterate(
             number=number,
-            seconds=seconds,
+            seconds=0.0,
             problem=self._problem,
             k=self.k,
             outgoing=self.outgoing,
             incoming=self.incoming,
             local_displacement=read_only(self.local.displacement),
             local_incoming=self._read,
-            reduction=self.linear.reduction(),
-            course=self._course,
+            bases=self.linear.bases(),
         )
+        self._course = self._latin.direction.follow(iterate, self._course)
+        return replace(iterate, course=self._course)

@@ -11,11 +11,11 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
-from solver.latin.blocks import ALL, Blocks, at_once
+from solver.latin.blocks import ALL, Blocks
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
 from solver.latin.response import Responses, response_of
-from solver.reduction.basis import Modes, Reduction, ReductionRecord
+from solver.reduction.basis import Modes
 
 if TYPE_CHECKING:
     from solver.latin.pgd import PGD
@@ -65,14 +65,14 @@ class LinearStage:
         self,
         problem: Problem,
         k: Array,
-        form: Full | PGD = Full(),
-        blocks: Blocks | None = None,
+        form: Full | PGD,
+        blocks: Blocks,
         *,
         multiscale: bool,
     ) -> None:
         self.groups = [form.group(problem, alike, k) for alike in _alike(problem, k)]
         self.is_full = isinstance(form, Full)
-        self._blocks = blocks if blocks and self.is_full else at_once(problem.n_instants)
+        self._blocks = blocks if self.is_full else Blocks(1, problem.n_instants)
         self._coarse = None
         if multiscale and problem.has_cuts:
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
@@ -83,13 +83,10 @@ class LinearStage:
         for group in self.groups:
             group.go_to(checkpoint)
 
-    def reduction(self) -> Reduction | None:
-        """The separated bases of the state, if it has any."""
-        bases = {number: basis for group in self.groups for number, *basis in group.bases()}
-        if not bases:
-            return None
-        modes, records = zip(*(bases[number] for number in sorted(bases)), strict=True)
-        return Reduction(modes, records)
+    def bases(self) -> tuple[Modes, ...]:
+        """The separated bases of the state, one per substructure; none of one in full."""
+        bases = dict(basis for group in self.groups for basis in group.bases())
+        return tuple(bases[number] for number in sorted(bases))
 
     def read(self, target: Array) -> None:
         """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
@@ -223,8 +220,8 @@ class Group:
             reflected += 2.0 * self.body[:, :, instants]
         return self._reflected
 
-    def bases(self) -> Iterator[tuple[int, Modes, ReductionRecord]]:
-        """Separated bases, and what the last iteration did to them, by number of substructure."""
+    def bases(self) -> Iterator[tuple[int, Modes]]:
+        """Separated bases, by number of the substructure."""
         return iter(())
 
 

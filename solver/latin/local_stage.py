@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
-from solver.latin.blocks import ALL, Blocks, at_once
+from solver.latin.blocks import ALL, Blocks
 from solver.latin.sliding_body import slide_of
 
 
@@ -27,9 +27,9 @@ class LocalStage:
         Of the rows of such a body, shape (n_rows,), which every call chooses anew; or None.
     """
 
-    def __init__(self, problem: Problem, k: Array, blocks: Blocks | None = None) -> None:
+    def __init__(self, problem: Problem, k: Array, blocks: Blocks) -> None:
         shape = problem.n_rows, problem.n_instants
-        self._blocks = blocks or at_once(problem.n_instants)
+        self._blocks = blocks
         self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
         self._slide = slide_of(problem, k)

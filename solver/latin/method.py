@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.latin.anderson import Anderson
-from solver.latin.directions import Auto, FromStatus, SearchDirection
+from solver.latin.directions import Auto, SearchDirection
+from solver.latin.from_status import FromStatus
 from solver.latin.linear_stage import Full
 from solver.latin.pgd import PGD
 from solver.latin.start import Nested

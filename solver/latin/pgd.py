@@ -7,7 +7,7 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -20,7 +20,7 @@ from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis, nearest_mode
+from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -125,8 +125,8 @@ class PGDGroup(Group):
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the bases of a checkpoint, or the nearest ones to its fields, or none."""
         self.iterations = checkpoint.number if checkpoint else 0
-        if checkpoint is not None and checkpoint.reduction is not None:
-            self.families = list(self._shown(checkpoint.reduction))
+        if checkpoint is not None and checkpoint.bases:
+            self.families = list(self._shown(checkpoint.bases))
             return
         field = self.field()
         if checkpoint is not None:
@@ -159,8 +159,8 @@ class PGDGroup(Group):
             self._reflected += 2.0 * self.body
         return self._reflected
 
-    def bases(self) -> Iterator[tuple[int, Modes, ReductionRecord]]:
-        """The bases, and what the last iteration did to them, by number of the substructure."""
+    def bases(self) -> Iterator[tuple[int, Modes]]:
+        """The bases, by number of the substructure."""
         for family in self.families:
             time_functions = family.basis.time_functions
             for place, member in enumerate(family.members):
@@ -170,22 +170,23 @@ class PGDGroup(Group):
                     time_functions=time_functions[:, place :: len(family.members)].copy(),
                     k=self.k,
                     stored=self._numbers[family.members[0]],
+                    record=family.record,
                 )
-                yield self._numbers[member], modes, family.record
+                yield self._numbers[member], modes
 
-    def _shown(self, reduction: Reduction) -> Iterator[Family]:
+    def _shown(self, bases: Sequence[Modes]) -> Iterator[Family]:
         """Families that were shown, bit by bit."""
         places: dict[int, list[int]] = {}
         for place, number in enumerate(self._numbers):
-            places.setdefault(reduction.modes[number].stored, []).append(place)
+            places.setdefault(bases[number].stored, []).append(place)
         for members in places.values():
-            numbers = [self._numbers[place] for place in members]
-            modes = np.asfortranarray(reduction.modes[numbers[0]].outgoing)
-            time_functions = [reduction.modes[number].time_functions for number in numbers]
+            shown = [bases[self._numbers[place]] for place in members]
+            modes = np.asfortranarray(shown[0].outgoing)
+            time_functions = [basis.time_functions for basis in shown]
             joined = np.stack(time_functions, axis=2).reshape(modes.shape[1], -1)
             weights = np.repeat(self._weights, len(members))
             basis = SeparatedBasis(modes, joined, self.k, weights)
-            yield Family(members, basis, self._incoming(basis), reduction.records[numbers[0]])
+            yield Family(members, basis, self._incoming(basis), shown[0].record)
 
     def _advance(self, family: Family, relaxation: float) -> None:
         basis, pgd = family.basis, self._pgd

@@ -17,7 +17,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.directions import FromStatus, SearchDirection
+from solver.latin.directions import SearchDirection
+from solver.latin.from_status import FromStatus
 from solver.latin.iterate import Checkpoint, Iterate, read_only
 from solver.latin.method import Latin
 from solver.latin.solve import Record, Solution, solve
@@ -92,7 +93,7 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     linear = replace(latin.linear, responses={})
     start, nested = None, latin.start
     if nested is not None:
-        start = Nested(lambda: (_during(coarser, instants) for coarser in nested.problems()))
+        start = Nested(lambda: (_during(coarser, instants) for coarser in nested.coarser()))
     stop, accuracy = latin.stop, latin.stop.accuracy
     if np.isfinite(accuracy):
         stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)

@@ -165,32 +165,15 @@ class Slide:
     def _between(
         self, behind: Array, least: Array, most: Array, end: float, load: float
     ) -> tuple[float, Array]:
-        """The same, sought between the shifts at which anything begins to slip or pull."""
-
-        def held(step: float) -> Array:
-            return np.minimum(np.maximum(behind - step, least), most)
-
-        def left(step: float) -> float:
-            pull = self._spring * max(end - step, 0.0)
-            return float(self._stiffness.dot(held(step))) + pull + load
-
-        stays = float(behind.mean())
-        if left(stays) == 0.0:
-            return stays, held(stays)
-        turns = np.sort(np.concatenate([behind + least, behind + most, [end]])).tolist()
-        first, last = 0, len(turns) - 1
-        above, below = left(turns[first]), left(turns[last])
-        if above <= 0.0:
-            step = turns[first] + above / self._spring
-        elif below >= 0.0:
-            step = turns[last]
+        """The same, by what is left at all shifts at which anything begins to slip or pull."""
+        turns = np.sort(np.concatenate([behind - most, behind - least, [end]]))
+        steps = np.append(turns, behind.mean())
+        held = np.clip(behind[:, None] - steps, least[:, None], most[:, None])
+        *left, as_now = self._stiffness @ held + self._spring * np.maximum(end - steps, 0.0) + load
+        if as_now == 0.0:
+            step = float(steps[-1])
+        elif left[0] <= 0.0:
+            step = float(turns[0] + left[0] / self._spring)
         else:
-            while last - first > 1:
-                middle = (first + last) // 2
-                value = left(turns[middle])
-                if value > 0.0:
-                    first, above = middle, value
-                else:
-                    last, below = middle, value
-            step = turns[first] + above / (above - below) * (turns[last] - turns[first])
-        return step, held(step)
+            step = float(np.interp(0.0, left[::-1], turns[::-1]))
+        return step, np.clip(behind - step, least, most)

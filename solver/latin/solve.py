@@ -84,7 +84,7 @@ def record(
         estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
-        reduction=iterate.reduction.records if iterate.reduction else (),
+        reduction=tuple(basis.record for basis in iterate.bases),
         is_answer=iterate.is_answer,
     )
 

@@ -34,14 +34,10 @@ class Nested:
     Attributes
     ----------
     coarser
-        Such problems, uncut, the finest first; or what makes them, when a run begins.
+        Makes such problems, uncut, the finest first, when a run begins.
     """
 
-    coarser: Iterable[Problem] | Callable[[], Iterable[Problem]]
-
-    def problems(self) -> Iterable[Problem]:
-        """The coarser problems."""
-        return self.coarser() if callable(self.coarser) else self.coarser
+    coarser: Callable[[], Iterable[Problem]]
 
     def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
         """Where a problem starts with a search direction: from the finest mesh that has a solution.
@@ -49,7 +45,7 @@ class Nested:
         None if there is no such mesh, or it takes more than so many seconds.
         """
         deadline = time.perf_counter() + seconds
-        for coarse in self.problems():
+        for coarse in self.coarser():
             try:
                 solver = incremental_solver(coarse)
                 solution = solver.march(stop=lambda: time.perf_counter() > deadline)
@@ -79,7 +75,7 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
         _apart(fine, fine_bodies), _apart(coarse, bodies), displacement[row_of_dof]
     )
     moved = inside[fine.row_dofs]
-    carried = np.zeros_like(moved)
+    carried, rests = np.zeros_like(moved), np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
         density = law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
@@ -88,10 +84,9 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
         )
         shared = spread[target.points] * target.weights[:, None]
         for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
-            carried[rows] = sign * shared
+            carried[rows], rests[rows] = sign * shared, False
     balance, needed = balance_of_rows(fine, inside)
-    rest = np.setdiff1d(np.arange(fine.n_rows), fine.sliding[0])
-    carried[rest] = (balance.T @ (needed - balance @ carried))[rest]
+    carried[rests] = (balance.T @ (needed - balance @ carried))[rests]
     return np.asfortranarray(moved + carried / k[:, None])
 
 

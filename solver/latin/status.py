@@ -15,14 +15,9 @@ from solver.reference.limit_analysis import Collapse
 if TYPE_CHECKING:
     from solver.latin.method import Latin
 
-BELOW_UNPROVEN = (
-    "The LATIN indicator is below its tolerance, yet the contact force is not known to be accurate "
-    "enough"
-)
+UNPROVEN = "The contact force is not known to be accurate enough"
 FAR = 0.1
 """Error of the contact force from which on what a status step finds is not LATIN's own."""
-LOWEST = 1e-24
-"""LATIN indicator, a ratio of squares, that rounding leaves of fields that agree."""
 
 
 class Ending(StrEnum):
@@ -103,7 +98,7 @@ def diverged(iteration: int) -> Status:
 
 
 def certified(
-    finish: Iterate, certificate: Certificate | None, error: float = math.nan, advice: str = ""
+    finish: Iterate, certificate: Certificate, error: float = math.nan, advice: str = ""
 ) -> Status:
     """Status of a run that ends with a certified solution.
 
@@ -120,7 +115,7 @@ def certified(
             message += _SEARCHED.format(away)
         else:
             message += _FOUND.format(before, f"{away:g}")
-        message += _ON_BASES * (finish.reduction is not None) + f" {advice}" * bool(advice)
+        message += _ON_BASES * bool(finish.bases) + f" {advice}" * bool(advice)
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
 
 
@@ -137,41 +132,35 @@ def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
 
     `is_proven` says whether the solution, and so the distance to it, is known.
     """
-    stop, finish = latin.stop, latin.finish
-    asks_accuracy, searches = math.isfinite(stop.accuracy), finish and not finish.at_once
-    lack = "The run has come to its limit"
-    if asks_accuracy and searches and is_proven:
+    stop, lack = latin.stop, "The run has come to its limit"
+    searches = latin.finish is not None and not latin.finish.at_once
+    if math.isfinite(stop.accuracy) and searches and is_proven:
         lack = "The contact force of the iterates is not accurate enough"
-    elif iterate.indicator > stop.tolerance and not (asks_accuracy and searches):
+    elif iterate.indicator > stop.tolerance and not searches:
         lack = "The LATIN indicator is still above its tolerance"
-    elif asks_accuracy and (searches or math.isinf(stop.tolerance)):
-        lack = "The contact force is not known to be accurate enough"
-    elif asks_accuracy:
-        lack = BELOW_UNPROVEN
+    elif math.isfinite(stop.accuracy):
+        lack = UNPROVEN
     of_k, of_bases = _remedies(latin)
     remedy = of_bases or f"Raise max_iterations, or {of_k}."
-    is_late = iterate.number < stop.iterations
-    return Status(Ending.EXHAUSTED, f"{lack}. {_LONGER if is_late else remedy}")
+    return Status(
+        Ending.EXHAUSTED, f"{lack}. {_LONGER if iterate.number < stop.iterations else remedy}"
+    )
 
 
-def stalled(latin: Latin, lowest: float, tolerance: float, *, agrees: bool) -> Status:
-    """Status of a run whose LATIN indicator has stopped falling.
-
-    `tolerance` is low enough for it; `agrees` says whether the k-free indicator is.
-    """
+def stalled(latin: Latin, lowest: float) -> Status:
+    """Status of a run whose LATIN indicator has stopped falling."""
     of_k, of_bases = _remedies(latin)
-    if lowest < LOWEST and agrees:
-        advice = "The LATIN indicator is down to rounding: more iterations change nothing."
-    elif lowest <= tolerance:
+    advice = "The LATIN indicator has stopped falling. "
+    if lowest <= latin.stop.tolerance:
         advice = (
-            f"{BELOW_UNPROVEN}: k is far from what suits, or rigid motion so large that it hides "
-            f"how the body deforms. {of_bases or of_k.capitalize() + '.'}"
+            f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, or rigid "
+            f"motion so large that it hides how the body deforms. "
         )
+        advice += of_bases or f"{of_k.capitalize()}."
     elif latin.relaxation > 0.9:
-        advice = "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
+        advice += "Lower the relaxation to 0.8."
     else:
-        remedy = of_bases or f"Accept a larger tolerance, or {of_k}."
-        advice = f"The LATIN indicator has stopped falling. {remedy}"
+        advice += of_bases or f"Accept a larger tolerance, or {of_k}."
     return Status(Ending.STALLED, advice)
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.discrete.problem import Problem
+from solver.latin.indicators import contact_status
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
 from solver.reference.condensation import BLURRED
@@ -117,7 +118,7 @@ def states_of(iterate: Iterate) -> States:
     """
     problem = iterate.problem
     sizes = np.array([len(law.positions) for law in problem.rubbing.values()])
-    status = iterate.status_with(np.minimum(STILL, FRONT / sizes**2))
+    status = contact_status(iterate, np.minimum(STILL, FRONT / sizes**2))
     states: list[States] = []
     for name, law in problem.rubbing.items():
         own = status[problem.contact_points[name]]

@@ -13,7 +13,7 @@ from solver.arrays import Array
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
-from solver.latin.indicators import Awaited
+from solver.latin.indicators import Look
 from solver.latin.iterate import Iterate
 from solver.latin.status import (
     BELOW,
@@ -137,13 +137,11 @@ class StopState:
         self._latin, self._stop, self.seconds = latin, latin.stop, spent
         self._searches = latin.finish is not None and not latin.finish.at_once
         self._asks_accuracy = math.isfinite(self._stop.accuracy)
-        self._asks_tolerance = math.isfinite(self._stop.tolerance)
         self.estimate = ErrorEstimate(
             self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY,
             needs_proof=latin.linear.has_to_prove,
         )
-        self._on_accuracy, self._on_tolerance, self._on_sufficient = (Awaited() for _ in range(3))
-        self._is_first, self._error = True, math.nan
+        self._on_goal, self._on_sufficient = Look(), Look()
         self._lowest, self._lowest_at = math.inf, 0
         self._k: Array | None = None
 
@@ -153,15 +151,15 @@ class StopState:
         self.estimate.deadline = began + self._stop.seconds - iterate.seconds - self.seconds
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             return Decision(self._billed(iterate, began), status=diverged(iterate.number))
-        self._error = math.nan
-        status, certificate = self._ending(iterate), self.estimate.certificate
-        decision = Decision(self._billed(iterate, began), self._error, status, certificate)
+        error, status = self._ending(iterate)
+        certificate = self.estimate.certificate
+        decision = Decision(self._billed(iterate, began), error, status, certificate)
         goes_on = self._searches and status is None
         if certificate is None or self._latin.finish is None or goes_on:
             return decision
         began = time.perf_counter()
         error = certificate.distance.of_friction_force(iterate)
-        number, spent, searched = iterate.number + 1, iterate.seconds, iterate.reduction
+        number, spent, searched = iterate.number + 1, iterate.seconds, iterate.bases
         answer = finished(iterate.problem, iterate.k, certificate, number, spent, searched)
         answer = replace(answer, is_answer=self._searches)
         gave_up = status is not None and status.ending is not Ending.CONVERGED
@@ -175,67 +173,58 @@ class StopState:
         self.seconds += time.perf_counter() - began
         return iterate.seconds + self.seconds
 
-    def _ending(self, iterate: Iterate) -> Status | None:
-        """How the run ends after an iterate, or None."""
+    def _ending(self, iterate: Iterate) -> tuple[float, Status | None]:
+        """Estimated error of an iterate, NaN where nobody asks, and how the run ends, or None."""
         stop, number, may_finish = self._stop, iterate.number, self._latin.finish is not None
         is_last = number >= stop.iterations or iterate.seconds + self.seconds >= stop.seconds
-        looks_at_all = self._is_first or is_last
-        self._is_first = False
         if may_finish:
             self.estimate.try_in_time(iterate)
-        status = self._converged(iterate, looks_at_all=looks_at_all)
-        if self._has_stalled(iterate) and status is None:
-            tolerance = min(stop.tolerance, stop.sufficient or math.inf)
-            agrees = self._agrees(iterate, tolerance)
-            status = stalled(self._latin, self._lowest, tolerance, agrees=agrees)
+        is_due, error = is_last or number >= self._on_goal.next, math.nan
+        # How many iterations a search takes is asked; a distance costs a hundredth to a sixth of
+        # one (measured on the five scenes).
+        if self._asks_accuracy and (is_due or self._searches):
+            error = self.estimate(iterate)
+        status = None
+        if self._searches and self._is_proven and error <= stop.accuracy:
+            status = PROVEN
+        elif is_due:
+            status = self._converged(iterate, error)
+        if (
+            stop.sufficient
+            and status is None
+            and (is_last or number >= self._on_sufficient.next)
+            and self._is_low(iterate, stop.sufficient, self._on_sufficient)
+        ):
+            status = BELOW
+        if status is None and self._has_stalled(iterate):
+            status = stalled(self._latin, self._lowest)
         gives_up = is_last if status is None else status.ending is not Ending.CONVERGED
         if gives_up and may_finish and not self._is_proven:
             # Whatever it costs, where a run that may end with it would give up.
             self.estimate.try_step(iterate, LAST)
         if self.estimate.collapse is not None:
-            return collapses(self.estimate.collapse)
+            return error, collapses(self.estimate.collapse)
         if self.estimate.jumps:
-            return JUMPS
+            return error, JUMPS
         if status is None and is_last:
             status = exhausted(self._latin, iterate, is_proven=self._is_proven)
-        return status and with_jump(status, iterate.problem, self.estimate.certificate)
+        return error, status and with_jump(status, iterate.problem, self.estimate.certificate)
 
-    def _converged(self, iterate: Iterate, *, looks_at_all: bool) -> Status | None:
-        """Status of a run that has converged; None where it has not, or where nobody looks."""
-        stop, number = self._stop, iterate.number
-        next_look = max(self._on_accuracy.next, self._on_tolerance.next)
-        is_due = looks_at_all or number >= next_look
-        # How many iterations a search takes is asked; a distance costs a hundredth to a sixth of
-        # one (measured on the five scenes).
-        if self._asks_accuracy and (is_due or self._searches):
-            self._error = self.estimate(iterate)
-        is_accurate = self._error <= stop.accuracy
-        if self._searches and is_accurate and self._is_proven:
-            return PROVEN
-        if is_due and (status := self._goal(iterate, is_accurate=is_accurate)) is not None:
-            return status
-        is_due = looks_at_all or number >= self._on_sufficient.next
-        is_low = (
-            stop.sufficient
-            and is_due
-            and self._is_low(iterate, stop.sufficient, self._on_sufficient)
-        )
-        return BELOW if is_low else None
-
-    def _goal(self, iterate: Iterate, *, is_accurate: bool) -> Status | None:
+    def _converged(self, iterate: Iterate, error: float) -> Status | None:
         """Status of a run that is accurate enough, at a low indicator, as far as both are asked."""
         stop, number = self._stop, iterate.number
         if self._asks_accuracy:
-            error = self._error if self._is_proven else math.nan
-            self._on_accuracy.saw(number, error, stop.accuracy)
-            if not is_accurate:
+            value = error / stop.accuracy
+            self._on_goal.saw(number, value if self._is_proven else math.nan)
+            if not value <= 1.0:
                 return None
             # The indicator says when to look again.
-            self._on_accuracy.next = number + 1
-        if self._asks_tolerance and not self._is_low(iterate, stop.tolerance, self._on_tolerance):
+            self._on_goal.next = number + 1
+        asks_tolerance = math.isfinite(stop.tolerance)
+        if asks_tolerance and not self._is_low(iterate, stop.tolerance, self._on_goal):
             return None
         if not self._asks_accuracy:
-            return BELOW if self._asks_tolerance else None
+            return BELOW if asks_tolerance else None
         if self._is_proven:
             return PROVEN
         # An estimate counts for nothing on bases, or where a step is worth its cost.
@@ -247,18 +236,16 @@ class StopState:
         """Whether the estimate is the distance to a certified solution."""
         return self.estimate.certificate is not None
 
-    def _is_low(self, iterate: Iterate, tolerance: float, awaited: Awaited) -> bool:
-        """Whether the LATIN indicator is low enough, and the k-free one agrees."""
-        awaited.saw(iterate.number, iterate.indicator, tolerance)
-        return iterate.indicator <= tolerance and self._agrees(iterate, tolerance)
-
-    def _agrees(self, iterate: Iterate, tolerance: float) -> bool:
-        """Whether the k-free indicator says converged, or the solution itself does.
+    def _is_low(self, iterate: Iterate, tolerance: float, look: Look) -> bool:
+        """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.
 
         The LATIN indicator alone can be fooled: a search direction that is far from the stiffness
         in play makes it as small as one likes (solver/README.md, 4). The k-free one is a share of
         what contact carries, which is nothing where all contacts open.
         """
+        look.saw(iterate.number, iterate.indicator / tolerance)
+        if iterate.indicator > tolerance:
+            return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
         return iterate.behaviour <= enough or self.estimate.is_proven_within(enough, iterate)
 

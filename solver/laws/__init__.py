@@ -1,6 +1,6 @@
 """Interface laws: objects that own all that is said about them, all points at once."""
 
-from solver.laws.around import Bodies, PointOfBody, Rod
+from solver.laws.around import Bodies, Rod
 from solver.laws.contact import OPEN, Contact
 from solver.laws.friction import Friction, FrictionLaw
 from solver.laws.interface import Component, Interface
@@ -19,7 +19,6 @@ __all__ = [
     "Interface",
     "Neumann",
     "Perfect",
-    "PointOfBody",
     "Rod",
     "Strength",
     "Unilateral",

@@ -88,7 +88,7 @@ class Rod:
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """Bodies in the plane, above and below: k is that of a body as a whole.
+    """Bodies in the plane, above and below: k is that of a body as a whole, or of a point of it.
 
     A smaller k on cuts along slender substructures is no better, where the macro basis grows with
     their length (measured).
@@ -114,6 +114,9 @@ class Bodies:
         the contact force takes 9 and 14 iterations where it is 100 and 1000 times as long as high,
         15 and 67 without (measured).
         """
+        if len(law.positions) == 1:
+            k[law.rows] = AT_A_POINT * self.moduli[0]
+            return
         length = law.weights.sum()
         if law.is_on_support:
             finer = max((len(law.positions) - 1) / RESOLVED, 1.0) ** FINER
@@ -155,27 +158,5 @@ class Bodies:
         return float(np.sqrt(min(SLENDER * self.depth / length * resolved, 1.0)))
 
 
-@dataclass(frozen=True, eq=False)
-class PointOfBody:
-    """One point of a body, where a spring pulls that is slack at first.
-
-    Attributes
-    ----------
-    modulus
-        Young's modulus of the body, scaled.
-    """
-
-    modulus: float = 1.0
-
-    elsewhere: ClassVar[float] = Bodies.elsewhere
-    on_cuts: ClassVar[float] = Bodies.on_cuts
-
-    def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Rod.choose`."""
-        for component in law.components:
-            for rows in component.sides:
-                k[rows] = AT_A_POINT * self.modulus
-
-
-Around = Rod | Bodies | PointOfBody
+Around = Rod | Bodies
 """What k depends on beside the interface itself."""

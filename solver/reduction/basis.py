@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -150,46 +151,6 @@ def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
     return mode
 
 
-@dataclass(frozen=True, eq=False)
-class Modes:
-    """What a substructure's basis holds: read-only, scaled, largest first.
-
-    Attributes
-    ----------
-    outgoing
-        Modes of W + F/k, shape (n_boundary, n_modes), rows as `Substructure.rows`.
-    incoming
-        Modes of W - F/k, same shape; both belong to one admissible pair (paper, eq. 3).
-    time_functions
-        Shape (n_modes, n_instants).
-    k
-        Shape (n_boundary,).
-    stored
-        Which stored basis it reads: equal for substructures that share.
-    """
-
-    outgoing: Array
-    incoming: Array
-    time_functions: Array
-    k: Array
-    stored: int
-
-    @property
-    def n_modes(self) -> int:
-        """Number of modes."""
-        return int(self.outgoing.shape[1])
-
-    @cached_property
-    def displacement_modes(self) -> Array:
-        """Z, shape (n_boundary, n_modes)."""
-        return 0.5 * (self.outgoing + self.incoming)
-
-    @cached_property
-    def force_modes(self) -> Array:
-        """G = k (u - Z), shape (n_boundary, n_modes): the force that Z needs (paper, eq. 3)."""
-        return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
-
-
 @dataclass(frozen=True)
 class ReductionRecord:
     """What one iteration did to one substructure's basis.
@@ -220,30 +181,48 @@ class ReductionRecord:
 
 
 @dataclass(frozen=True, eq=False)
-class Reduction:
-    """The separated bases of all substructures, in order, and what the iteration did to them.
+class Modes:
+    """What a substructure's basis holds: read-only, scaled, largest first.
 
     Attributes
     ----------
-    modes, records
-        One entry per substructure.
+    outgoing
+        Modes of W + F/k, shape (n_boundary, n_modes), rows as `Substructure.rows`.
+    incoming
+        Modes of W - F/k, same shape; both belong to one admissible pair (paper, eq. 3).
+    time_functions
+        Shape (n_modes, n_instants).
+    k
+        Shape (n_boundary,).
+    stored
+        Which stored basis it reads: equal for substructures that share.
+    record
+        What the last iteration did to it.
     """
 
-    modes: tuple[Modes, ...]
-    records: tuple[ReductionRecord, ...]
+    outgoing: Array
+    incoming: Array
+    time_functions: Array
+    k: Array
+    stored: int
+    record: ReductionRecord
 
     @property
-    def at_rest(self) -> Reduction:
-        """The same bases, after an iteration that did nothing to them."""
-        idle = (ReductionRecord.idle(shown.n_modes) for shown in self.modes)
-        return Reduction(self.modes, tuple(idle))
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return int(self.outgoing.shape[1])
 
-    @property
-    def stored(self) -> int:
-        """Modes stored, a shared basis counted once."""
-        return sum({shown.stored: shown.n_modes for shown in self.modes}.values())
+    @cached_property
+    def displacement_modes(self) -> Array:
+        """Z, shape (n_boundary, n_modes)."""
+        return 0.5 * (self.outgoing + self.incoming)
 
-    @property
-    def saved(self) -> int:
-        """Modes that sharing saves."""
-        return sum(shown.n_modes for shown in self.modes) - self.stored
+    @cached_property
+    def force_modes(self) -> Array:
+        """G = k (u - Z), shape (n_boundary, n_modes): the force that Z needs (paper, eq. 3)."""
+        return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
+
+
+def modes_stored(bases: Iterable[Modes]) -> int:
+    """Modes that the bases of a structure store, a shared basis counted once."""
+    return sum({basis.stored: basis.n_modes for basis in bases}.values())

@@ -7,14 +7,14 @@ are relative to the field, in L2 over length and time.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.reduction.basis import Reduction
+from solver.reduction.basis import Modes
 from solver.reduction.clips import Clips
 from solver.reduction.svd import BoundaryFields, Decomposition, decompose
 
@@ -61,16 +61,16 @@ def in_pieces(fields: BoundaryFields) -> Sizes:
     return Sizes(numbers, _relative(left))
 
 
-def of_bases(fields: BoundaryFields, reduction: Reduction) -> Sizes:
+def of_bases(fields: BoundaryFields, bases: Sequence[Modes]) -> Sizes:
     """Keep as many modes of each of a run's separated bases, the largest.
 
     Of their space modes the entries count that rub; those of a basis that several share, once.
     """
-    most = max(modes.n_modes for modes in reduction.modes)
+    most = max(modes.n_modes for modes in bases)
     left, numbers = np.zeros(most + 1), np.zeros(most + 1, dtype=int)
     time_weights, seen = _time_weights(fields.problem), set[int]()
     for number, places, field, weights in _pieces(fields):
-        modes = reduction.modes[number]
+        modes = bases[number]
         rest, points = field.copy(), 0 if modes.stored in seen else len(field)
         seen.add(modes.stored)
         space = modes.force_modes[places] * fields.problem.scales.force / weights[:, None]

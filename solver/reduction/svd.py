@@ -127,16 +127,18 @@ def decompose(
 def decompositions(fields: BoundaryFields, name: InterfaceField) -> list[Decomposition]:
     """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
     problem, scales = fields.problem, fields.problem.scales
-    sliding, weights = problem.sliding
     lengths = np.zeros(problem.n_rows)
-    lengths[sliding] = weights
+    for law in problem.rubbing.values():
+        for rows in law.tangent.sides:
+            lengths[rows] = law.weights
+    slides = lengths > 0.0
     if name is InterfaceField.FRICTION_FORCE:
         whole = fields.boundary_force * scales.force
-        whole[sliding] /= weights[:, None]
+        whole[slides] /= lengths[slides, None]
     else:
         whole = fields.boundary_displacement * scales.displacement
     positions, times = problem.positions[problem.row_dofs], problem.time_weights * scales.time
-    rubbing = (part.rows[lengths[part.rows] > 0.0] for part in problem.substructures)
+    rubbing = (part.rows[slides[part.rows]] for part in problem.substructures)
     return [decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in rubbing]
 
 

@@ -53,7 +53,6 @@ class NewtonWithChangingFriction(Newton):
         super().__init__(condensed, rules, rest, guesses, may_hold)
         self._gone = np.zeros_like(rules.gap)
         self._softens = any(strength.slopes.min() < 0.0 for strength in rules.strengths)
-        self._of_motions = condensed.gauge.T @ condensed.stiffness @ condensed.gauge
         self._ties = None if len(condensed.base) == len(rules.gap) else condensed.ties.toarray()
 
     def __call__(self, instant: int) -> Marched:
@@ -224,12 +223,9 @@ class NewtonWithChangingFriction(Newton):
 
     def _softened(self, growth: Array, free: Indices) -> Array:
         """Stiffness of some jumps of the base, (n_free, n_free), with that of each jump itself."""
-        condensed, gauge = self._condensed, self._condensed.gauge
-        stiffness = condensed.stiffness[np.ix_(free, free)]
-        # Rigid motions cost nothing: what S has for them is there to make it definite.
-        stiffness -= gauge[free] @ self._of_motions @ gauge[free].T
+        stiffness = self._condensed.elastic[np.ix_(free, free)]
         if self._ties is None:
-            stiffness[np.diag_indices_from(stiffness)] += growth[condensed.base[free]]
+            stiffness[np.diag_indices_from(stiffness)] += growth[self._condensed.base[free]]
             return stiffness
         tied = self._ties[:, free]
         return np.asarray(stiffness + tied.T @ (growth[:, None] * tied))

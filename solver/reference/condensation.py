@@ -61,14 +61,6 @@ class NoReferenceError(ValueError):
     """No reference can be found; the message says why."""
 
 
-class NotHeldError(NoReferenceError):
-    """The structure can move even where all its contacts are closed and stick."""
-
-
-class TooLargeError(NoReferenceError):
-    """There are more jumps than dense matrices of their size squared are worth."""
-
-
 class Condensation:
     """The structure between its contacts.
 
@@ -179,6 +171,16 @@ class Condensation:
             stiffness[rows] -= more
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
+    @cached_property
+    def elastic(self) -> Array:
+        """S alone, (n_base, n_base): rigid motions cost nothing."""
+        stiffness, gauge = self.stiffness, self.gauge
+        if not gauge.size:
+            return stiffness
+        # Each of these motions is held by a stiffness of its own.
+        held = gauge * (gauge * (stiffness @ gauge)).sum(axis=0)
+        return np.asarray(stiffness - held @ gauge.T)
+
     @property
     def _given_of_base(self) -> Array:
         return np.asarray(self.given[self.moving[self.base]])
@@ -249,14 +251,14 @@ def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
     _, size = np.linalg.qr(base @ problem.motions)
     steps = np.abs(np.diagonal(size))
     if len(steps) < size.shape[1] or steps.min() <= LOOSE * steps.max():
-        raise NotHeldError(_NOT_HELD)
+        raise NoReferenceError(_NOT_HELD)
     # From the motions once more, so that what one does not move stays exactly where it is.
     motions = solve_triangular(size, problem.motions.T, trans="T").T
     return motions, np.asarray(base @ motions)
 
 
 def factored(matrix: sparse.csc_array) -> SuperLU:
-    """Factor a stiffness, shape (n, n); NotHeldError where something moves that costs no force."""
+    """Factor a stiffness, (n, n); NoReferenceError where something moves that costs no force."""
     try:
         factor = splu(
             matrix,
@@ -265,10 +267,10 @@ def factored(matrix: sparse.csc_array) -> SuperLU:
             options={"SymmetricMode": True},
         )
     except RuntimeError as trouble:
-        raise NotHeldError(_NOT_HELD) from trouble
+        raise NoReferenceError(_NOT_HELD) from trouble
     pivots = factor.U.diagonal()
     if np.any(pivots <= LOOSE * matrix.diagonal()[np.argsort(factor.perm_c)]):
-        raise NotHeldError(_NOT_HELD)
+        raise NoReferenceError(_NOT_HELD)
     return factor
 
 

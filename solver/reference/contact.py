@@ -21,7 +21,7 @@ from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.laws.play import follow, play
 from solver.reference.changing_friction import NewtonWithChangingFriction
-from solver.reference.condensation import Condensation, TooLargeError
+from solver.reference.condensation import Condensation, NoReferenceError
 from solver.reference.distance import broken_laws
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED, Marched, Newton
@@ -47,16 +47,15 @@ class IncrementalContact:
 
     Raises
     ------
-    TooLargeError
-        If there are more than `MOST_JUMPS` jumps.
-    NotHeldError
-        If the structure can move with all contacts closed and stuck.
+    NoReferenceError
+        If there are more than `MOST_JUMPS` jumps, or the structure can move with all contacts
+        closed and stuck.
     """
 
     def __init__(self, problem: Problem) -> None:
         n_jumps = jumps_in(problem)
         if n_jumps > MOST_JUMPS:
-            raise TooLargeError(
+            raise NoReferenceError(
                 f"a reference would condense {n_jumps} components of contact (at most "
                 f"{MOST_JUMPS}); take fewer elements, layers or wires to have one"
             )

@@ -99,7 +99,7 @@ class IncrementalRod:
         ------
         Interrupted
             As soon as `stop` returns True.
-        TooLargeError
+        NoReferenceError
             If friction softens so fast that the general solver is needed, and there are too many
             points for it.
         """

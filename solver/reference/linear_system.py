@@ -7,10 +7,7 @@ motions a. Their equations say what free jumps carry, what held ones come to, an
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from scipy import sparse
 from scipy.linalg import lapack
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
@@ -25,17 +22,11 @@ FEW = 4
 """Rows of S at most, one in so many, that are gathered sooner than all of S is read."""
 
 
-class Sprung(NamedTuple):
-    """What is asked of a structure: of one that springs hold, where no motion is rigid."""
-
-    stiffness: Array
-    gauge: Array
-    base: Indices
-    ties: sparse.csr_array
-
-
 class LinearSystem:
     """The linear system of given states; the last factorisation is kept.
+
+    It is that of a condensed structure, or of one that springs hold, with another stiffness and
+    gauge.
 
     Attributes
     ----------
@@ -54,8 +45,10 @@ class LinearSystem:
         Whether the last one left a motion free; then its smallest solution is given.
     """
 
-    def __init__(self, condensed: Condensation | Sprung, rules: Rules) -> None:
-        self._stiffness, self._gauge = condensed.stiffness, condensed.gauge
+    def __init__(
+        self, condensed: Condensation, rules: Rules, stiffness: Array, gauge: Array
+    ) -> None:
+        self._stiffness, self._gauge = stiffness, gauge
         self._partner, self.friction = rules.partner, rules.friction
         self._growth = np.zeros_like(rules.friction)
         self._base, self._soft = condensed.base, rules.compliance[:, None]

@@ -66,7 +66,7 @@ class Newton:
         guesses: States | None,
         may_hold: Callable[[int], bool],
     ) -> None:
-        self.system = LinearSystem(condensed, rules)
+        self.system = LinearSystem(condensed, rules, condensed.stiffness, condensed.gauge)
         self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules
         self._opening, self._force = rules.gap.copy(), np.zeros_like(rules.gap)

@@ -15,9 +15,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.arrays import Array
 from solver.reference.condensation import Condensation
-from solver.reference.linear_system import LinearSystem, Sprung
+from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import Increment, Rules, Sides, States
 
 FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
@@ -55,14 +54,13 @@ def approach(
     if len(condensed.stiffness) > MOST_JUMPS:
         return
     alone, share = np.diagonal(condensed.stiffness), FIRST
-    rigid = _without_motions(condensed)
     moved = np.zeros_like(sides.load)
     for _ in range(STEPS):
         springs = share * alone[:, None]
-        held = rigid + np.diagflat(springs)
-        sprung = Sprung(held, condensed.gauge[:, :0], condensed.base, condensed.ties)
+        held = condensed.elastic + np.diagflat(springs)
+        sprung = LinearSystem(condensed, rules, held, condensed.gauge[:, :0])
         pulled = replace(sides, load=sides.load + springs * moved)
-        solved = seek(LinearSystem(sprung, rules), states, pulled)
+        solved = seek(sprung, states, pulled)
         if solved is not None:
             before, states, moved = states, solved[0], solved[1].strained
             share = max(SOFTER * share, SOFTEST)
@@ -72,10 +70,3 @@ def approach(
             share *= STIFFER
         else:
             return
-
-
-def _without_motions(condensed: Condensation) -> Array:
-    """S, which rigid motions cost nothing: without what keeps them apart, s Q Q'."""
-    gauge = condensed.gauge
-    kept = gauge.T @ condensed.stiffness @ gauge
-    return np.asarray(condensed.stiffness - gauge @ kept @ gauge.T)

@@ -181,7 +181,7 @@ def slip_space(problem: Problem) -> SlipSpace:
         raise NoReferenceError(
             "The planes are those of Coulomb's friction, where forces follow from slips."
         )
-    stiffness, rubs = _elastic(condensed), np.flatnonzero(~rules.normal)
+    stiffness, rubs = condensed.elastic, np.flatnonzero(~rules.normal)
     closed = np.where(rules.normal, -rules.gap, 0.0)
     still = (stiffness @ closed)[:, None] - condensed.load
     friction, pressing = rules.friction[rubs, None], rules.partner[rubs]
@@ -195,14 +195,6 @@ def slip_space(problem: Problem) -> SlipSpace:
     limit = np.concatenate([held - still[rubs], held + still[rubs], still[alone]])
     force = problem.scales.force
     return SlipSpace(matrix * force / problem.scales.displacement, limit * force)
-
-
-def _elastic(condensed: Condensation) -> Array:
-    """S without what holds rigid motions: they are part of the slips, and cost nothing."""
-    stiffness, gauge = condensed.stiffness, condensed.gauge
-    # Each of these motions is held by a stiffness of its own.
-    held = gauge * (gauge * (stiffness @ gauge)).sum(axis=0)
-    return np.asarray(stiffness - held @ gauge.T)
 
 
 def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:

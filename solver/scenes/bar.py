@@ -307,10 +307,6 @@ class BarSettings(Settings):
                 "hold an end, lower the forces, or raise friction or pressure",
             )
 
-    def coarser(self) -> Iterator[Rods]:
-        """Yield the same bar, uncut, on ever coarser meshes."""
-        return self.structure().coarser()
-
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Friction along the bar and the loop of its end, where closed forms are known."""
         return exact_bar(self.structure(), problem)

@@ -17,7 +17,7 @@ from solver.definitions import POSITIVE, SettingError, quantity, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of, interpolate
 from solver.reference.closed_forms import ExactCurve
@@ -97,8 +97,8 @@ class Fault:
     def _acts(self) -> Iterator[Act]:
         along = (1.0, 0.0)
         stress = np.full_like(self.fluid, self.stress)
-        yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, OUTWARD["top"], stress, "Pa")
-        yield Act("left x", "p", np.zeros((1, 2)), along, OUTWARD["left"], self.fluid, "Pa")
+        yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, stress, "Pa")
+        yield Act("left x", "p", np.zeros((1, 2)), along, self.fluid, "Pa")
 
 
 class FaultSettings(PlaneSettings):

@@ -184,7 +184,7 @@ class PlaneSettings(Settings):
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
-        if self.friction_profile == "uniform":
+        if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
         return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
 
@@ -201,7 +201,7 @@ class PlaneSettings(Settings):
     @property
     def order(self) -> int:
         """Order of the elements: 1 bilinear, 2 biquadratic."""
-        return 2 if self.interpolation == "biquadratic" else 1
+        return 2 if self.interpolation == "biquadratic" and self.applies("interpolation") else 1
 
     @property
     def nodes(self) -> tuple[int, int]:

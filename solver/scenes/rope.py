@@ -20,9 +20,9 @@ from solver.definitions import (
     redefined,
 )
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
-from solver.discrete.helical_wire import HelicalWire, RopeWire
+from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.problem import Problem
-from solver.discrete.rope import Rope
+from solver.discrete.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import PRESSURES
@@ -243,7 +243,7 @@ class RopeSettings(Settings):
         curvature, tension = self.path("load"), self.path("tension_load")
         bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
         if self.tension_load == "steady":
-            bounds = bounds[:, :1]
+            bounds = bounds[:, 0]
         wires = [
             self._wire(layer, number, bounds[layer], curvature, tension)
             for layer, own in enumerate(self.section.layers)
@@ -278,7 +278,7 @@ class RopeSettings(Settings):
             layer=layer,
             number=number,
             helix=helix,
-            diameter=own.diameter,
+            made=own,
             length=self._length_of(helix),
             bound=bound,
             curvature=np.outer(share, curvature),
@@ -293,10 +293,6 @@ class RopeSettings(Settings):
         tension = "" if self.tension_load == "steady" else "; its tension changes"
         wires = counted(self.section.wires)
         return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
-
-    def coarser(self) -> Iterator[Rope]:
-        """Yield the same strand, uncut, on ever coarser meshes."""
-        return self.structure().coarser()
 
     def bent_strand(self) -> BentStrand | None:
         """Closed form of a strand that is bent alike all along, under a tension that stays."""

@@ -8,9 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import POSITIVE, choice, count, quantity, redefined
 from solver.discrete.problem import Problem
-from solver.discrete.rods import End, Rods, neighbours, node_at
+from solver.discrete.rods import End, Rods, neighbours
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
@@ -140,13 +141,7 @@ class StrandSettings(Settings):
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
         shared.factors_of(self)
-        if self.broken and (allowed := self._overload(self._break / self.elements)):
-            raise self.refusal(
-                self.size_or_table("load"),
-                allowed,
-                "pull less, raise friction or pressure, move the break to the left, or take the "
-                "grip of given displacement",
-            )
+        self._check_equilibrium(self.path("load"))
 
     def structure(self) -> Rods:
         """Make the strand.
@@ -172,19 +167,9 @@ class StrandSettings(Settings):
             pressure=self.path("pressure_load"),
             wires=self.wires,
             factors=shared.factors_of(self),
-            broken=(self.broken, self._break) if self.broken else None,
+            broken=(self.broken, self._break_node()) if self.broken else None,
             friction_law=self.law,
         )
-
-    def coarser(self) -> Iterator[Rods]:
-        """Yield the same strand, uncut, on ever coarser meshes.
-
-        Until its break, at the nearest node, left less than the tension to friction.
-        """
-        for rods in self.structure().coarser():
-            if rods.broken and self._overload(rods.broken[1] / rods.elements):
-                return
-            yield rods
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, where they are known."""
@@ -205,29 +190,35 @@ class StrandSettings(Settings):
             grip += "; what presses them together changes"
         return f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
 
-    @property
-    def _break(self) -> int:
-        return node_at(self.break_position, self.elements)
+    def _break_node(self) -> int:
+        node = round(self.break_position * self.elements)
+        return min(max(node, 1), self.elements - 1)
 
-    def _overload(self, place: float) -> str:
-        """Tensions that friction, which alone holds a wire beyond its break, can hold, if not all.
-
-        The break is at a share of the length.
-        """
-        if self.grip != "force":
-            return ""
+    def _check_equilibrium(self, tension: Array) -> None:
+        """Refuse forces that pull the end of the broken wire out: friction alone holds it."""
+        if self.grip != "force" or not self.broken:
+            return
+        share = 1.0 - self._break_node() / self.elements
         sides, factors = neighbours(self.broken, self.wires), shared.factors_of(self)
         beside = [1.0] * sides
         if factors is not None:
             beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
-        pressed, tension = self.friction * self.path("pressure_load"), self.path("load")
+        pressed = self.friction * self.path("pressure_load")
         bound = np.sum([self.law.without_slip(factor * pressed) for factor in beside], axis=0)
-        most = (1.0 - place) * self.length * bound * self.law.strongest
+        most = share * self.length * bound * self.law.strongest
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
-        if largest < capacity or largest == capacity == 0.0:
-            return ""
-        if capacity == 0.0:
-            return "no tension where no friction can hold the broken wire beyond its break"
-        of_it = "all that friction can hold of the broken wire beyond its break"
-        return f"tensions below {plain(capacity)} N, {of_it}"
+        if largest > capacity or largest == capacity > 0.0:
+            name = self.size_or_table("load")
+            allowed = "no tension where no friction can hold the broken wire beyond its break"
+            if capacity > 0.0:
+                allowed = (
+                    f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
+                    "wire beyond its break"
+                )
+            raise self.refusal(
+                name,
+                allowed,
+                "pull less, raise friction or pressure, move the break to the left, or take the "
+                "grip of given displacement",
+            )

@@ -54,7 +54,7 @@ class PanelCurve:
     Attributes
     ----------
     label
-        Entry of the legend; a curve without one has none.
+        Entry of the legend, if any.
     x, y
         Shape (n,), in the units of the axes; nothing is drawn through NaN.
     hue
@@ -109,18 +109,12 @@ class Panel:
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """A quantity over two settings.
+    """A quantity over two settings, whose values ascend.
 
     Attributes
     ----------
-    x_values, y_values
-        Ascending.
-    scale
-        Of the values.
-    z
-        Values, shape (len(y_values), len(x_values)); NaN where there is none.
-    runs
-        What they are of.
+    scale, z
+        Its values, shape (len(y_values), len(x_values)); NaN where there is none.
     is_sampled
         Whether a few runs stand for all, and values between them are of facets.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import param
@@ -22,8 +22,6 @@ from solver.study.quantities.finished import FinishedRun, finished_run
 
 NOT_FITTED = "Method", "Stop", "Decomposition"
 """Groups of settings that do not change the answer."""
-SPANS = 100.0
-"""Largest over smallest value from which on a setting is varied in decades."""
 FARTHEST = math.log(1e6)
 """How far from its start, in z, a setting may go."""
 COARSE, FAR = math.log(3.0), math.log(1e3)
@@ -45,7 +43,9 @@ def fittable(settings: Settings) -> list[str]:
 
 def _why_not(settings: Settings, name: str) -> str:
     """Why a setting cannot be fitted; empty where it can."""
-    definition = settings.definitions()[name]
+    definition = settings.definitions().get(name)
+    if definition is None:
+        return "there is no such setting"
     if not isinstance(definition, param.Number):
         return "it is no number"
     if isinstance(definition, param.Integer):
@@ -56,56 +56,25 @@ def _why_not(settings: Settings, name: str) -> str:
     return "it does not change what a run finds" if is_answered else ""
 
 
-@dataclass(frozen=True)
-class Scale:
-    """From z to the values of a setting, and back; its size is None for a logarithm."""
-
-    start: float
-    size: float | None
-    low: float
-    high: float
-
-    def value(self, z: float) -> float:
-        """Value in SI, with as many digits as anybody writes."""
-        value = self.start * math.exp(z) if self.size is None else self.start + self.size * z
-        return float(f"{min(max(value, self.low), self.high):.12g}")
-
-    def bounds(self) -> tuple[float, float]:
-        """Of z."""
-        if self.size is None:
-            ends = [math.log(v / self.start) if v else -FARTHEST for v in (self.low, self.high)]
-        else:
-            ends = [(value - self.start) / self.size for value in (self.low, self.high)]
-        return max(ends[0], -FARTHEST), min(ends[1], FARTHEST)
-
-    def slope(self, value: float) -> float:
-        """Change of the value with z."""
-        return value if self.size is None else self.size
-
-
-def scale_of(settings: Settings, name: str) -> Scale:
-    """Scale on which a setting is fitted.
+def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]:
+    """Start and size of the scale on which a setting is fitted, and its bounds; size 0 of decades.
 
     Raises
     ------
     SettingError
         For a setting that there is not, or is no number, or does nothing to the answer.
     """
-    can = ", ".join(fittable(settings))
-    if name not in settings.definitions():
-        remedy = "there is no such setting: choose one of these"
-        raise SettingError("fitted setting", name, can, remedy)
     if reason := _why_not(settings, name):
+        can = ", ".join(fittable(settings))
         raise SettingError("fitted setting", name, can, f"choose another: {reason}")
     definition, value = settings.definitions()[name], getattr(settings, name)
     low, high = definition.bounds
-    if low >= 0.0 and (is_logarithmic(definition) or high >= SPANS * low):
-        if value > 0.0:
-            return Scale(value, None, low, high)
-        if is_logarithmic(definition):
-            can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
-            raise SettingError(name, value, can, "set it")
-    return Scale(value, abs(value) or float(np.ptp(definition.softbounds)), low, high)
+    if low >= 0.0 and value > 0.0:
+        return value, 0.0, low, high
+    if is_logarithmic(definition):
+        can = f"a value above 0, to begin with, as {definition.softbounds[0]:g}"
+        raise SettingError(name, value, can, "set it")
+    return value, abs(value) or float(np.ptp(definition.softbounds)), low, high
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +85,6 @@ class ComparedRun:
     ----------
     values
         Of the settings that are fitted, shape (p,), in SI.
-    run
-        What it came to.
-    beside
-        The loop as it is laid beside the problem.
     differences, drive
         Of what it finds, and of what is given, to every row; shares of the measured range.
     """
@@ -149,8 +114,18 @@ class ComparedRuns:
         names: Sequence[str],
         watch: Callable[[int, ComparedRun], object],
     ) -> None:
-        self.names, self.scales = tuple(names), [scale_of(settings, name) for name in names]
-        self.bounds = np.array([scale.bounds() for scale in self.scales]).T
+        self.names = tuple(names)
+        scales = np.array([scale_of(settings, name) for name in names])
+        self._start, self._size, *self._ends = scales.T
+        self.in_decades = self._size == 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ends = [
+                np.where(
+                    self.in_decades, np.log(end / self._start), (end - self._start) / self._size
+                )
+                for end in self._ends
+            ]
+        self.bounds = np.clip(ends, -FARTHEST, FARTHEST)
         accuracy = min(settings.accuracy, ACCURACY)
         self._settings = settings.replace(finish="at-once", accuracy=accuracy)
         self._measured, self._watch = measured, watch
@@ -160,9 +135,17 @@ class ComparedRuns:
         self.first = self.nearest = self.run(np.zeros(len(names)))
 
     def changes(self, z: Array) -> dict[str, float]:
-        """Values of the settings by name."""
-        scaled = zip(self.names, self.scales, z, strict=True)
-        return {name: scale.value(float(at)) for name, scale, at in scaled}
+        """Values of the settings by name, with as many digits as anybody writes."""
+        with np.errstate(over="ignore"):
+            values = np.where(
+                self.in_decades, self._start * np.exp(z), self._start + self._size * z
+            )
+        values = np.clip(values, *self._ends)
+        return {name: float(f"{at:.12g}") for name, at in zip(self.names, values, strict=True)}
+
+    def slopes(self, values: Array) -> Array:
+        """Changes of the values with z."""
+        return np.where(self.in_decades, values, self._size)
 
     def run(self, z: Array) -> ComparedRun:
         """Run at a place.
@@ -181,11 +164,7 @@ class ComparedRuns:
             values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", values, "one that converges", status.advice)
         self._before = finished.states
-        loop = settings.structure().loop(finished.problem)
-        finished, beside = (
-            replace(finished, loop=loop),
-            LoopComparison(self._measured, loop, finished.problem),
-        )
+        beside = LoopComparison(self._measured, finished.loop, finished.problem)
         both = beside.differences(finished.displacement, finished.force)
         return ComparedRun(np.array(list(changes.values())), finished, beside, *both)
 

@@ -22,9 +22,9 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags
 from solver.columns import TableColumn, size_in
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
@@ -56,10 +56,8 @@ class OtherResults:
         `DISPLACEMENT`, m.
     positions, times, values
         Of every row, shape (n_rows,); m, s.
-    source, scene
-        Name of the file, and of the scene that it is brought to.
-    message
-        What was understood of the file.
+    scene, message
+        That it is brought to, and what was understood of the file.
     """
 
     quantity: str
@@ -72,18 +70,10 @@ class OtherResults:
 
 
 def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
-    """Read results of another program for a scene.
+    """Read results of another program for a scene, of a table, bytes or text.
 
-    Parameters
-    ----------
-    data
-        A table as `solver.tables` takes it, a file's bytes or its text. Its head names the columns
-        x (m), t (s), and friction force or displacement, in any order and with units if they are
-        others; further columns are passed over, and rows may have any order.
-    source
-        Name of the file.
-    settings
-        Those in force, which say how long the body and the run are.
+    Its head names the columns x (m), t (s), and friction force or displacement, in any order and
+    with units if they are others; further columns are passed over, and rows may have any order.
 
     Raises
     ------
@@ -158,21 +148,10 @@ def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refu
 class Comparison:
     """Results of another program beside the runs of one problem.
 
-    Parameters
-    ----------
-    results
-        The table.
-    problem
-        What is solved.
-    interface
-        The one whose friction is compared; the first one if there is none of this name.
-
     Attributes
     ----------
-    results
-        The table.
     interface
-        Name of the interface.
+        The one whose friction is compared; the first one if there is none of the given name.
     counted
         Number of rows that both cover.
     """
@@ -181,25 +160,23 @@ class Comparison:
         names = list(problem.rubbing)
         self.results, self._problem = results, problem
         self.interface = interface if interface in names else names[0]
-        self._is_friction = results.quantity == FRICTION
         x, t, positions = results.positions, results.times, problem.positions
-        if self._is_friction:
+        self._places, self._sizes = None, np.ones((1, 1))
+        if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
             self._places = problem.contact_places[self.interface][-1]
-            self._sizes = law.by_point(law.weights)[:, None]
-            positions = law.positions
-        order = np.argsort(positions, kind="stable")
-        points, point_shares = _between(positions[order], x)
-        instants, instant_shares = _between(problem.instants, t)
-        # Of the four corners around a row: instants after points, shape (2, 2, n_rows).
-        corners = order[points] * problem.n_instants + instants[:, None]
-        shares = point_shares * instant_shares[:, None]
-        counts = _covers(positions, x) & _covers(problem.instants, t)
-        if self._is_friction:
-            known = determinate_forces(problem)[self._places].ravel()[corners]
-            counts &= (known | (shares == 0.0)).all(axis=(0, 1))
-        self.counted = int(counts.sum())
-        self._corners, self._shares = corners[..., counts], shares[..., counts]
+            self._sizes, positions = law.by_point(law.weights)[:, None], law.positions
+        self._order = np.argsort(positions, kind="stable")
+        grids = positions[self._order], problem.instants
+        # Rows as fractional numbers of points and instants
+        at = np.array(
+            [np.interp(r, g, np.arange(len(g))) for r, g in zip((x, t), grids, strict=True)]
+        )
+        counts = _covers(grids[0], x) & _covers(grids[1], t)
+        if self._places is not None:
+            unknown = ~determinate_forces(problem)[self._places][self._order]
+            counts &= _interpolated(unknown.astype(float), at) == 0.0
+        self.counted, self._at = int(counts.sum()), at[:, counts]
         self._values = results.values[counts]
         self._weights = weights_of(x[counts], t[counts])
 
@@ -213,10 +190,11 @@ class Comparison:
 
     def own(self, fields: Fields) -> Array:
         """Our field at the rows that both cover, shape (n_counted,)."""
-        field = self._problem.at_rest(fields.displacement)
-        if self._is_friction:
+        if self._places is None:
+            field = self._problem.at_rest(fields.displacement)
+        else:
             field = fields.contact_force[self._places] / self._sizes
-        return np.asarray((self._shares * field.ravel()[self._corners]).sum(axis=(0, 1)))
+        return _interpolated(field[self._order], self._at)
 
     def _norm(self, values: Array) -> float:
         return float(np.sqrt(self._weights @ values**2))
@@ -237,24 +215,19 @@ def weights_of(positions: Array, times: Array) -> Array:
     return weights
 
 
-def _covers(grid: Array, places: Array) -> NDArray[np.bool_]:
+def _covers(grid: Array, places: Array) -> Flags:
     """Which places lie between the ends of a grid."""
     low, high = float(grid.min()), float(grid.max())
     edge = EDGE * (high - low)
     return np.asarray((places >= low - edge) & (places <= high + edge))
 
 
-def _between(grid: Array, places: Array) -> tuple[Indices, Array]:
-    """Grid points below and above places, and the share of each, shape (2, n_places)."""
-    upper = np.clip(np.searchsorted(grid, places, side="right"), 1, len(grid) - 1)
-    lower = upper - 1
-    width = grid[upper] - grid[lower]
-    share = np.divide(places - grid[lower], width, out=np.zeros(len(places)), where=width > 0.0)
-    share = np.clip(share, 0.0, 1.0)
-    return np.stack([lower, upper]), np.stack([1.0 - share, share])
+def _interpolated(field: Array, at: Array) -> Array:
+    """Field, shape (n_points, n_instants), at fractional numbers of both, shape (2, n)."""
+    return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
 
 
-def _halves(places: Array, joined: NDArray[np.bool_] | bool = True) -> Array:
+def _halves(places: Array, joined: Flags | bool = True) -> Array:
     """Half of the distances to the neighbours, of places that rise where they are joined."""
     steps = np.diff(places) * joined
     halves = np.zeros(len(places))

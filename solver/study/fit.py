@@ -71,8 +71,6 @@ class Fit:
         standard error of the logarithm of their product; NaN where some are not logarithmic.
     first, nearest
         The run at the start, and the nearest one.
-    runs
-        How many it took.
     """
 
     settings: Settings
@@ -95,16 +93,8 @@ def fit(
 ) -> Fit:
     """Find the settings under which a run comes nearest to a measured loop.
 
-    Parameters
-    ----------
-    settings
-        Where to begin, with all that is not fitted.
-    measured
-        The loop.
-    names
-        Settings to fit, one to four.
-    watch
-        Called after each run with how many there were, and the nearest one.
+    It begins at the settings; of these one to four are fitted. `watch` is called after each run
+    with how many there were, and the nearest one.
 
     Raises
     ------
@@ -143,7 +133,7 @@ def _fitted(
 ) -> Fit:
     """What is found at a place, where some directions, (n, p), are not determined."""
     nearest = runs.run(z)
-    slopes = [s.slope(value) for s, value in zip(runs.scales, nearest.values, strict=True)]
+    slopes = runs.slopes(nearest.values)
     deviations = np.sqrt(np.diag(covariance))
     is_alone = np.abs(blind).max(axis=0, initial=0.0) < SHARE
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -169,7 +159,7 @@ def _known_together(
     """Combinations that are determined of settings that are not, as `Fit` has them."""
     names = [name for name, alone in zip(runs.names, is_alone, strict=True) if not alone]
     covariance = covariance[np.ix_(~is_alone, ~is_alone)]
-    is_product = all(scale.size is None for scale in np.array(runs.scales)[~is_alone])
+    is_product = bool(runs.in_decades[~is_alone].all())
     together = []
     known = null_space(blind).T if len(blind) else blind
     for powers in _echelon(known) if known.size else ():

@@ -29,8 +29,6 @@ from solver.study.quantities.finished import FinishedRun
 
 PARAMETERS, LOOP, SETTINGS, PAGE = "parameters.csv", "loop.csv", "settings.toml", "fit.html"
 FILES = PARAMETERS, LOOP, SETTINGS, PAGE
-LEAST = 0.005
-"""Correlation that is printed as 0."""
 
 
 def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
@@ -120,19 +118,13 @@ def _finite(value: float) -> float | None:
 
 def write_loop(run: FinishedRun, folder: Path) -> None:
     """Write the loop of a run as CSV, with time, in SI."""
-    across, up = (f"{name} [{unit}]" for name, unit in run.axes)
+    across, up = (f"{name} [{unit}]" for name, unit in run.loop.axes)
     columns = {"time [s]": run.problem.instants, across: run.displacement, up: run.force}
     write(folder / LOOP, csv_of(columns))
 
 
 def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
-    """Write all files; what is to be told of them.
-
-    Raises
-    ------
-    OSError
-        When one cannot be written.
-    """
+    """Write all files; what is to be told of them."""
     head = ["setting", "unit", "start", "value", "standard_error"]
     write_csv(folder / PARAMETERS, [*head, *(f"correlation_{n}" for n in fit.names)], _entries(fit))
     write_loop(fit.nearest.run, folder)
@@ -155,7 +147,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
     nearest, beside, first = fit.nearest, fit.nearest.beside, fit.first.run
-    x, y = (PanelAxis(title, unit) for title, unit in nearest.run.axes)
+    x, y = (PanelAxis(title, unit) for title, unit in nearest.run.loop.axes)
     curves = (
         PanelCurve("measured", measured.displacement, measured.force, 5, "points"),
         PanelCurve("before", first.displacement, first.force, 0, "dotted"),

@@ -19,16 +19,9 @@ ZERO = 1e-9
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """A number of a run at an instant.
+    """A number of a run at an instant, in SI, by the names of scripts and of people.
 
-    Attributes
-    ----------
-    name, title
-        What scripts and people call it.
-    value, unit
-        In SI; the unit is empty for a share.
-    largest
-        Size of the largest value in the run, by which a unit is chosen.
+    The unit is empty for a share, and chosen by the size of the largest value in the run.
     """
 
     name: str
@@ -47,18 +40,8 @@ def key_figures(
 ) -> list[KeyFigure]:
     """Key figures at an instant.
 
-    Parameters
-    ----------
-    axes
-        Titles and units of displacement and force of the loop.
-    loop
-        Both, shape (2, n_instants).
-    status
-        Of all contact points, shape (n_points, n_instants).
-    energy
-        Lost by friction in the whole run, J.
-    instant
-        Its number.
+    Of the axes of the loop and both of its sides, shape (2, n_instants), the status of all contact
+    points, shape (n_points, n_instants), and the energy that friction takes in the whole run, J.
     """
     figures = []
     for name, (title, unit), values in zip(("displacement", "force"), axes, loop, strict=True):
@@ -76,5 +59,5 @@ def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
     instant = largest_load(run)
     loop = run.displacement, run.force
     energy = float(run.dissipated.sum())
-    figures = key_figures(run.axes, loop, run.iterate.status, energy, instant)
+    figures = key_figures(run.loop.axes, loop, run.iterate.status, energy, instant)
     return figures, float(run.problem.instants[instant])

@@ -54,10 +54,8 @@ class MeasuredLoop:
         Same shape, s; None where rows are matched along the path.
     units
         Of both, as the loop of its scene has them.
-    source
-        Name of the file.
     message
-        What was understood of it.
+        What was understood of the file.
     """
 
     displacement: Array
@@ -82,11 +80,6 @@ def csv_of(columns: Mapping[str, Array]) -> str:
     return "\n".join([",".join(columns), *rows, ""])
 
 
-def axes_of(loop: Loop) -> Axes:
-    """Titles and units of a loop."""
-    return loop.across, loop.up
-
-
 def is_a_loop(data: bytes | str, source: str) -> bool:
     """Whether a table is a measured loop, and not results over places."""
     table = read_table(data, partial(SettingError, "--with", source, CAN))
@@ -94,16 +87,7 @@ def is_a_loop(data: bytes | str, source: str) -> bool:
 
 
 def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
-    """Read a measured loop.
-
-    Parameters
-    ----------
-    data
-        A table as `solver.tables` takes it, a file's bytes or its text.
-    source
-        Name of the file.
-    axes
-        Titles and units of the loop that it is compared with.
+    """Read a measured loop of a table, bytes or text, for a loop of these titles and units.
 
     Raises
     ------
@@ -161,11 +145,6 @@ def loop_in(table: Table, columns: LoopColumns, source: str, axes: Axes) -> Meas
 class LoopComparison:
     """A measured loop beside the runs of one problem.
 
-    Parameters
-    ----------
-    measured, loop, problem
-        The table, and the loop of the problem.
-
     Attributes
     ----------
     finds_force
@@ -183,11 +162,11 @@ class LoopComparison:
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:
         self.measured, self.loop, self._instants = measured, loop, problem.instants
-        (across, x), (up, y) = axes_of(loop)
+        (across, x), (up, y) = loop.axes
         if measured.units != (x, y):
             can = f"a loop of {across} ({x}) and {up} ({y})"
             raise self._refusal(can, "load one of this scene")
-        self.finds_force = bool(np.isin(loop.displacement.dofs, problem.prescribed[0]).all())
+        self.finds_force = loop.finds_force(problem)
         self.given, self.quantity = (across, up) if self.finds_force else (up, across)
         self.counted = np.ones(len(measured.force), dtype=bool)
         if measured.times is not None:
@@ -210,15 +189,9 @@ class LoopComparison:
         far = f"{100.0 * rms(drive):.2g} % of its range from the measured"
         return f"{self.given} of the run is {far}: give the run the measured path"
 
-    def both(self, fields: LoopFields) -> tuple[Array, Array]:
-        """Displacement and force of an iterate, or of a reference, shape (n_instants,)."""
-        force = self.loop.force
-        force = force if isinstance(force, np.ndarray) else force(fields)
-        return self.loop.displacement(fields.displacement), force
-
     def of(self, fields: LoopFields) -> float:
         """Distance to an iterate, or to a reference."""
-        return rms(self.differences(*self.both(fields))[0])
+        return rms(self.differences(*self.loop.along(fields))[0])
 
     def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
         """What is found, and what is given, of a run less the rows that are compared.

@@ -51,46 +51,42 @@ class Refinement:
         return all(math.isfinite(value) for value in self.values)
 
     @property
+    def _steps(self) -> tuple[float, float]:
+        """Differences from mesh to mesh; none where all are one value."""
+        coarse, middle, fine = self.values
+        if max(self.values) - min(self.values) <= EQUAL * max(map(abs, self.values)):
+            return 0.0, 0.0
+        return middle - coarse, fine - middle
+
+    @property
     def order(self) -> float | None:
         """Power of that size with which the rest goes; None where there is no such."""
-        coarse, middle, fine = self.values
-        first, second = middle - coarse, fine - middle
-        if self._is_settled or first * second <= 0.0:
-            return None
-        return math.log2(first / second)
+        first, second = self._steps
+        return math.log2(first / second) if first * second > 0.0 else None
 
     @property
     def limit(self) -> float:
         """What the quantity tends to, or that on the finest mesh where nothing tells it."""
-        _, middle, fine = self.values
-        order = self.order
+        order, fine = self.order, self.values[-1]
         if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:
             return fine
-        return fine + (fine - middle) / math.expm1(order * math.log(2.0))
+        return fine + self._steps[1] / math.expm1(order * math.log(2.0))
 
     @property
     def margin(self) -> float:
         """To both sides of the limit."""
-        coarse, middle, fine = self.values
-        if self._is_settled:
-            return 0.0
-        order, widest = self.order, max(abs(middle - coarse), abs(fine - middle))
+        order, widest = self.order, max(map(abs, self._steps))
         if order is None or order < LEAST_ORDER:
             return UNSURE * widest
-        return SAFETY * (widest if order > LARGEST_ORDER else abs(self.limit - fine))
+        return SAFETY * (widest if order > LARGEST_ORDER else abs(self.limit - self.values[-1]))
 
     @property
     def deviation(self) -> float:
         """How far the value that is asked about may be from the limit, as a share of that."""
-        if self._is_settled:
+        if not any(self._steps):
             return 0.0
         most = abs(self.values[self.own] - self.limit) + self.margin
         return most / abs(self.limit) if self.limit else math.inf if most else 0.0
-
-    @property
-    def _is_settled(self) -> bool:
-        largest = max(map(abs, self.values))
-        return max(self.values) - min(self.values) <= EQUAL * largest
 
 
 def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
@@ -144,17 +140,7 @@ def size_of(settings: Settings) -> str:
 
 
 def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
-    """Two sentences on what three meshes, or numbers of instants, tell.
-
-    Parameters
-    ----------
-    refinement
-        What they came to.
-    unit
-        Of the values; empty for a pure number.
-    size
-        What is halved.
-    """
+    """Two sentences on what three meshes, or numbers of instants, tell by halving a size."""
     if not refinement.is_told:
         return "One of the runs came to no certified solution, or has no such value: no answer."
     if refinement.margin == 0.0:

@@ -174,13 +174,15 @@ def _run(
         for count in counts:
             assert slab is not None
             iteration = Iteration(slab.problem, slab.latin, slab.start)
-            for _ in range(count):
-                iteration.choose_direction()
+            for number in range(1, count + 1):
                 began = time.process_time()
                 iteration.local_stage()
                 local += time.process_time() - began
                 iteration.linear_stage()
-            iterate = iteration.snapshot(count, 0.0)
+                iterate = iteration.snapshot(number)
+                if iterate.new_course is not None:
+                    iteration = Iteration(slab.problem, slab.latin, iterate.checkpoint)
+            assert iterate is not None
             slab = next_slab(problem, slab, iterate, length)
 
     seconds = seconds_of(work)
@@ -192,7 +194,7 @@ def _run(
 
 def _state(iterate: Iterate) -> tuple[int, float]:
     """Most modes of a substructure, 0 of full fields; and MB of the state."""
-    if iterate.reduction is None:
+    if not iterate.bases:
         return 0, iterate.outgoing.nbytes / 1e6
     shared = {own.stored: own for own in iterate.bases}
     held = sum(2 * own.outgoing.nbytes for own in shared.values())

@@ -16,7 +16,8 @@ from reduction_cost import medians_of, samples_of
 
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
-from solver.latin import Iterate, StopState, iterations, solve
+from solver.latin import Full, Iterate, StopState, iterations, solve
+from solver.latin.blocks import Blocks
 from solver.latin.estimate import ErrorEstimate
 from solver.latin.iteration import Iteration
 from solver.latin.linear_stage import LinearStage
@@ -69,9 +70,10 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     settings = BarSettings.checked({"method": "paper", "elements": nodes - 1, "instants": instants})
     problem = discretise(settings)
     k = method_of(settings).direction.of(problem)
-    local = LocalStage(problem, k)
-    multi = LinearStage(problem, k, multiscale=True)
-    mono = LinearStage(problem, k, multiscale=False)
+    blocks = Blocks(problem.n_rows, problem.n_instants)
+    local = LocalStage(problem, k, blocks)
+    multi = LinearStage(problem, k, Full(), blocks, multiscale=True)
+    mono = LinearStage(problem, k, Full(), blocks, multiscale=False)
     for stage in (multi, mono):
         stage.go_to(None)
     incoming = space_time(problem.n_rows, problem.n_instants)

@@ -60,8 +60,8 @@ def main() -> int:
     if not rubs_on_supports(discretise(settings)):
         print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
         return 2
-    study = error_against_time(settings, chosen.repeats)
-    print(*conditions(study), "", aligned(table(study)), "", sep="\n")
+    curves = error_against_time(settings, chosen.repeats)
+    print(*conditions(settings, chosen.repeats), "", aligned(table(curves)), "", sep="\n")
     head = ["solver", "tolerance", "ms", "error of the friction force", "of the displacement"]
     print(aligned([head, *rows(settings, chosen.repeats)]))
     absent = [one.name for one in PUBLIC if not one.installed]

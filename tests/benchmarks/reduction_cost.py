@@ -17,7 +17,8 @@ from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.latin import PGD, Paper, iterations
+from solver.latin import PGD, Full, Paper, iterations
+from solver.latin.blocks import Blocks
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import LinearStage
 from solver.laws import Component, Contact, Friction
@@ -137,10 +138,13 @@ def reduction_cost(
     target = np.asfortranarray(generator.normal(size=shape))
     smallest = min(len(part.rows) for part in problem.substructures)
     sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
-    whole = LinearStage(problem, k, multiscale=True)
+    blocks = Blocks(problem.n_rows, problem.n_instants)
+    whole = LinearStage(problem, k, Full(), blocks, multiscale=True)
     loose, tight = (
         [
-            LinearStage(problem, k, PGD(size, tolerance, pairs=1, sharing=0.0), multiscale=True)
+            LinearStage(
+                problem, k, PGD(size, tolerance, pairs=1, sharing=0.0), blocks, multiscale=True
+            )
             for size in sizes
         ]
         for tolerance in (1.0, TIGHT)
@@ -149,7 +153,7 @@ def reduction_cost(
         stage.go_to(start)
     # All begin from bases that are full, also where no residual is enough for another mode.
     for stage, full_bases in zip(loose, tight, strict=True):
-        stage.go_to(replace(start, reduction=full_bases.reduction()))
+        stage.go_to(replace(start, bases=full_bases.bases()))
     steps = [_step(stage, target) for stage in (whole, *loose, *tight)]
     full, *rest = medians_of(steps, repeats, max(3, int(2e6 / np.prod(shape))))
     return ReductionCost(

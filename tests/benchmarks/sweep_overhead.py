@@ -6,7 +6,8 @@ import time
 
 from solver.executors import machine, opened, processors
 from solver.scenes.bar import BarSettings
-from solver.study.sweep import plan_of, sweep
+from solver.study.sweep.plan import plan_of
+from solver.study.sweep.run import sweep
 
 
 def print_overhead(side: int) -> None:

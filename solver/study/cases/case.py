@@ -8,58 +8,28 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.files import check_keys, placed, read_toml, require, scene_settings
+from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
 from solver.settings import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 
-KEYS = {
-    "order": int,
-    "title": str,
-    "question": str,
-    "source": str,
-    "quantity": str,
-    "known": (int, float),
-    "tolerance": (int, float),
-    "formula": str,
-    "how": str,
-    "change": str,
-    "controls": list,
-    "views": list,
-    "picture": dict,
-}
-"""Keys of the table `case`, and the type of each; `OPTIONAL` may be left out."""
-OPTIONAL = "views", "picture"
-
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case as its file says.
+    """A case as its file says, whose name it has.
 
     Attributes
     ----------
-    name
-        That of its file, without the ending.
-    order
-        Its place among the cases.
-    title, question
-        What it is called, and what its owner asks.
-    source
-        Where the question, or what is known, is from.
-    settings
-        Of the run.
-    quantity
-        That of the run which is known.
     known, tolerance
-        What is known, and how far the run may be from it, as a share.
+        The quantity of the run, and how far this may be from it, as a share.
     formula, how
         What it follows from, and how it is known.
     change, controls
         What to change first, and the names of its settings.
-    views
-        Names of the plots that come to the front.
     picture
         By which it is found; without one that of the scene.
+    views
+        Names of the plots that come to the front.
     """
 
     name: str
@@ -75,8 +45,8 @@ class Case:
     how: str
     change: str
     controls: tuple[str, ...]
-    views: tuple[str, ...]
     picture: Icon
+    views: tuple[str, ...] = ()
 
 
 def case_from_file(path: Path) -> Case:
@@ -105,15 +75,14 @@ def all_cases() -> list[Case]:
 
 
 def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
-    check_keys(entries, KEYS, optional=OPTIONAL)
-    tolerance, can = entries["tolerance"], "a share above 0 and below 1"
+    picture = {"picture": settings.icon._asdict(), **entries}["picture"]
+    values = fields_in(Case, {**entries, "picture": picture}, quantity=str, picture=dict)
+    tolerance, can = values["tolerance"], "a share above 0 and below 1"
     require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
     working = [own for own in settings.definitions() if settings.applies(own)]
-    for control in entries["controls"]:
+    for control in values["controls"]:
         remedy = "name a setting that does something here"
         require(control in working, "controls", control, ", ".join(working), remedy)
-    paths = entries.get("picture", settings.icon._asdict())
-    check_keys(paths, dict.fromkeys(Icon._fields, str))
-    read = dict(entries) | {key: tuple(entries.get(key, ())) for key in ("controls", "views")}
-    read |= {"quantity": reading(entries["quantity"]), "picture": Icon(**paths)}
-    return Case(name=name, settings=settings, **read)
+    check_keys(picture, dict.fromkeys(Icon._fields, str))
+    values |= {"quantity": reading(values["quantity"]), "picture": Icon(**picture)}
+    return Case(name=name, settings=settings, **values)

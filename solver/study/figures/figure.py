@@ -63,17 +63,7 @@ def paper_figure(
 
 
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> str:
-    """Write `FILE` into a folder.
-
-    Returns
-    -------
-    What whoever asked for it is to be told, if anything.
-
-    Raises
-    ------
-    OSError
-        When it cannot be written.
-    """
+    """Write `FILE` into a folder; what is to be told of it, if anything."""
     report: list[Section] = [INTRODUCTION]
     for figure in figures:
         findings = bullets([f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings])

@@ -10,6 +10,7 @@ from solver.arrays import Array
 from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, against_front, front_decay
 from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.figures.convergence import figure_3, figure_4
 from solver.study.figures.figure import Finding, PaperFigure, paper_figure
 from solver.study.figures.paper_runs import PaperRuns
 
@@ -19,6 +20,11 @@ SHARES = (0.1, 0.01, 0.001)
 """Errors for which modes are counted."""
 PLACE = PanelAxis("Position x", "m")
 MODE = PanelAxis("Space mode", "1/√m")
+
+
+def paper_figures(runs: PaperRuns) -> list[PaperFigure]:
+    """Figs. 3 to 8."""
+    return [make(runs) for make in (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)]
 
 
 def figure_5(runs: PaperRuns) -> PaperFigure:

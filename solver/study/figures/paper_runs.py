@@ -56,6 +56,11 @@ class PaperRuns:
     friction_forces: list[Decomposition]
     displacements: list[Decomposition]
 
+    @property
+    def versions(self) -> tuple[PaperRun, PaperRun]:
+        """Multiscale and monoscale."""
+        return self.multiscale, self.monoscale
+
 
 def paper_runs() -> PaperRuns:
     """Solve and decompose all of them."""

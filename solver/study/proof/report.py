@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import groupby
 from pathlib import Path
+from urllib.parse import urlencode
 
-from solver.study.cases.case import all_cases
+from solver.latin import Ending, solve
+from solver.reference.incremental import reference_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.cases.case import Case, all_cases
+from solver.study.mesh import size_of
 from solver.study.page import html_table, text_of, write_csv, write_page
-from solver.study.proof import bodies, rods
-from solver.study.proof.known_case import CLOSED_FORMS, PARTS, KnownCase, ProofRow, known_case
+from solver.study.proof import known_numbers
+from solver.study.proof.known_numbers import Answer, Number
+from solver.study.quantities.finished import FinishedRun
 
+PARTS = CLOSED_FORMS, PUBLISHED, TRADE = "Closed forms", "Published numbers", "Cases of the trade"
+"""Parts of the report, by where what is known is from; cases of the trade are solved by LATIN."""
 SHOWN = {
     **{"holds": ("", 5), "case": ("case", 56), "solver": ("solver", 12)},
     **{"quantity": ("quantity", 52), "deviation": ("deviation", 9), "allowed": ("allowed", 8)},
@@ -34,15 +46,95 @@ WORDS = (
 )
 
 
+@dataclass(frozen=True, eq=False)
+class KnownCase:
+    """A problem whose answer is known from a source, and the largest deviation that is allowed.
+
+    `numbers` are what is known of an answer, beside what it has; `part` is that of the report.
+    """
+
+    title: str
+    source: str
+    allowed: float
+    settings: Settings
+    numbers: Callable[[Answer], Iterable[Number]]
+    part: str = CLOSED_FORMS
+
+    @property
+    def address(self) -> str:
+        """What follows the page's address to open this run there."""
+        texts = {
+            name: value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
+            for name, value in self.settings.changed().items()
+        }
+        return f"?{urlencode({'scene': self.settings.scene, **texts})}"
+
+
+@dataclass(frozen=True)
+class ProofRow:
+    """One number of one case by one solver, as it is known and as that has it.
+
+    `ended` is whether the run came to its end; a number of one that did not proves nothing.
+    """
+
+    case: KnownCase
+    solver: str
+    ended: bool
+    quantity: str
+    unit: str
+    exact: float
+    found: float
+
+    @property
+    def deviation(self) -> float:
+        """Distance of the two over what is known."""
+        return float(abs(self.found - self.exact) / abs(self.exact))
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is as it has to be."""
+        return self.ended and self.deviation <= self.case.allowed
+
+
+def rows_of(case: KnownCase) -> Iterator[ProofRow]:
+    """Solve a case by LATIN and, unless it is of the trade, by the incremental solver too."""
+    settings = case.settings
+    problem = discretise(settings)
+    solution = solve(problem, method_of(settings))
+    ended = solution.status.ending is Ending.CONVERGED
+    for number in case.numbers(Answer(settings, problem, solution.iterate, solution)):
+        yield ProofRow(case, "LATIN", ended, *number)
+    if case.part != TRADE:
+        reference = reference_of(problem)
+        for number in case.numbers(Answer(settings, problem, reference)):
+            yield ProofRow(case, "incremental", bool(reference.converged.all()), *number)
+
+
+def known_case(case: Case) -> KnownCase:
+    """Make a row of the proof of a case of the trade."""
+    asked = case.quantity
+
+    def numbers(answer: Answer) -> Iterator[Number]:
+        assert answer.solution is not None
+        found = asked(FinishedRun(answer.settings, answer.solution))
+        yield asked.title, asked.unit or "-", case.known, found
+
+    source = f"{case.formula}. {case.how} {case.source}"
+    return KnownCase(case.title, source, case.tolerance, case.settings, numbers, TRADE)
+
+
 def cases() -> list[KnownCase]:
     """All cases, none of them solved yet."""
-    numbers, known = {**vars(rods), **vars(bodies)}, []
+    known = []
     for group in tomllib.loads(CASES.read_text(encoding="utf-8"))["known"]:
         for title, settings in group["cases"].items():
+            kind = CATALOGUE[group["scene"]]
             case = KnownCase(
-                *(title, group["source"], group["allowed"], group["scene"]),
-                {**group.get("common", {}), **settings},
-                numbers[group["numbers"]],
+                title,
+                group["source"],
+                group["allowed"],
+                kind.checked({**group.get("common", {}), **settings}),
+                getattr(known_numbers, group["numbers"]),
                 group.get("part", CLOSED_FORMS),
             )
             known.append(case)
@@ -56,7 +148,7 @@ def entries(row: ProofRow) -> dict[str, object]:
         **{"holds": "holds" if row.holds else "FAILS", "part": case.part, "case": case.title},
         **{"solver": row.solver, "quantity": row.quantity, "unit": row.unit},
         **{"known": float(row.exact), "ours": float(row.found), "deviation": row.deviation},
-        **{"allowed": case.allowed, "mesh": case.mesh},
+        **{"allowed": case.allowed, "mesh": size_of(case.settings)},
         **{"source": case.source, "address": case.address},
     }
 
@@ -67,13 +159,7 @@ def summary(rows: Sequence[ProofRow]) -> str:
 
 
 def write_proof(rows: Sequence[ProofRow], folder: Path) -> None:
-    """Write `FILES` into an existing folder.
-
-    Raises
-    ------
-    OSError
-        When a file cannot be written.
-    """
+    """Write `FILES` into an existing folder."""
     written = [entries(row) for row in rows]
     write_csv(folder / FILES[0], list(written[0]), [entry.values() for entry in written])
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
@@ -83,7 +169,9 @@ def write_proof(rows: Sequence[ProofRow], folder: Path) -> None:
         for case, own in groupby(of_part, lambda row: row.case):
             address, title = escape(PAGE + case.address), escape(case.title)
             link = f'<a class="run" href="{address}"><b>{title}</b></a>'
-            lines.append([f"{link} · {case.mesh}<br><small>{escape(case.source)}</small>"])
+            lines.append(
+                [f"{link} · {size_of(case.settings)}<br><small>{escape(case.source)}</small>"]
+            )
             for entry in map(entries, own):
                 digits = {"known": 6, "ours": 6}
                 lines.append([text_of(entry[name], digits.get(name, 2)) for name in NUMBERS])

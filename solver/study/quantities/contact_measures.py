@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,13 +61,16 @@ def peak_displacement(run: FinishedRun) -> float:
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
 
 
+def _axial_force(run: FinishedRun) -> Array:
+    return AxialForce(run.problem)(run.iterate.displacement)
+
+
 def _most_axial_force(run: FinishedRun, at: float | None) -> int:
     """Instant at a share of the interval, or that of the largest axial force."""
-    if at is not None:
-        times = run.problem.instants
-        return int(np.abs(times - at * times[-1]).argmin())
-    force = AxialForce(run.problem)(run.iterate.displacement)
-    return int(np.abs(force).max(axis=0).argmax())
+    times = run.problem.instants
+    if at is None:
+        return int(np.abs(_axial_force(run)).max(axis=0).argmax())
+    return int(np.abs(times - at * times[-1]).argmin())
 
 
 @quantity(
@@ -79,9 +82,8 @@ def _most_axial_force(run: FinishedRun, at: float | None) -> int:
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
     """Largest axial force in any element at an instant, N, pull positive."""
-    some = slice(instant, instant + 1)
-    force = AxialForce(run.problem, some)(run.iterate.displacement[:, some])
-    return float(force[np.abs(force).argmax(), 0])
+    force = _axial_force(run)[:, instant]
+    return float(force[np.abs(force).argmax()])
 
 
 def _force_at(side: str) -> Quantity:
@@ -90,8 +92,8 @@ def _force_at(side: str) -> Quantity:
     def force(run: FinishedRun) -> float:
         problem, structure = run.problem, run.settings.structure()
         if isinstance(structure, Rods):
-            given = structure.end_force(problem, "right" if side == "right" else "left")
-            values = given if isinstance(given, np.ndarray) else given(run.iterate)
+            end = structure.end_force(problem, "right" if side == "right" else "left")
+            values = end.of(run.iterate)
             return float(values[np.abs(values).argmax()])
         moved = run.iterate.displacement
         return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
@@ -129,38 +131,35 @@ def peak_friction(run: FinishedRun) -> float:
     return float(np.abs(run.iterate.friction_force).sum(axis=0).max())
 
 
-def _normal_forces(run: FinishedRun) -> dict[str, Array]:
-    """Pressing forces by interface, where they are unknowns."""
-    forces = {name: run.iterate.contact(name).normal_force for name in run.problem.rubbing}
-    return {name: force for name, force in forces.items() if force is not None}
+def _pressing(run: FinishedRun, name: str) -> Array:
+    """Pressing force at an interface, which is an unknown in scenes whose contacts open."""
+    force = run.iterate.contact(name).normal_force
+    assert force is not None
+    return force
 
 
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
-    """Largest sum over all points of the pressing force, N; NaN where it is given."""
-    pressing = list(_normal_forces(run).values())
-    return float(np.concatenate(pressing).sum(axis=0).max()) if pressing else math.nan
+    """Largest sum over all points of the pressing force, N."""
+    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing]
+    return float(np.sum(forces, axis=0).max())
 
 
 @quantity("Largest pressure", "Pa", applies=_opens)
 def peak_pressure(run: FinishedRun) -> float:
-    """Largest pressure at any point of an interface, Pa; NaN where it is given.
+    """Largest pressure at any point of an interface, Pa.
 
     Force of a point over its tributary length, one metre thick. A single point, as that under a
     spring, has a force and no pressure.
     """
-    lengths, forces = _lengths(run), _normal_forces(run)
-    peaks = [
-        float((forces[name] / lengths[name][:, None]).max()) for name in forces.keys() & lengths
-    ]
+    lengths = _lengths(run).items()
+    peaks = (float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths)
     return max(peaks, default=math.nan)
 
 
 @quantity("Largest length in contact", "m", applies=_opens)
 def contact_width(run: FinishedRun) -> float:
-    """Largest length over which bodies touch at once, m; NaN where they always do."""
-    if run.problem.inside is None:
-        return math.nan
+    """Largest length over which bodies touch at once, m."""
     length, status = _touching(run)
     return float((length[:, None] * (status != OPEN)).sum(axis=0).max())
 
@@ -200,8 +199,7 @@ def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
     """Largest von Mises stress, Pa, and the centre of the element that has it first, m."""
     inside, values = run.problem.inside, run.settings.values()
     largest, place = 0.0, np.full(2, np.nan)
-    if inside is None:
-        return math.nan, place
+    assert inside is not None  # these quantities are of the plane
     for instant in range(run.problem.n_instants):
         moved = inside.displacement(run.iterate.displacement, [instant])[:, :, 0]
         stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
@@ -236,7 +234,7 @@ def holding_friction(run: FinishedRun) -> float:
         ways = [(status == way) | is_free for way in (-1, 1)]
         if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
             return math.nan
-    needed = max((float((held / pressing).max()) for pressing, held in _carried(run)), default=0.0)
+    needed, _ = _nearest_to_sliding(run)
     return needed if needed > RESIDUE else 0.0
 
 
@@ -246,19 +244,13 @@ def holding_force(run: FinishedRun) -> float:
 
     That is mu times all that presses; beyond it the interface slides as a whole.
     """
-    if not run.settings.friction:
-        return 0.0
-    nearest, most = -1.0, 0.0
-    for pressing, held in _carried(run):
-        instant = int((held / pressing).argmax())
-        if held[instant] / pressing[instant] > nearest:
-            nearest, most = held[instant] / pressing[instant], pressing[instant]
-    return float(run.settings.friction * most)
+    friction = float(run.settings.friction)
+    return friction and friction * _nearest_to_sliding(run)[1]
 
 
-def _carried(run: FinishedRun) -> Iterator[tuple[Array, Array]]:
-    """All that presses an interface, and all its friction, at instants at which any does, N."""
-    friction = run.settings.friction
+def _nearest_to_sliding(run: FinishedRun) -> tuple[float, float]:
+    """Largest share of all friction at an interface in all that presses it, and the latter, N."""
+    friction, every = run.settings.friction, [np.zeros((2, 0))]
     for name, law in run.problem.rubbing.items():
         contact = run.iterate.contact(name)
         if contact.normal_force is None:
@@ -267,9 +259,13 @@ def _carried(run: FinishedRun) -> Iterator[tuple[Array, Array]]:
         else:
             share = law.mean_by_point(law.tangential.friction) / friction
             pressing = share @ contact.normal_force
-        held = np.abs(contact.tangential_force.sum(axis=0))
-        if np.any(pressing > 0.0):
-            yield pressing[pressing > 0.0], held[pressing > 0.0]
+        held, is_pressed = np.abs(contact.tangential_force.sum(axis=0)), pressing > 0.0
+        every.append(np.array([held[is_pressed] / pressing[is_pressed], pressing[is_pressed]]))
+    shares, forces = np.concatenate(every, axis=1)
+    if not len(shares):
+        return 0.0, 0.0
+    nearest = shares.argmax()
+    return float(shares[nearest]), float(forces[nearest])
 
 
 @quantity("Displacement at the largest load", "m", applies=_over_a_displacement, when=largest_load)

@@ -53,9 +53,8 @@ def has_a_limit(settings: Settings) -> bool:
 def cycle_energy_ratio(run: FinishedRun) -> float:
     """Energy of the last cycle over that of the second; NaN where that took none."""
     energy = cycles_of(run.settings, run.iterate).energy
-    if energy[1] <= NO_ENERGY * np.abs(run.dissipated).sum():
-        return math.nan
-    return float(energy[-1] / energy[1])
+    is_any = energy[1] > NO_ENERGY * np.abs(run.dissipated).sum()
+    return float(energy[-1] / energy[1]) if is_any else math.nan
 
 
 @quantity("Slip that the last cycle leaves", "m", applies=has_cycles)
@@ -112,11 +111,6 @@ def is_rope(settings: Settings) -> bool:
     return settings.kind == "helices"
 
 
-def is_bent_alike(settings: Settings) -> bool:
-    """Whether a strand is bent alike all along, so that a metre of it has a meaning."""
-    return is_rope(settings) and not _rope(settings).is_clamped
-
-
 def _rope(settings: Settings) -> Rope:
     rope = settings.structure()
     assert isinstance(rope, Rope)
@@ -153,7 +147,12 @@ def bending_stiffness(run: FinishedRun, instant: int) -> float:
     return float(run.force[instant]) / curvature if curvature else math.nan
 
 
-@quantity("Energy dissipated, a metre of strand", "J/m", parameter=CYCLE, applies=is_bent_alike)
+@quantity(
+    "Energy dissipated, a metre of strand",
+    "J/m",
+    parameter=CYCLE,
+    applies=lambda settings: is_rope(settings) and not _rope(settings).is_clamped,
+)
 def energy_per_metre(run: FinishedRun, at: float | None) -> float:
     """Energy that friction takes in a metre of strand, J/m: of the whole run, or of a cycle.
 

@@ -139,16 +139,9 @@ def instants_of(settings: Settings, number: float | None = None) -> slice | None
 
 
 def turning_points(path: Array) -> list[int]:
-    """Where a path turns back by more than a small swing, and its end if it is as far out.
+    """Instants at which a path turns back by more than a small swing, and its end if as far out.
 
-    Parameters
-    ----------
-    path
-        Shape (n_instants,).
-
-    Returns
-    -------
-    Indices, the first of each extreme that is held.
+    Of each extreme that is held the first counts.
     """
     least = max(SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max()))
     extremes: list[int] = []

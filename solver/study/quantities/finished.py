@@ -45,16 +45,16 @@ class FinishedRun:
 
     Attributes
     ----------
-    loop
-        As the scene shows it, where that is at hand: in the plane it takes a solution to make one.
     was_warm
         Whether it started from another run.
+    made_loop
+        Its loop, where that is at hand: in the plane it takes a while to make one.
     """
 
     settings: Settings
     solution: Solution
-    loop: Loop | None = None
     was_warm: bool = False
+    made_loop: Loop | None = None
 
     @property
     def iterate(self) -> Iterate:
@@ -67,13 +67,9 @@ class FinishedRun:
         return self.iterate.problem
 
     @cached_property
-    def _loop(self) -> Loop:
-        return self.loop or self.settings.structure().loop(self.problem)
-
-    @property
-    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Titles and units of displacement and force of that loop."""
-        return self._loop.across, self._loop.up
+    def loop(self) -> Loop:
+        """Loop that the scene shows."""
+        return self.made_loop or self.settings.structure().loop(self.problem)
 
     @property
     def states(self) -> States:
@@ -81,15 +77,18 @@ class FinishedRun:
         return states_of(self.iterate)
 
     @cached_property
+    def _along_loop(self) -> tuple[Array, Array]:
+        return self.loop.along(self.iterate)
+
+    @property
     def displacement(self) -> Array:
         """Displacement of the loop that the scene shows, m, or what it goes over; (n_instants,)."""
-        return self._loop.displacement(self.iterate.displacement)
+        return self._along_loop[0]
 
-    @cached_property
+    @property
     def force(self) -> Array:
         """Force of that loop, shape (n_instants,), N."""
-        force = self._loop.force
-        return force if isinstance(force, np.ndarray) else force(self.iterate)
+        return self._along_loop[1]
 
     @cached_property
     def dissipated(self) -> Array:
@@ -113,21 +112,10 @@ def finished_run(
     cancelled: Callable[[], bool] = lambda: False,
     before: States | None = None,
 ) -> FinishedRun:
-    """Run a scene to its stop rule.
+    """Run a scene to its stop rule, unless it is cancelled.
 
-    Parameters
-    ----------
-    settings
-        Of the run.
-    errors
-        Whether the distance to a reference is wanted, which takes its time; where there is none,
-        the run is made without.
-    indicators
-        Whether the indicators of every iteration are wanted, which take theirs.
-    cancelled
-        As for `solve`.
-    before
-        What stuck, slipped and opened in a run of like settings, to start from where that holds.
+    Errors, where there is a reference, and indicators of every iteration take their time. `before`
+    is what stuck, slipped and opened in a run of like settings, to start from where that holds.
     """
     began = time.perf_counter()
     problem = discretise(settings)
@@ -159,17 +147,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     It counts only if it finds the one solution of the discrete problem, which does not depend on
     the start. Iterations of the method in between better no states that are as near as these
     (solver/study/README.md, 7). A run on separated bases is its own, as it is asked for these too.
-
-    Parameters
-    ----------
-    problem, settings
-        What to solve, and the options of the method.
-    states
-        As `solver.latin.status_step.states_of` gives them.
-
-    Returns
-    -------
-    That solution; None where it is not found soon.
+    None where it is not found soon.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)

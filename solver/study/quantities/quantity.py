@@ -89,11 +89,5 @@ class Quantity:
 
 
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:
-    """Decorator of a function of a run that makes it the quantity of its name.
-
-    Parameters
-    ----------
-    title, unit, options
-        As `Quantity` has them.
-    """
+    """Decorator of a function of a run that makes it the quantity of its name."""
     return lambda of: Quantity(of.__name__, title, unit, of, **options)

@@ -67,8 +67,7 @@ def products_in(clips: Clips) -> Sizes:
 )
 def modes(run: FinishedRun) -> float:
     """Modes of the largest separated basis of a substructure at the end; NaN without bases."""
-    reduction = run.iterate.reduction
-    return math.nan if reduction is None else max(basis.modes for basis in reduction.records)
+    return max((basis.n_modes for basis in run.iterate.bases), default=math.nan)
 
 
 @quantity("Singular vectors of the displacement for an error of", parameter=WITHIN, applies=on_rods)

@@ -25,9 +25,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.executors import machine
 from solver.latin import Ending, Solution, judged, solve
-from solver.latin.cost import run_cost
+from solver.latin.run_cost import run_cost
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
@@ -72,12 +71,11 @@ class ErrorCurve:
     ----------
     method
         What it is called.
-    steps
-        Iterations done, or Newton steps of the incremental solver, shape (n,).
-    seconds
-        Time from settings to result, medians of the passes, shape (n,).
+    steps, seconds
+        Iterations done, or Newton steps of the incremental solver, and the time from settings to
+        there, medians of the passes, s; shape (n,).
     error_displacement, error_force
-        Relative L2 distances to the incremental reference, shape (n,); 0 by definition for itself.
+        Relative L2 distances to the incremental reference, same shape; 0 for itself.
     """
 
     method: str
@@ -107,52 +105,24 @@ class ErrorCurve:
         return float(self.seconds[first]), float(self.steps[first])
 
 
-@dataclass(frozen=True, eq=False)
-class Study:
-    """Curves of all methods on one scene, and under which conditions they were measured.
-
-    Attributes
-    ----------
-    settings
-        The scene; the forms of LATIN change what `forms_of` says.
-    repeats
-        Timed passes.
-    machine
-        Processors, BLAS threads, versions.
-    curves
-        One per method that ran.
-    """
-
-    settings: Settings
-    repeats: int
-    machine: str
-    curves: tuple[ErrorCurve, ...]
-
-
-def error_against_time(settings: Settings, repeats: int) -> Study:
-    """Run every method `repeats` times, at least once, in turns."""
+def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:
+    """Run every method `repeats` times, at least once, in turns; a curve for each."""
     problem = discretise(settings)
     reference = reference_of(problem)
-    distance = distance_to(reference, problem)
-    forms = forms_of(settings)
+    distance, forms = distance_to(reference, problem), forms_of(settings)
     errors = {method: _errors(form, distance) for method, form in forms.items()}
+    times: dict[str, list[list[float]]] = {method: [] for method in (*forms, INCREMENTAL)}
+    for _ in range(repeats):
+        for method, form in forms.items():
+            work = partial(_append_times, times[method], form, len(errors[method]))
+            seconds_of(work)
+        times[INCREMENTAL].append([seconds_of(partial(incremental, settings), time.perf_counter)])
     steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
     errors[INCREMENTAL], steps[INCREMENTAL] = np.zeros((1, 2)), np.array([float(reference.steps)])
-    samples: dict[str, list[list[float]]] = {method: [] for method in errors}
-
-    def iterate(method: str) -> None:
-        samples[method].append(_by_iterations(forms[method], len(errors[method])))
-
-    for _ in range(repeats):
-        for method in forms:
-            seconds_of(partial(iterate, method))
-        seconds = seconds_of(partial(incremental, settings), time.perf_counter)
-        samples[INCREMENTAL].append([seconds])
-    curves = (
-        ErrorCurve(method, steps[method], np.median(times, axis=0), *errors[method].T)
-        for method, times in samples.items()
-    )
-    return Study(settings, repeats, machine(), tuple(curves))
+    return [
+        ErrorCurve(method, steps[method], np.median(each, axis=0), *errors[method].T)
+        for method, each in times.items()
+    ]
 
 
 def forms_of(settings: Settings) -> dict[str, Settings]:
@@ -184,13 +154,13 @@ def _errors(settings: Settings, distance: Distance) -> Array:
     return np.array(errors)
 
 
-def _by_iterations(settings: Settings, number: int) -> list[float]:
-    """Time after every iteration, with all that the run needs to end, and discretising."""
+def _append_times(passes: list[list[float]], settings: Settings, number: int) -> None:
+    """Append times after every iteration, with all that the run needs to end, and discretising."""
     start = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - start
     decisions = islice(judged(problem, method_of(settings), None, spent), number)
-    return [decision.seconds for _, decision in decisions]
+    passes.append([decision.seconds for _, decision in decisions])
 
 
 def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
@@ -210,16 +180,9 @@ def incremental(settings: Settings) -> Reference:
 
 @dataclass(frozen=True)
 class TimesAtSize:
-    """Both solvers at one size.
+    """Medians of both solvers, s, at a size of the first setting that grows with the scene.
 
-    Attributes
-    ----------
-    size, instants
-        Of the first setting that grows with the scene, and of time.
-    latin, incremental
-        Medians, s; NaN where it was left out.
-    message
-        Why there is no answer; empty where there is one.
+    The message says why there is no answer; it is empty where there is one.
     """
 
     size: int
@@ -237,12 +200,7 @@ class TimesAtSize:
 def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSize]:
     """Measure both solvers, in turns, on multiples of the present size and number of instants.
 
-    Parameters
-    ----------
-    settings
-        Of the middle of the table; the method is the fast one.
-    large
-        Whether to go on to sizes that take minutes.
+    The method is the fast one; large are sizes that take minutes.
     """
     names = settings.GROWS
     longest = LONGEST_OF_LARGE if large else LONGEST

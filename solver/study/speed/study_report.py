@@ -10,14 +10,24 @@ from pathlib import Path
 import numpy as np
 
 from solver.definitions import about
+from solver.executors import machine
 from solver.settings import Settings
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.page import PlotSection, Section, bullets, html_table, write_csv, write_page
+from solver.study.page import (
+    PlotSection,
+    Section,
+    bullets,
+    html_table,
+    text_of,
+    write_csv,
+    write_page,
+)
 from solver.study.speed.measured_times import (
     GOAL,
+    INCREMENTAL,
     LEVELS,
     MOST_ITERATIONS,
-    Study,
+    ErrorCurve,
     TimesAtSize,
 )
 
@@ -47,19 +57,19 @@ SPAN = (1e-9, 2.0)
 SMALLEST = 2e-9
 
 
-def conditions(study: Study) -> list[str]:
-    """Under which conditions the study was measured, in sentences."""
-    changed = study.settings.changed()
+def conditions(settings: Settings, repeats: int) -> list[str]:
+    """Under which conditions a study was measured, in sentences."""
+    changed = settings.changed()
     values = ", ".join(f"{name} = {value}" for name, value in changed.items()) or "defaults"
     return [
-        f"Scene: {study.settings.scene} ({values}).",
-        f"Machine: {study.machine}.",
-        f"All methods in one process, in turns; medians of {study.repeats} passes.",
+        f"Scene: {settings.scene} ({values}).",
+        f"Machine: {machine()}.",
+        f"All methods in one process, in turns; medians of {repeats} passes.",
         *BILLED,
     ]
 
 
-def table(study: Study) -> list[Row]:
+def table(curves: Sequence[ErrorCurve]) -> list[Row]:
     """Time to each level, with the iterations in brackets and a star at the first method.
 
     The last row is of the best form of LATIN over the incremental solver.
@@ -67,10 +77,10 @@ def table(study: Study) -> list[Row]:
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
     reached = {
         curve.method: [curve.reached(level) or (math.inf, 0.0) for level in LEVELS.values()]
-        for curve in study.curves
+        for curve in curves
     }
     times = np.array([[seconds for seconds, _ in own] for own in reached.values()])
-    for curve, is_first in zip(study.curves, times == times.min(axis=0), strict=True):
+    for curve, is_first in zip(curves, times == times.min(axis=0), strict=True):
         cells = []
         for (seconds, step), star in zip(reached[curve.method], is_first, strict=True):
             number = f" ({step:.0f})" if curve.is_latin else ""
@@ -79,45 +89,30 @@ def table(study: Study) -> list[Row]:
         each = curve.seconds_per_iteration
         cost = f"{1e3 * each:.3f}" if each is not None else "-"
         rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
-    is_latin = np.array([curve.is_latin for curve in study.curves])
+    is_latin = np.array([curve.is_latin for curve in curves])
     ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
     texts = (f"{ratio:.2g}" if math.isfinite(ratio) else "-" for ratio in ratios)
     return [*rows, [f"best {TIMES}", *texts, "-", "-"]]
 
 
-def ratio_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
-    """Time of LATIN over that of the other, a row for each number of instants."""
-    sizes = sorted({times.size for times in measured})
-    rows = [[TIMES, *(f"{settings.GROWS[0]} {size}" for size in sizes)]]
-    for instants, ratios in _ratios(measured).items():
-        texts = (f"{ratios.get(size, math.nan):.2g}".replace("nan", "-") for size in sizes)
-        rows.append([f"{instants} instants", *texts])
+def sizes_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
+    """Times of both solvers at every size, or why they have none."""
+    rows = [[_titles(settings)[0], "instants", "LATIN, s", f"{INCREMENTAL}, s", TIMES, ""]]
+    for times in measured:
+        numbers = (text_of(number) for number in (times.latin, times.incremental, times.ratio))
+        rows.append([str(times.size), str(times.instants), *numbers, times.message])
     return rows
 
 
-def _ratios(measured: Sequence[TimesAtSize]) -> dict[int, dict[int, float]]:
-    """Ratios by number of instants and size, both in ascending order; NaN without an answer."""
-    ratios: dict[int, dict[int, float]] = {}
-    for times in sorted(measured, key=lambda times: (times.instants, times.size)):
-        ratios.setdefault(times.instants, {})[times.size] = times.ratio
-    return ratios
-
-
 def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
-    """What the sizes show, and which are left out, in sentences."""
-    title, *others = _titles(settings)
+    """What the sizes show, in sentences."""
+    _, *others = titles = _titles(settings)
     ratios = np.array([times.ratio for times in measured if not times.message])
-    grows = " and ".join(name.lower() for name in (title, *others))
     return [
         f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
         "settings to a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
-        *([f"What grows along the axis: {grows}."] if others else []),
-        *(
-            f"{title} {times.size}, {times.instants} instants: {times.message}"
-            for times in measured
-            if times.message
-        ),
+        *([f"What grows together: {' and '.join(titles).lower()}."] if others else []),
     ]
 
 
@@ -127,13 +122,13 @@ def _titles(settings: Settings) -> list[str]:
     return [about(definitions[name]).title for name in settings.GROWS]
 
 
-def error_panels(study: Study) -> list[Panel]:
+def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
     """Errors of displacement and of friction force over time, a curve for each method."""
     panels = []
     for name, title in (("error_displacement", "Displacement"), ("error_force", "Friction force")):
         *latin, other = (
             PanelCurve(own.method, own.seconds, np.maximum(getattr(own, name), SMALLEST), hue)
-            for hue, own in enumerate(study.curves, start=1)
+            for hue, own in enumerate(curves, start=1)
         )
         # The solver that is the reference itself is a vertical line.
         line = PanelCurve(other.label, np.repeat(other.x, 2), np.array(SPAN), 0, "dashed")
@@ -148,9 +143,10 @@ def error_panels(study: Study) -> list[Panel]:
 def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
     """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
     curves = []
-    for hue, (instants, ratios) in enumerate(_ratios(measured).items(), start=1):
-        sizes, values = np.array([*ratios.items()]).T
-        curves.append(PanelCurve(f"{instants} instants", sizes, values, hue, "points"))
+    for hue, instants in enumerate(sorted({times.instants for times in measured}), start=1):
+        own = sorted((each.size, each.ratio) for each in measured if each.instants == instants)
+        sizes, ratios = np.array(own).T
+        curves.append(PanelCurve(f"{instants} instants", sizes, ratios, hue, "points"))
     ends = np.array([curves[0].x[0], curves[0].x[-1]])
     return Panel(
         f"Time of {TIMES}",
@@ -160,16 +156,10 @@ def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
     )
 
 
-def write_curves(study: Study, folder: Path) -> None:
-    """Write `curves.csv` and `levels.csv` (s; errors as fractions).
-
-    Raises
-    ------
-    OSError
-        When a file cannot be written.
-    """
+def write_curves(curves: Sequence[ErrorCurve], folder: Path) -> None:
+    """Write `curves.csv` and `levels.csv` (s; errors as fractions)."""
     points, levels = [], []
-    for curve in study.curves:
+    for curve in curves:
         which = curve.method, "latin" if curve.is_latin else "incremental"
         columns = curve.steps, curve.seconds, curve.error_displacement, curve.error_force
         points += [(*which, *map(float, point)) for point in zip(*columns, strict=True)]
@@ -183,29 +173,24 @@ def write_curves(study: Study, folder: Path) -> None:
     write_csv(folder / "levels.csv", [*head, *more], levels)
 
 
-def write_study(study: Study, measured: Sequence[TimesAtSize], folder: Path) -> str:
-    """Write `map.csv` and `study.html` into an existing folder.
-
-    Returns
-    -------
-    What whoever asked for them is to be told, if anything.
-
-    Raises
-    ------
-    OSError
-        When a file cannot be written.
-    """
-    settings = study.settings
+def write_study(
+    settings: Settings,
+    repeats: int,
+    curves: Sequence[ErrorCurve],
+    measured: Sequence[TimesAtSize],
+    folder: Path,
+) -> str:
+    """Write `map.csv` and `study.html`; what whoever asked for them is to be told, if anything."""
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
     rows = ((settings.GROWS[0], *astuple(times)) for times in measured)
     write_csv(folder / "map.csv", head, rows)
     sections: list[Section] = [
-        f"<h2>Time to an error of the friction force</h2>\n{html_table(table(study))}\n"
+        f"<h2>Time to an error of the friction force</h2>\n{html_table(table(curves))}\n"
         f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
-        PlotSection(CURVES, error_panels(study)),
+        PlotSection(CURVES, error_panels(curves)),
         f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
         PlotSection(SIZES, [ratio_panel(settings, measured)]),
-        f"{html_table(ratio_table(settings, measured))}\n{bullets(notes(settings, measured))}",
-        f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
+        f"{html_table(sizes_table(settings, measured))}\n{bullets(notes(settings, measured))}",
+        f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
     ]
     return write_page(folder / FILES[-1], "Error against run time", sections)

@@ -1,14 +1,14 @@
 """Random runs of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
 
 Every setting is drawn by its own definition, over the range that its slider shows, so that a new
-one is drawn as well. What has to fit together is drawn together: mesh and cuts, elements and
-their aspect, and loads, which are measured by what friction can carry.
+one is drawn as well. What has to fit together is drawn together: elements and their aspect, and
+loads, which are measured by what friction can carry.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,60 +16,41 @@ import param
 from numpy.random import Generator
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, Parameter, SettingError, about, is_logarithmic
+from solver.definitions import CurveParameter, SettingError, about, is_logarithmic
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.stability.random_loads import LOADS
 from solver.study.stability.stability_case import NOT_WRONG, StabilityCase
 
-LARGEST_FIELD = 12_000
-"""Displacements times instants of a run, at most: a thousand iterations then stay within seconds;
-a matter of counts, not of clocks, so that a row is the same on every machine."""
+LARGEST_FIELD = 6_000
+"""Nodes times instants of a run, at most: a thousand iterations then stay within seconds; a matter
+of counts, not of clocks, so that a row is the same on every machine."""
 MOST_INSTANTS = 101
-ROD = {"elements": (10, 800)}
-BODY = {"elements": (4, 96), "elements_up": (1, 32)}
-MESHES = {
-    "strand": {"elements": (10, 400), "wires": (2, 12)},
-    "rope": {"elements": (6, 40), "layers": (1, 2)},
-    "layers": {"elements": (4, 96), "elements_up": (1, 4), "layers": (2, 6)},
-    "wall": {"elements": (2, 8), "elements_up": (2, 4), "bricks": (1, 8), "courses": (1, 8)},
+SIZES = "elements", "elements_up", "wires", "layers", "bricks", "courses"
+"""Numbers of a mesh, all sizes alike."""
+WIDE = {
+    **{"poisson": (0.0, 0.4999), "friction": (0.02, 2.0)},
+    **{"relaxation": (0.4, 1.0), "k_scale": (1e-3, 1e3)},
 }
-"""Numbers of a mesh, all sizes alike; a scene without an entry has those of a rod or a body."""
-CUTS = {"substructures": ("elements", 50), "substructures_up": ("elements_up", 6)}
-"""Numbers of parts, at most that of these elements, and this many."""
-WIDE = {"poisson": (0.0, 0.4999), "friction": (0.02, 2.0), "relaxation": (0.4, 1.0)}
 """Ranges other than those of the sliders."""
-LAW = {"tangential_stiffness", "normal_stiffness", "cohesion", "friction_cap", "strength"}
-"""Settings of the general friction law."""
-PRESSES = ("pressure", "normal_stress")
-"""Settings by which the size of cohesion and cap is drawn, where a scene has one."""
-KEPT = {"max_iterations", "method"}
+KEPT = {"max_iterations", "method", "opening", "opening_height"}
 """Settings that are not drawn by their definition alone."""
-AS_THEY_ARE = {"wall": {"pressure_load"}}
-"""Those of a scene that stay at their defaults: bricks that are lifted hang on nothing."""
-INSTANTS_A_CYCLE = 4
-"""At least, of what is drawn: more cycles take more instants than there is room for."""
-COUNTED = "layers", "wires", "construction"
-"""Settings that say how many interfaces there are."""
 NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
-FOOLISH = -3.0, 3.0
-"""Decades of a factor on k that nobody would choose."""
 CHANGED = 0.15
 """How often a setting differs from its default."""
-TRIALS = 1000
+SELDOM = 0.2
+"""How often there is a load that a scene has not by itself."""
+SMALLEST, LARGEST, OF_BRICKS = 0.03, 10.0, 0.5
+"""Loads over what friction carries; of bricks, which hang on nothing, the largest."""
+PRESSING = "pressure", "normal_stress", "tension"
+"""Loads that are as large as what presses."""
+WITHOUT_PATH = "normal_stress", "shear_stress", "unit_weight", "body_force_x", "body_force_y"
+"""Loads that do not go on over time."""
+TRIALS = 10_000
 
 
 def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[StabilityCase]:
-    """Random runs of scenes in turn; row n is of scene n modulo their number.
-
-    Parameters
-    ----------
-    scenes
-        Names of the catalogue; all without.
-    number, seed
-        Of the runs, and of their draws.
-    """
+    """Random runs of scenes, or of all, in turn; row n is of scene n modulo their number."""
     names = list(scenes or CATALOGUE)
     for row in range(number):
         yield random_case(draw(names[row % len(names)], seed, row), seed, row)
@@ -93,13 +74,6 @@ def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
 def draw(scene: str, seed: int, row: int) -> Settings:
     """Settings of one random run; the same numbers give the same settings.
 
-    Parameters
-    ----------
-    scene
-        A name of the catalogue.
-    seed, row
-        Of all runs, and the number of this one.
-
     Raises
     ------
     SettingError
@@ -107,9 +81,12 @@ def draw(scene: str, seed: int, row: int) -> Settings:
     """
     generator = np.random.default_rng([seed, row, *scene.encode()])
     kind = CATALOGUE[scene]
+    last = SettingError(scene, row, f"up to {LARGEST_FIELD} nodes times instants", "draw smaller")
     for _ in range(TRIALS):
         try:
             settings = kind.checked(_values(kind, generator))
+            if settings.n_nodes * settings.n_instants > LARGEST_FIELD:
+                continue
             # Without what does nothing beside the others, so that a row says what matters.
             changed = settings.changed().items()
             values = {name: value for name, value in changed if settings.applies(name)}
@@ -124,89 +101,127 @@ def log_uniform(generator: Generator, low: float, high: float) -> float:
     return float(np.exp(generator.uniform(math.log(low), math.log(high))))
 
 
+def _count(generator: Generator, low: int, high: int) -> int:
+    return min(int(log_uniform(generator, low, high + 1)), high)
+
+
 def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     definitions = kind.definitions()
-    defaults = {name: definition.default for name, definition in definitions.items()}
-    values = _mesh(kind.scene, definitions, generator)
+    fewest = 1 if generator.random() < 0.3 else MOST_INSTANTS // 3
+    values: dict[str, Any] = {"instants": _count(generator, fewest, MOST_INSTANTS)}
+    for name in SIZES:
+        if name in definitions:
+            values[name] = _count(generator, 2, definitions[name].softbounds[1])
+    for part, whole in kind.PARTS.items():
+        if part != "broken":
+            most = min(values[whole], definitions[part].softbounds[1])
+            values[part] = _count(generator, 1, most)
     values["method"] = "paper" if generator.random() < 0.35 else "fast"
-    mixed = generator.random() < 0.5
+    is_mixed, rest = generator.random() < 0.5, kind()
     for name, definition in definitions.items():
-        if name in values or name in KEPT | AS_THEY_ARE.get(kind.scene, set()):
+        is_method = about(definition).group == "Method" and name != "linear_stage"
+        # What does nothing by itself is taken back, unless another setting is drawn to go with it.
+        often = CHANGED if rest.applies(name) else 0.5
+        if name in values or name in KEPT or (is_method and not is_mixed):
             continue
-        if generator.random() < _often(name, about(definition).group, mixed):
+        if generator.random() < often:
             values[name] = _drawn(name, definition, generator)
     if "friction_factors" in values:
-        some = {name: values[name] for name in COUNTED if name in values}
+        some = {n: values[n] for n in ("layers", "wires", "construction") if n in values}
         each = kind.checked(some).points("friction_factors")
         values["friction_factors"] = [[n, log_uniform(generator, 0.1, 10.0)] for n, _ in each]
     if "layer_lengths" in values and generator.random() < 0.5:
         shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
         values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
     if "elements_up" in definitions:  # elements up to a hundred times as long as high, or as wide
-        length = values.setdefault("length", defaults["length"])
+        length = values.setdefault("length", definitions["length"].default)
         power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
         aspect = 10.0 ** generator.uniform(-power, power)
         values[kind.across] = length * values["elements_up"] / (values["elements"] * aspect)
     if "cycles" in values:
-        most = max((values["instants"] - 1) // INSTANTS_A_CYCLE, 1)
-        values["cycles"] = min(values["cycles"], most)
-    loads = LOADS.get(kind.scene)
-    sizes = loads({**defaults, **values}, generator) if loads is not None else {}
-    every = {**defaults, **values, **sizes}
-    pressing = [every[name] for name in PRESSES if name in definitions]
-    for name in ("cohesion", "friction_cap"):
-        if name in values and pressing:
-            most = every["friction"] * pressing[0]
-            values[name] = most * log_uniform(generator, 0.01, 10.0)
-    for name, size in sizes.items():
-        if not isinstance(definitions[name], CurveParameter):
-            values[name] = size
-        elif generator.random() < CHANGED:
-            values[name] = _path(size, every["duration"], generator)
+        # Every cycle takes instants of its own.
+        values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))
+    values |= _loads(kind, values, generator)
+    # Where the top of a wall is moved before anything presses, where bricks lie is not determinate.
+    if kind.scene != "wall":
+        settings = kind.checked(values)
+        for path in settings.paths:
+            if generator.random() < CHANGED:
+                size, lowest = settings.size_of(path), definitions[path].bounds[1][0]
+                least = -1.0 if lowest < 0.0 else 0.0
+                turns = size * generator.uniform(least, 1.0, int(generator.integers(1, 8)))
+                values[path] = _table(turns, size, settings.duration, generator)
     return values
 
 
-def _often(name: str, group: str, mixed: bool) -> float:
-    """How often a setting is drawn; those of the method seldom but in mixed ones."""
-    if name in ("linear_stage", "accuracy", "tolerance"):
-        return CHANGED
-    if name.startswith("k_") and name.endswith("_scale"):
-        return 2.0 * CHANGED if name == "k_scale" else 0.5 * CHANGED
-    if name.startswith("pgd_") or name == "seed":
-        return 0.5  # taken back without separated bases, or a random path
-    if name in LAW:
-        return 0.5  # taken back where the law is not the general one
-    if group == "Method":
-        return 2.0 * CHANGED if mixed else 0.0
-    return (
-        2.0 * CHANGED if name in ("load", "gap") or name.endswith(("_profile", "_end")) else CHANGED
-    )
+def _loads(kind: Any, values: Mapping[str, Any], generator: Generator) -> dict[str, Any]:
+    """Sizes of all that acts on a scene, by the unit of each and what friction carries."""
+    definitions, rest = kind.definitions(), kind()
+    given = {**{name: each.default for name, each in definitions.items()}, **values}
+    scales = _scales(kind, given, generator)
+    largest, mu = LARGEST, given["friction"]
+    if "bricks" in given:
+        tips = 0.5 * given["length"] * given["bricks"] / (given["height"] * given["courses"])
+        largest, mu = OF_BRICKS, min(mu, tips)
+    sizes: dict[str, Any] = {}
+    for name, definition in definitions.items():
+        record = about(definition)
+        is_load = (record.path or name in WITHOUT_PATH) and record.unit in scales
+        is_seldom = not definition.default and rest.applies(name)
+        if not is_load or (is_seldom and generator.random() > SELDOM):
+            continue
+        share = log_uniform(generator, SMALLEST, largest)
+        factor = mu * (share if generator.random() < 0.7 else -share)
+        if name in PRESSING:
+            factor = 1.0
+        elif name in ("overpressure", "unit_weight"):
+            factor = float(generator.uniform(0.0, 1.0 if name == "overpressure" else 0.1))
+        elif "_normal_" in name or name == "body_force_y":
+            factor = -1.0 if generator.random() < 0.9 else 1.0
+        sizes[name] = factor * scales[record.unit]
+    for name in ("cohesion", "friction_cap"):
+        if name in values and (pressing := sizes.get("pressure", sizes.get("normal_stress"))):
+            sizes[name] = given["friction"] * pressing * log_uniform(generator, 0.01, 10.0)
+    if "radius" in definitions:
+        flat = given["length"] ** 2 / (8.0 * scales["m"])
+        sizes["radius"] = flat * 10.0 ** generator.uniform(-1.5, 1.5)
+    return sizes
 
 
-def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:
-    """The mesh, its cuts, and as many instants as there is room for."""
-    mesh: dict[str, Any] = {}
-    while True:
-        sizes = MESHES.get(scene, BODY if "elements_up" in definitions else ROD)
-        for name, (low, high) in sizes.items():
-            mesh[name] = min(int(log_uniform(generator, low, high + 1)), high)
-        unknowns = math.prod(mesh.values()) * (2 if "elements_up" in mesh else 1)
-        if unknowns <= LARGEST_FIELD // 3:
-            break
-    most = min(MOST_INSTANTS, LARGEST_FIELD // unknowns)
-    fewest = max(1, most // 3) if generator.random() < 0.7 else 1
-    mesh["instants"] = int(log_uniform(generator, fewest, most + 1))
-    for name, (elements, largest) in CUTS.items():
-        if name in definitions:
-            most_cuts = min(mesh[elements], largest)
-            mesh[name] = min(int(log_uniform(generator, 1, most_cuts + 1)), most_cuts)
-    return mesh
+def _scales(kind: Any, given: Mapping[str, Any], generator: Generator) -> dict[str, float]:
+    """What presses on a scene, and strains it as much, by unit."""
+    if "construction" in given:
+        names = {"construction", "layers"} & given.keys()
+        section = kind.checked({name: given[name] for name in names}).section
+        helix, strain = (
+            section.helix(len(section.layers) - 1),
+            10.0 ** generator.uniform(-4.0, -2.0),
+        )
+        bent = strain * abs(math.sin(helix.lay)) / helix.radius
+        return {"N": section.stiffness * strain, "1/m": bent}
+    length = given["length"]
+    if "section" in given:
+        pressed = given["pressure"] * length
+        strain = pressed / (given["young"] * given["section"])
+        warm = strain / given.get("expansion", math.inf)
+        return {"N": pressed, "N/m": given["pressure"], "m": strain * length, "K": warm}
+    if "slack" in given:
+        return {}
+    height = given[kind.across] * given.get("layers", 1) * given.get("courses", 1)
+    strain = 10.0 ** generator.uniform(-7.0 if "layers" in given else -6.0, -3.0)
+    pressure = strain * given["young"]
+    # What bends slender bodies, as far as a force at their end does.
+    bent = 8.0 / 3.0 * (length / height) ** 3 if "layers" in given else 1.0
+    return {
+        **{"Pa": pressure, "m": bent * strain * height, "N/m": pressure * height / 1.5},
+        **{"N·m/m": pressure * length * height / 3.0, "N/m^3": pressure / height, "°": 20.0},
+    }
 
 
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
     """A value drawn by the definition alone."""
     if isinstance(definition, CurveParameter):
-        make = TABLES.get(definition.abscissa) if definition.is_path else _construction
+        make = TABLES.get(definition.abscissa)
         if make and generator.random() < 0.4:
             return make(name, generator)
         return str(generator.choice(list(definition.presets)))
@@ -214,26 +229,12 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
         return bool(generator.random() < 0.5)
     if isinstance(definition, param.Selector):
         return str(generator.choice(definition.objects))
-    if name in SPECIAL:
-        return float(SPECIAL[name](generator))
     low, high = WIDE.get(name, definition.softbounds)
     if isinstance(definition, param.Integer):
         return int(generator.integers(low, high + 1))
     if is_logarithmic(definition):
         return log_uniform(generator, low, high)
     return float(generator.uniform(low, high))
-
-
-SPECIAL: dict[str, Callable[[Generator], float]] = {
-    "k_scale": lambda draw: (
-        10.0 ** draw.uniform(*(FOOLISH if draw.random() < 0.4 else (-1.0, 1.0)))
-    ),
-    "poisson": lambda draw: (
-        draw.uniform(0.0, 0.4999) if draw.random() < 0.5 else 0.5 - log_uniform(draw, 1e-4, 1e-1)
-    ),
-    "accuracy": lambda draw: log_uniform(draw, 1e-5, 0.1),
-    "tolerance": lambda draw: log_uniform(draw, 1e-12, 1.0),
-}
 
 
 def _construction(_name: str, generator: Generator) -> list[list[float]]:
@@ -251,37 +252,27 @@ def _construction(_name: str, generator: Generator) -> list[list[float]]:
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:
-    """Factors along a body, now and then zero but for a section, or with a narrow peak."""
-    places = np.sort(generator.uniform(0.0, 1.0, int(generator.integers(2, 7))))
-    factors = 10.0 ** generator.uniform(-1.0, 1.0, len(places))
+    """Factors along a body, now and then zero but for a section."""
+    factors = 10.0 ** generator.uniform(-1.0, 1.0, int(generator.integers(2, 7)))
     if name != "section_profile":
-        factors[generator.random(len(places)) < 0.2] = 0.0
-    peak = float(10.0 ** generator.uniform(-1.0, 1.0))
-    return _with_peak(places, factors, peak, 1.0, generator)
+        factors[generator.random(len(factors)) < SELDOM] = 0.0
+    return _table(factors, float(10.0 ** generator.uniform(-1.0, 1.0)), 1.0, generator)
 
 
 def _strength(_name: str, generator: Generator) -> list[list[float]]:
     """Factors over slip, from 1 on, up and down."""
     slips = np.cumsum(10.0 ** generator.uniform(-6.0, -3.0, int(generator.integers(1, 5))))
     factors = generator.uniform(0.0, 2.0, len(slips))
-    return [[0.0, 1.0], *([float(s), float(g)] for s, g in zip(slips, factors, strict=True))]
+    return [[0.0, 1.0], *np.column_stack([slips, factors]).tolist()]
 
 
-TABLES = {"slip": _strength, "position": _profile}
+TABLES = {"slip": _strength, "position": _profile, "wires": _construction}
 """Of curves over what."""
 
 
-def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:
-    """A path over time through a few points: reversals, jumps, narrow peaks among them."""
-    times = np.sort(generator.uniform(0.0, duration, int(generator.integers(1, 8))))
-    values = abs(size) * generator.uniform(-1.0, 1.0, len(times))
-    return _with_peak(times, values, size, duration, generator)
-
-
-def _with_peak(
-    where: Array, values: Array, peak: float, extent: float, generator: Generator
-) -> list[list[float]]:
-    """Put a narrow peak onto a table, every third time."""
+def _table(values: Array, peak: float, extent: float, generator: Generator) -> list[list[float]]:
+    """Values at random places; every third time with a narrow peak among them."""
+    where = np.sort(generator.uniform(0.0, extent, len(values)))
     if generator.random() < 1.0 / 3.0:
         half = 0.5 * extent * log_uniform(generator, *NARROW)
         middle = float(generator.uniform(half, extent - half))

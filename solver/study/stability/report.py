@@ -95,13 +95,7 @@ def last_lines(runs: Sequence[JudgedRun], notes: Sequence[str]) -> list[str]:
 def write_stability(
     runs: Sequence[JudgedRun], title: str, notes: Sequence[str], folder: Path
 ) -> None:
-    """Write `FILES` into an existing folder.
-
-    Raises
-    ------
-    OSError
-        When a file cannot be written.
-    """
+    """Write `FILES` into an existing folder."""
     short = [column for column in COLUMNS if column not in LONG]
     cells, every = [], [[column.replace("_", " ") for column in short]]
     for row in map(entries, runs):

@@ -75,12 +75,10 @@ class StabilityCase:
     ----------
     title
         What is extreme about it; or which one it is of random ones.
-    scene, values
+    values
         Settings that differ from the scene's own.
     expected
         A key of `PASSING`.
-    method
-        As tables name it.
     error_force, error_displacement
         Errors up to which the answer is right.
     """
@@ -126,10 +124,6 @@ class Outcome:
     ----------
     ending, advice
         Its status; `REFUSED` or `BROKEN`, and why.
-    certified, iterations, seconds, estimated_error
-        As the run itself says.
-    indicator, behaviour
-        At the end.
     error_displacement, error_force
         Relative distance to the reference; absolute (m, N) where reference and load are zero; NaN
         where there is none.
@@ -222,12 +216,7 @@ def _reference(problem: Problem) -> tuple[Reference | None, str]:
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:
     """Judge an outcome by its numbers and its status alone.
 
-    Parameters
-    ----------
-    outcome
-        Of a run.
-    force, displacement
-        Errors of contact force and displacement up to which the answer is right.
+    It is right up to these errors of contact force and displacement.
     """
     if outcome.ending == BROKEN or not outcome.advice:
         return Verdict.WRONG
@@ -265,5 +254,4 @@ class JudgedRun:
 
 def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[JudgedRun]:
     """Run cases, and yield each as soon as it is done."""
-    for case in cases:
-        yield JudgedRun(case, run(case.scene, case.values))
+    return (JudgedRun(case, run(case.scene, case.values)) for case in cases)

@@ -24,16 +24,10 @@ AT_ONCE = 0.1
 
 
 class Chooser:
-    """Next points of a sweep, as `following` of `sweep`.
+    """Next points of a sweep, as `following` of `sweep`, on the grid of its plan.
 
-    Parameters
-    ----------
-    plan
-        Its grid is how finely points may lie.
-    most
-        Runs in all, those that there are among them.
-    rows
-        Of all runs that there are, by number; whoever sweeps adds to it.
+    It takes so many runs at most, those of which there are rows, by number, among them; whoever
+    sweeps adds to these.
 
     Raises
     ------

@@ -36,16 +36,10 @@ FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
 @dataclass(frozen=True)
 class Varied:
-    """A setting and the values that it takes, each once.
+    """A setting and the values that it takes, each once; numbers ascend.
 
-    Attributes
-    ----------
-    name, title, unit
-        Of the setting; the unit in SI, empty for a pure number.
-    values
-        Plain, checked values; numbers ascend.
-    logarithmic
-        Whether they are spread evenly over decades.
+    The unit is in SI, empty for a pure number; `logarithmic` is whether values are spread evenly
+    over decades.
     """
 
     name: str
@@ -75,14 +69,8 @@ class Varied:
 class Plan:
     """One or two axes, everything else fixed; points are numbered, the last axis fastest.
 
-    Attributes
-    ----------
-    settings
-        What is fixed.
-    axes
-        One or two; of a number and names the number is the first.
-    of
-        Names of what is taken of every run, at least one.
+    Of a number and names the number is the first axis. `of` are names of what is taken of every
+    run, at least one.
     """
 
     settings: Settings
@@ -144,8 +132,6 @@ class Row:
 
     Attributes
     ----------
-    number
-        Of the point in the plan.
     ending
         `converged` and the other ways in which a run ends; `refused` where its settings do not fit
         together, `broken` where the engine failed, `stuck` and `lost` where its process was ended.
@@ -154,8 +140,6 @@ class Row:
     values
         Of the readings of the plan, in their units: NaN where the run has none, infinity for
         never. Those of a run that has not converged are what it had come to.
-    iterations
-        How many it did.
     seconds
         That the whole of it took, with its problem, its reference and its readings.
     was_warm
@@ -177,16 +161,7 @@ class Row:
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Plan of texts as `--vary` and `--of` take them.
-
-    Parameters
-    ----------
-    settings
-        What is fixed.
-    vary
-        One or two of `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`.
-    of
-        Quantities of a run, as `solver.study.quantities.reading` takes them.
+    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` (quantities) take them.
 
     Raises
     ------

@@ -68,18 +68,9 @@ def field_file(number: int) -> str:
 def run(
     plan: Plan, limit: float, fields: str | None, warm: bool, sweep: str, asked_by: str, number: int
 ) -> Row:
-    """Row of a point of a plan.
+    """Row of a point of a plan, with options of `sweep` and a name that no other sweep has.
 
-    Parameters
-    ----------
-    plan, limit, fields, warm
-        As for `sweep`.
-    sweep
-        A name that no other sweep has.
-    asked_by
-        Versions of who asks, which have to be those of who answers.
-    number
-        Of the point.
+    `asked_by` are the versions of who asks, which have to be those of who answers.
 
     Raises
     ------
@@ -153,10 +144,8 @@ def sweep(
 
     Parameters
     ----------
-    plan
-        What to run.
-    executor
-        Where.
+    plan, executor
+        What to run, and where.
     done
         Numbers of the points to leave out.
     following

@@ -1,24 +1,100 @@
-"""Numbers that are known of bodies in the plane, beside those of an answer, for `cases.toml`."""
+"""Numbers that are known of runs, beside those of an answer: functions of `cases.toml`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
-from solver.reference.closed_forms.elastic_bodies import (
-    HalfPlane,
-    TwoLeaves,
-    cantilever,
-    leaf_spring,
-)
+from solver.discrete.problem import Problem
+from solver.discrete.rods import Rods
+from solver.discrete.structure import Loop, LoopFields
+from solver.latin import Solution
+from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.closed_forms.fluid_driven_slip import (
     front_over_diffusion,
     slip_under_growing_strength,
 )
-from solver.study.proof.known_case import Answer, Number
+from solver.reference.closed_forms.pulled_bar import broken_wire
+from solver.study.quantities.cycles import turning_points
+
+WORKS = {"m": "J", "1/m": "J/m"}
+"""Unit of what a loop encloses, by that of what it goes over, where it is work."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A problem with its settings, and what a run or a reference has for it."""
+
+    settings: Any
+    problem: Problem
+    fields: LoopFields
+    solution: Solution | None = None
+
+    @property
+    def support(self) -> tuple[Array, Array]:
+        """Pressing force and friction on a support, N, each of shape (n_points, n_instants)."""
+        contact = self.fields.contact("support")
+        assert contact.normal_force is not None
+        return contact.normal_force, contact.tangential_force
+
+    @property
+    def slip(self) -> Array:
+        """Slip on a support, m, same shape."""
+        return self.fields.contact("support").slip
+
+    @property
+    def loop(self) -> Loop:
+        """Loop that the scene shows."""
+        loop: Loop = self.settings.structure().loop(self.problem)
+        return loop
+
+
+Number = tuple[str, str, float, float]
+"""Quantity, unit, what is known, and what an answer has."""
+
+
+def loop(answer: Answer) -> Iterator[Number]:
+    """Largest and last value that a loop finds, and the work that it encloses from the first on.
+
+    Both beside the closed form over the same path.
+    """
+    curves = answer.settings.exact(answer.problem, answer.fields)
+    (exact,) = [curve for curve in curves if curve.of == "loop"]
+    loop = answer.loop
+    across, up = loop.along(answer.fields)
+    known, found, given, named = exact.across, across, up, loop.across
+    if loop.finds_force(answer.problem):
+        known, found, given, named = exact.up, up, across, loop.up
+    sizes = np.abs(known)
+    places = {"largest": int(sizes.argmax()), "last": len(sizes) - 1}
+    for word, place in places.items():
+        if word == "largest" or 0.01 < sizes[place] / sizes.max() < 0.99:
+            yield f"{word} {named[0].lower()}", named[1], float(known[place]), float(found[place])
+    if turning_points(given) and (unit := WORKS.get(loop.across[1])):
+        start = int(np.argmax(given))
+        exact_work, work = (
+            float(abs(np.trapezoid(force[start:], over[start:])))
+            for force, over in ((exact.up, exact.across), (up, across))
+        )
+        yield "energy of a cycle", unit, exact_work, work
+
+
+def opening(answer: Answer) -> Iterator[Number]:
+    """Opening of the break of a wire."""
+    strand = answer.settings.structure()
+    assert isinstance(strand, Rods)
+    exact = broken_wire(strand)
+    assert exact is not None
+    assert strand.broken is not None
+    wire, node = strand.broken
+    before = (wire - 1) * (strand.elements + 1) + node
+    moved, slip = answer.fields.displacement[before : before + 2, -1], exact.slip[node:, -1]
+    yield "opening of the break", "m", float(slip[1] - slip[0]), float(moved[1] - moved[0])
 
 
 def _half_plane(answer: Answer, total: float) -> HalfPlane:
@@ -66,46 +142,6 @@ def sheared_parabola(answer: Answer) -> Iterator[Number]:
     share = abs(float(shear[:, -1].sum())) / (friction * total)
     energy = _half_plane(answer, total).energy(friction, share)
     yield "energy of a cycle", "J/m", energy, -np.sum(shear[:, first + 1 :] * slip)
-
-
-def caught_block(answer: Answer) -> Iterator[Number]:
-    """Force of the spring at the top of the slope, and where the block slides back."""
-    settings, force = answer.settings, answer.loop_force
-    angle = np.radians(answer.loop_displacement)
-    down, across = settings.weight * np.sin(angle), settings.weight * np.cos(angle)
-    top = int(np.argmax(angle))
-    carried = down[top] - settings.friction * across[top]
-    yield "force of the spring, up", "N", carried, force[top]
-    returning = down + settings.friction * across
-    back = top + int(np.argmax(returning[top:] < 0.9 * carried))
-    yield "force of the spring, back", "N", returning[back], force[back]
-
-
-def bent_layers(answer: Answer) -> Iterator[Number]:
-    """Layers that friction glues are one beam."""
-    settings, (before, bent) = answer.settings, answer.loop_force[-2:]
-    beams, height = (1, 3 * settings.thickness) if settings.friction else (3, settings.thickness)
-    exact = beams * cantilever(settings.length, height, settings.young, settings.poisson)
-    yield "bending stiffness", "N/m", exact, abs(bent - before) / settings.deflection
-
-
-def two_leaves(answer: Answer) -> Iterator[Number]:
-    """What a cycle of two leaves takes, and how far they are bent."""
-    own, bent, force = answer.settings, answer.loop_displacement, answer.settings.path("bend_load")
-    pressed = float(own.friction * own.path("pressure_load")[0])
-    leaves = TwoLeaves(own.length, own.thickness, own.young, own.poisson, pressed)
-    peak, start = float(force.max()), int(np.argmax(force))
-    energy = abs(float(np.trapezoid(force[start:], bent[start:])))
-    yield "energy of a cycle", "J/m", leaves.energy(peak), energy
-    yield "largest deflection", "m", leaves.deflection(peak), float(bent.max())
-
-
-def leaf_spring_stiffness(answer: Answer) -> Iterator[Number]:
-    """Stiffness of three leaves of which each is shorter, without friction."""
-    settings, factor = answer.settings, leaf_spring(np.array([3.0, 2.0, 1.0]))
-    assert factor is not None
-    leaf = cantilever(settings.length, settings.thickness, settings.young, settings.poisson)
-    yield "stiffness", "N/m", factor * leaf, settings.force / float(answer.loop_displacement[-1])
 
 
 def shoe(answer: Answer) -> Iterator[Number]:
@@ -160,14 +196,14 @@ def _forces(answer: Answer) -> tuple[float, float]:
 def sliding_pile(answer: Answer) -> Iterator[Number]:
     """Shear force of a pile of bricks that slides."""
     held = answer.settings.friction * sum(_forces(answer))
-    yield "shear force", "N/m", held, answer.loop_force[-1]
+    yield "shear force", "N/m", held, float(answer.loop.along(answer.fields)[1][-1])
 
 
 def tipping_pile(answer: Answer) -> Iterator[Number]:
     """Moments about the toe: what presses, and the weight, have half a length."""
     settings, (pressed, brick) = answer.settings, _forces(answer)
     held = 0.5 * settings.length * (pressed + 3.0 * brick) / (3.0 * settings.height)
-    yield "shear force", "N/m", held, answer.loop_force[-1]
+    yield "shear force", "N/m", held, float(answer.loop.along(answer.fields)[1][-1])
 
 
 def weighed_wall(answer: Answer) -> Iterator[Number]:
