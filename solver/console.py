@@ -28,8 +28,9 @@ def add_command(
     command: Callable[[argparse.Namespace], int],
     *,
     of_scene: bool = False,
+    to_folder: bool = False,
 ) -> argparse.ArgumentParser:
-    """Add a command; one of a scene takes that and its settings."""
+    """Add a command; one of a scene takes that and its settings, one with files their folder."""
     parser: argparse.ArgumentParser = commands.add_parser(name, help=purpose)
     parser.set_defaults(command=command)
     if of_scene:
@@ -38,6 +39,8 @@ def add_command(
         parser.add_argument(
             "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes"
         )
+    if to_folder:
+        parser.add_argument("--out", type=Path, default=Path(name), metavar="DIR")
     return parser
 
 

@@ -81,16 +81,12 @@ class Processes(Executor):
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Do a call in the next process that is free; all of it is picklable."""
-        try:
-            return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
-        except RuntimeError:
-            if self._is_shut_down:
-                raise
+        if not (self._pool.active or self._is_shut_down):
             # A pool is broken once a process is killed while none does a call.
             self._pool.stop()
             self._pool.join()
             self._pool = self._started()
-            return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
+        return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Begin no other call; if futures are to be cancelled, end the processes at once."""

@@ -64,15 +64,12 @@ def settings_from_command(
     The settings, and what was understood of tables in CSV files, by the name of their setting.
     Such files are sought beside the saved file, and those of assignments in the working folder.
     """
-    settings, tables = None, {}
+    values: dict[str, Any] = {"scene": scene}
     if scene.endswith(".toml"):
         values = read_toml(Path(scene), "settings file")
         values.pop("case", None)
-        kind = scene_settings(values.pop("scene", None))
-        tables = read_tables(kind, values, Path(scene).parent)
-        settings = kind.checked(values)
-    else:
-        kind = scene_settings(scene)
+    kind = scene_settings(values.pop("scene", None))
+    tables = read_tables(kind, values, Path(scene).parent)
     changes: dict[str, object] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
@@ -81,7 +78,7 @@ def settings_from_command(
         changes[name] = parse(text) if name in kind.definitions() else text
         tables.pop(name, None)
     tables |= read_tables(kind, changes, Path())
-    settings = settings.replace(**changes) if settings else kind.checked(changes)
+    settings = kind.checked(values).replace(**changes)
     return settings, messages(tables, settings)
 
 

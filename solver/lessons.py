@@ -208,41 +208,44 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     kind = scene_settings(values.pop("scene"))
     with placed("settings"):
         settings = kind.checked(values["settings"])
-    _check(values, settings)
+    controls = values["controls"]
+    _check_controls(controls, settings)
     for key in ("text", "explanation"):
         with placed(key):
-            values[key] = _paragraphs(values[key], values["controls"])
+            values[key] = _paragraphs(values[key], controls)
     checkpoints = tuple(_checkpoints(values["checkpoints"], settings))
     changed = {"settings": settings, "right": values["right"] - 1, "checkpoints": checkpoints}
     lesson = Lesson(name=name, **(values | changed))
-    points = [place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)]
-    is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
-    can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
-    require(is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out")
+    _check(lesson)
     return lesson
 
 
-def _check(values: Mapping[str, Any], settings: Settings) -> None:
-    """Refuse numbers out of range, and names of what there is not."""
-    right, count, controls = values["right"], len(values["choices"]), values["controls"]
-    can = f"the number of one of at least two choices, of which there are {count}"
-    require(1 <= right <= count >= 2, "right", right, can, "count from 1")
-    subject, instant, until = values["subject"], values["instant"], values.get("until", 1.0)
-    known = ", ".join(SUBJECTS)
-    require(subject in SUBJECTS, "subject", subject, known, "say what it is about")
-    can = "a share of the interval, from 0 to 1"
-    require(0.0 <= instant <= 1.0, "instant", instant, can, "say where its plots stand")
-    can += " and above 0"
-    require(0.0 < until <= 1.0, "until", until, can, "say how far its picture moves")
-    beside, views = values.get("beside", ()), values["views"]
-    require({*beside} <= {*views}, "beside", beside, ", ".join(views), "choose some of its views")
-    can = f"at most {MOST_CONTROLS} settings"
-    is_few = len(controls) <= MOST_CONTROLS
+def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
+    can, is_few = f"at most {MOST_CONTROLS} settings", len(controls) <= MOST_CONTROLS
     require(is_few, "controls", controls, can, "a lesson is about one thing")
     working = [own for own in settings.definitions() if settings.applies(own)]
     for control in controls:
         remedy = "name a setting that does something with the lesson's settings"
         require(control in working, "controls", control, ", ".join(working), remedy)
+
+
+def _check(lesson: Lesson) -> None:
+    """Refuse numbers out of range, and names of what there is not."""
+    right, count = lesson.right + 1, len(lesson.choices)
+    can = f"the number of one of at least two choices, of which there are {count}"
+    require(1 <= right <= count >= 2, "right", right, can, "count from 1")
+    subject, known = lesson.subject, ", ".join(SUBJECTS)
+    require(subject in SUBJECTS, "subject", subject, known, "say what it is about")
+    instant, until, can = lesson.instant, lesson.until, "a share of the interval, from 0 to 1"
+    require(0.0 <= instant <= 1.0, "instant", instant, can, "say where its plots stand")
+    can += " and above 0"
+    require(0.0 < until <= 1.0, "until", until, can, "say how far its picture moves")
+    known, are_shown = ", ".join(lesson.views), {*lesson.beside} <= {*lesson.views}
+    require(are_shown, "beside", lesson.beside, known, "choose some of its views")
+    points = [place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)]
+    is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
+    can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
+    require(is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out")
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:

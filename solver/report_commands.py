@@ -16,58 +16,32 @@ from solver.study.figures.modes import paper_figures
 from solver.study.figures.paper_runs import paper_runs
 from solver.study.page import aligned, head_of, line_of
 from solver.study.proof import report as proof
+from solver.study.speed import study_report as study
 from solver.study.speed.measured_times import error_against_time, times_at_sizes
-from solver.study.speed.study_report import (
-    FILES as STUDY_FILES,
-)
-from solver.study.speed.study_report import (
-    conditions,
-    notes,
-    sizes_table,
-    table,
-    write_curves,
-    write_study,
-)
+from solver.study.stability import report as stability
 from solver.study.stability.draws import random_cases
-from solver.study.stability.report import (
-    FILES,
-    NOTES,
-    RANDOM_NOTES,
-    RANDOM_TITLE,
-    SHOWN,
-    TITLE,
-    entries,
-    last_lines,
-    write_stability,
-)
 from solver.study.stability.stability_case import JudgedRun, extreme_cases, judged_runs
 
 
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
-    figures = add_command(commands, "figures", "draw the paper's Figs. 3 to 8 again", _figures)
+    purpose = "draw the paper's Figs. 3 to 8 again"
+    add_command(commands, "figures", purpose, _figures, to_folder=True)
     purpose = "error against run time, all methods side by side"
-    study = add_command(commands, "study", purpose, _study, of_scene=True)
-    study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
-    study.add_argument("--large", action="store_true", help="sizes that take minutes, too")
+    parser = add_command(commands, "study", purpose, _study, of_scene=True, to_folder=True)
+    parser.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
+    parser.add_argument("--large", action="store_true", help="sizes that take minutes, too")
     purpose = "stiff and extreme cases, or random runs, each with a verdict"
-    stable = add_command(commands, "stability", purpose, _stability)
-    stable.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
-    kinds = stable.add_mutually_exclusive_group()
+    parser = add_command(commands, "stability", purpose, _stability, to_folder=True)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
+    kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
     kinds.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
-    stable.add_argument("--seed", type=int, default=1, help="of the random runs")
+    parser.add_argument("--seed", type=int, default=1, help="of the random runs")
     purpose = "what is known beside what is found, row by row"
-    proven = add_command(commands, "proof", purpose, _proof)
+    parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
     own = "cases of one's own (.toml)"
-    proven.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
-    for name, parser in (
-        ("figures", figures),
-        ("study", study),
-        ("stability", stable),
-        ("proof", proven),
-    ):
-        parser.add_argument("--out", type=Path, default=Path(name), metavar="DIR")
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
 
 
 def _figures(chosen: argparse.Namespace) -> int:
@@ -78,7 +52,7 @@ def _figures(chosen: argparse.Namespace) -> int:
         print(f"{figure.heading} ({figure.verdict})")
         for finding in figure.findings:
             print(f"  {'+' if finding.holds else '-'} {finding.text}")
-    print("\n".join([*filter(None, [note]), f"{FILE} in {chosen.out}"]))
+    print(*filter(None, [note]), f"{FILE} in {chosen.out}", sep="\n")
     return 0
 
 
@@ -89,15 +63,13 @@ def _study(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
         curves = error_against_time(settings, chosen.repeats)
-        write_curves(curves, chosen.out)
+        study.write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        note = write_study(settings, chosen.repeats, curves, sizes, chosen.out)
-    print("\n".join(conditions(settings, chosen.repeats)), end="\n\n")
-    print(aligned(table(curves)))
-    print("", aligned(sizes_table(settings, sizes)), *notes(settings, sizes), sep="\n")
-    if note:
-        print(note)
-    print(f"{len(STUDY_FILES)} files in {chosen.out}")
+        note = study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
+    print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
+    print(aligned(study.table(curves)))
+    print("", aligned(study.sizes_table(settings, sizes)), *study.notes(settings, sizes), sep="\n")
+    print(*filter(None, [note]), f"{len(study.FILES)} files in {chosen.out}", sep="\n")
     return 0
 
 
@@ -108,21 +80,25 @@ def _stability(chosen: argparse.Namespace) -> int:
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
     cases = extreme_cases(scenes, quick=chosen.quick)
-    title, notes = TITLE, NOTES
+    title, notes = stability.TITLE, stability.NOTES
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
-        title, notes = RANDOM_TITLE, RANDOM_NOTES
+        title, notes = stability.RANDOM_TITLE, stability.RANDOM_NOTES
     runs: list[JudgedRun] = []
-    with writing(chosen.out, *FILES):
-        print(head_of(SHOWN))
+    with writing(chosen.out, *stability.FILES):
+        print(head_of(stability.SHOWN))
         is_whole = False
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
             for run in judged_runs(cases):
-                print(line_of(entries(run), SHOWN), flush=True)
+                print(line_of(stability.entries(run), stability.SHOWN), flush=True)
                 runs.append(run)
             is_whole = True
-        write_stability(runs, title, notes, chosen.out)
-    print("\n".join([*last_lines(runs, notes), f"{len(FILES)} files in {chosen.out}"]))
+        stability.write_stability(runs, title, notes, chosen.out)
+    print(
+        "\n".join(
+            [*stability.last_lines(runs, notes), f"{len(stability.FILES)} files in {chosen.out}"]
+        )
+    )
     if not is_whole:
         raise KeyboardInterrupt
     return 0 if all(run.passed for run in runs) else 1

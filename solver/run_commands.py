@@ -57,10 +57,9 @@ def add_checks(commands: Any) -> None:
     compare = add_command(commands, "compare", purpose, _compare, of_scene=True)
     compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
     purpose = "settings that bring a run nearest to a measured loop"
-    fitting = add_command(commands, "fit", purpose, _fit, of_scene=True)
+    fitting = add_command(commands, "fit", purpose, _fit, of_scene=True, to_folder=True)
     most = f"up to {MOST} settings"
     fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
-    fitting.add_argument("--out", type=Path, default=Path("fit"), metavar="DIR")
     for parser in (compare, fitting):
         parser.add_argument(
             "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their table"
@@ -195,7 +194,7 @@ def _fit(chosen: argparse.Namespace) -> int:
             print("\n".join(lines(found, measured)), flush=True)
         note = write_fit(found, measured, chosen.out)
     if not chosen.json:
-        print("\n".join([*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}"]))
+        print(*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}", sep="\n")
     return 0 if found.nearest.run.solution.is_certified else 1
 
 

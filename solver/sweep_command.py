@@ -7,7 +7,6 @@ import sys
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import BrokenExecutor
-from pathlib import Path
 from typing import Any
 
 from solver.console import add_command, print_tables, warn, writing
@@ -38,10 +37,9 @@ OFTEN = 3.0
 def add_sweep(commands: Any) -> None:
     """Add the command."""
     purpose = "quantities of a run over up to two settings"
-    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True)
+    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True, to_folder=True)
     parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
     parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
-    parser.add_argument("--out", type=Path, default=Path("sweep"), metavar="DIR")
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
     parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
     parser.add_argument("--fields", action="store_true", help="keep the fields of every run")

@@ -56,24 +56,6 @@ def test_where_nothing_slips_the_bar_stands_on_springs():
     np.testing.assert_allclose(found.iterate.displacement[:, -1], exact, atol=1e-3 * exact[-1])
 
 
-def test_unloading_and_reloading_follow_masings_rule():
-    peak, stiffness = 1200.0, 100.0
-    path = [[0.0, 0.0], [0.2, peak], [0.6, -peak], [1.0, peak]]
-    found = run(load=path, instants=81, elements=200, contact_stiffness=stiffness).iterate
-    end = found.displacement[-1]
-    load = np.interp(np.linspace(0.0, 1.0, 81), *np.array(path).T)
-    top = pulled(peak, stiffness)[0]
-    for instant in range(20, 49, 4):
-        exact = top - 2.0 * pulled((peak - load[instant]) / 2.0, stiffness)[0]
-        assert abs(end[instant] - exact) < 3e-3 * top
-    assert abs(end[-1] - end[16]) < 1e-6 * top
-    forces = np.linspace(0.0, peak, 400)
-    curve = np.array([pulled(force, stiffness)[0] for force in forces])
-    exact = 8.0 * np.trapezoid(forces, curve) - 4.0 * peak * top
-    loop = np.trapezoid(load[16:], end[16:])
-    assert loop == pytest.approx(exact, rel=0.02)
-
-
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 @pytest.mark.parametrize("stiffness", [1.0, 300.0])
 def test_every_scene_ends_with_a_certified_solution(scene, stiffness):

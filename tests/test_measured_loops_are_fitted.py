@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from bars import SMALL
+from small_scenes import SMALL as SMALL_SCENES
 
 from solver.cli import main
 from solver.definitions import SettingError
@@ -21,16 +22,7 @@ from solver.study.quantities.finished import FinishedRun, finished_run
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}
-SCENES = {
-    "bar": BAR,
-    "strand": {"wires": 3, "elements": 10, "instants": 21},
-    "block": {"elements": 12, "elements_up": 4, "instants": 21},
-    "layers": {"layers": 2, "elements": 8, "elements_up": 2, "instants": 21},
-    "incline": {"elements": 4, "elements_up": 2, "instants": 21},
-    "rope": {"elements": 10, "instants": 21},
-    "fault": {"elements": 16, "elements_up": 6, "instants": 11},
-    "wall": {"courses": 2, "bricks": 2, "instants": 11},
-}
+SCENES = {**SMALL_SCENES, "bar": BAR}
 
 
 @cache

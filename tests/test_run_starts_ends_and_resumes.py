@@ -19,7 +19,6 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from solver.latin import (
     PGD,
-    Anderson,
     Auto,
     Checkpoint,
     Ending,
@@ -199,7 +198,6 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
         (lambda: Paper(along=-1.0), "Paper.along"),
         (lambda: PGD(modes=0), "PGD.modes"),
         (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
-        (lambda: Anderson(memory=0), "Anderson.memory"),
         (lambda: Stop(accuracy=0.0), "Stop.accuracy"),
         (lambda: Stop(tolerance=-1.0), "Stop.tolerance"),
         (lambda: Stop(iterations=0), "Stop.iterations"),

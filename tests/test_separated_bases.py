@@ -12,7 +12,7 @@ from runs import assert_goes_on, distance_of, errors, sample, settings_of, solve
 from small_scenes import SMALL
 
 from solver.latin import Ending, Solution
-from solver.reduction.basis import SeparatedBasis
+from solver.reduction.basis import SeparatedBasis, modes_stored
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.study.quantities.finished import finished_run
@@ -127,7 +127,7 @@ def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
     assert distance.of_friction_force(shared) == pytest.approx(
         distance.of_friction_force(own), rel=0.01
     )
-    assert shared.reduction.stored < 0.75 * own.reduction.stored
+    assert modes_stored(shared.bases) < 0.75 * modes_stored(own.bases)
 
 
 def test_an_instant_right_after_another_does_not_blow_up_the_modes():

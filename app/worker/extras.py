@@ -18,7 +18,7 @@ from solver.discrete import Problem
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
-from solver.reduction.svd import InterfaceField, decompositions
+from solver.reduction.svd import decompositions
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.study.comparison import Comparison, OtherResults
@@ -37,7 +37,7 @@ MOST_MODES = 5
 
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in every substructure, over the largest of all."""
-    parts = decompositions(iterate, InterfaceField.FRICTION_FORCE)
+    parts = decompositions(iterate, "friction_force")
     values = [part.values for part in parts]
     shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0

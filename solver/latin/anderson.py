@@ -12,7 +12,6 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks
 from solver.latin.linear_stage import LinearStage
-from solver.refusal import check_range
 
 MEMORY = 15
 """Differences that are remembered at most; from 5 to 50 iterations hardly differ (measured)."""
@@ -40,17 +39,7 @@ class Anderson:
     least, has weights that add up to one, so it is admissible whenever its parts are. When the
     residual grows too far beyond the smallest, the memory is given up: the plain iteration goes on
     from there, which does not diverge. Separated bases are not mixed.
-
-    Attributes
-    ----------
-    memory
-        Differences that are remembered at most.
     """
-
-    memory: int = MEMORY
-
-    def __post_init__(self) -> None:
-        check_range(self, "memory", 1, 1000)
 
 
 class AndersonState:
@@ -62,12 +51,7 @@ class AndersonState:
     """
 
     def __init__(
-        self,
-        problem: Problem,
-        stage: LinearStage,
-        memory: int,
-        motion: Array | None,
-        blocks: Blocks,
+        self, problem: Problem, stage: LinearStage, motion: Array | None, blocks: Blocks
     ) -> None:
         # Where the bound of friction is known 1 is best; twice as much takes up to a third more
         # iterations to 1e-6.
@@ -89,7 +73,7 @@ class AndersonState:
             self._instants = self._sampled([instants for _ in groups]).astype(int)
             squares = np.bincount(self._instants, self._way**2)
             self._dual = self._way / np.where(squares > 0.0, squares, 1.0)[self._instants]
-        self._memory = max(1, min(memory, MOST_VALUES // size - 1))
+        self._memory = max(1, min(MEMORY, MOST_VALUES // size - 1))
         # Memory that nothing was written to costs nothing yet; an instant is in one piece.
         shapes = [(self._memory + 1, *group.target.T.shape) for group in groups]
         self._images = [np.zeros(shape) for shape in shapes]

@@ -22,14 +22,9 @@ ALL = slice(None)
 
 
 class Blocks:
-    """Instants cut into blocks, which do not depend on the number of threads; nor do the results.
+    """Instants of a boundary field cut into blocks, on which so many threads work at once.
 
-    Parameters
-    ----------
-    n_rows, n_instants
-        Of a boundary field.
-    threads
-        That work at once.
+    The blocks do not depend on the number of threads; nor do the results.
     """
 
     def __init__(self, n_rows: int, n_instants: int, threads: int = 1) -> None:

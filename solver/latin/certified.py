@@ -62,17 +62,8 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     Where contact and loads act they are known. What the elasticity of a substructure needs beyond
     them at a degree of freedom is carried by its other rows there, and what one side of a cut takes
     the other gives; where several cuts meet, which leaves a choice, the smallest such forces.
-
-    Parameters
-    ----------
-    problem, displacement
-        What is solved, and how it deforms, shape (n_dofs, n_instants), scaled.
-    contact_force
-        Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), scaled.
-
-    Returns
-    -------
-    F of every row, shape (n_rows, n_instants), scaled.
+    From how the structure deforms, (n_dofs, n_instants), and contact forces as stacked by
+    `Problem.sum_of_contact`, F of every row, (n_rows, n_instants); all scaled.
     """
     known, is_known = known_forces(problem, contact_force)
     balance, needed = balance_of_rows(problem, displacement)

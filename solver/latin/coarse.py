@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, as_slice
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks
 
@@ -34,7 +34,8 @@ class CoarseProblem:
         basis, load = problem.macro
         self._blocks = blocks
         self._members = []
-        seen, systems = [], []
+        seen: list[sparse.csr_array] = []
+        systems: list[Array] = []
         constant = load.astype(float)
         carries = np.diff(basis.indptr) > 0
         for group in groups:
@@ -43,17 +44,14 @@ class CoarseProblem:
             rows, local, assembly = _local_basis(basis, group.rows)
             forces = local.T @ group.response.force_rows(rows)
             seen.append(assembly)
-            system_of_group = forces[:, rows] @ local
-            systems.append(
-                np.broadcast_to(system_of_group, (group.rows.shape[1], *system_of_group.shape))
-            )
+            systems += [forces[:, rows] @ local] * group.rows.shape[1]
             if group.body is not None:
                 held = group.k[rows, None, None] * group.body[rows]
                 held = local.T @ held.reshape(len(rows), -1, order="F")
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
             self._members.append(_Member(group, rows, local, np.asfortranarray(forces)))
         self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
-        system = self._spread @ _diagonal(systems) @ self._spread.T
+        system = self._spread @ sparse.block_diag(systems, format="csr") @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
         ends = accumulate((member.size for member in self._members), initial=0)
         self._places = [slice(first, last) for first, last in pairwise(ends)]
@@ -77,13 +75,7 @@ class _Member:
     def __init__(self, group: Group, rows: Indices, local: Array, forces: Array) -> None:
         self._group, self._local, self._forces = group, local, forces
         self.size = local.shape[1] * group.rows.shape[1]
-        # Where they follow each other, adding to them copies nothing.
-        breaks = np.flatnonzero(np.diff(rows) > 1) + 1
-        starts, ends = [0, *breaks], [*breaks, len(rows)]
-        self._runs = [
-            (slice(rows[start], rows[start] + end - start), slice(start, end))
-            for start, end in zip(starts, ends, strict=True)
-        ]
+        self._rows = as_slice(rows)
 
     def macro_forces(self, instants: slice) -> Array:
         """Macro forces of the target at some instants, shape (size, n_some)."""
@@ -97,8 +89,7 @@ class _Member:
         part = multiplier.reshape(self._local.shape[1], -1, order="F")
         change = np.empty((len(self._local), target.shape[1]), order="F")
         np.matmul(self._local, part, out=change)
-        for run, place in self._runs:
-            target[run] += change[place]
+        target[self._rows] += change
 
     def _columns(self, instants: slice) -> Array:
         target = self._group.target
@@ -130,15 +121,6 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
         chosen.append(columns)
     sums = sparse.eye_array(basis.shape[1], format="csc")[:, np.concatenate(chosen)]
     return carrying, local, sparse.csr_array(sums)
-
-
-def _diagonal(blocks: list[Array]) -> sparse.csr_array:
-    """Set square blocks, stacked by size, shape (n, size, size), along a diagonal."""
-    along = (
-        sparse.bsr_array((np.array(stack), np.arange(len(stack)), np.arange(len(stack) + 1)))
-        for stack in blocks
-    )
-    return sparse.csr_array(sparse.block_diag(list(along)))
 
 
 def _solver(

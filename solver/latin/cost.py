@@ -50,23 +50,10 @@ BAND, BAND_CALLS = 6e-8, 3e-5
 
 @dataclass(frozen=True)
 class Costs:
-    """Estimated times, s.
+    """Estimated times of condensing once, of a linear system of the step, of an iteration, s.
 
-    Attributes
-    ----------
-    condensing
-        Of the structure onto its contacts, once; none where they are of known bound, on rigid
-        supports.
-    system
-        Of one linear system of the step.
-    iteration
-        Of one iteration.
-    n_instants
-        Number of instants.
-    is_at_rest
-        Whether nothing slips: then one system an instant is enough.
-    in_any_case
-        Linear systems for every instant that a step may solve in any case.
+    Where nothing slips, so that it `is_at_rest`, one system an instant is enough; so many for every
+    instant it may solve `in_any_case`.
     """
 
     condensing: float

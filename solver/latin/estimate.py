@@ -39,13 +39,8 @@ class ErrorEstimate:
     Once a status step is certified it is the distance to that solution. Before, and where the step
     costs more than it saves, it is what the last changes let expect, with a factor for safety.
 
-    Parameters
-    ----------
-    accuracy
-        Share of the contact force that is asked for.
-    needs_proof
-        Whether a certified solution alone counts, whatever it costs: bases that are too small
-        converge to something else, which no change shows.
+    With `needs_proof` a certified solution alone counts, whatever it costs: bases that are too
+    small converge to something else, which no change shows.
 
     Attributes
     ----------
@@ -79,9 +74,8 @@ class ErrorEstimate:
             worst, whole = self._changes.left(iterate)
             ends_soon = worst <= self._accuracy or whole <= self._accuracy
             # A run may begin with its solution, so that no change shows it.
-            is_near = self._changes.last.whole <= SETTLED
+            is_near = self._changes.last.whole <= SETTLED or number >= LONG
             is_near |= number == 1 and iterate.indicator <= SOLVED
-            is_near |= number >= LONG
             is_due = number >= self._next_trial
             if is_due and (is_near or self._costs_of(iterate).are_small(number)):
                 self.try_step(iterate, least=WAIT if ends_soon else 0.0)

@@ -60,8 +60,6 @@ class FromStatus:
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """Progress by what sticks and slips in the local stage, or by what an update has made."""
-        if progress.phase == "returned":
-            return progress
         problem = iterate.problem
         status, count, is_calm = None, progress.count + 1, True
         if progress.phase == "first":

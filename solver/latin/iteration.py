@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import count
 
 from numpy.linalg import LinAlgError
@@ -48,9 +47,9 @@ def iterations(
         with one_blas_thread():
             iteration.local_stage()
             iteration.linear_stage()
-            iterate = iteration.snapshot(number)
+            iteration.choose_direction()
         seconds += time.perf_counter() - began
-        iterate = replace(iterate, seconds=seconds)
+        iterate = iteration.snapshot(number, seconds)
         yield iterate
         began = time.perf_counter()
         if iterate.new_course is not None:
@@ -89,8 +88,7 @@ class Iteration:
         self.local = LocalStage(problem, self.k, blocks)
         self._mixture: AndersonState | None = None
         if latin.acceleration is not None and self.linear.is_full:
-            memory, motion = latin.acceleration.memory, self.local.motion
-            self._mixture = AndersonState(problem, self.linear, memory, motion, blocks)
+            self._mixture = AndersonState(problem, self.linear, self.local.motion, blocks)
         if start is None and problem.rest is not None:
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
         elif start is None and latin.start is not None:
@@ -118,11 +116,16 @@ class Iteration:
             mix.mix()
         self._show()
 
-    def snapshot(self, number: int) -> Iterate:
-        """The iterate of this number, with what follows for k."""
-        iterate = Iterate(
+    def choose_direction(self) -> None:
+        """Choose the k of the next iteration, which is made anew where that is another."""
+        if self._course.phase != "returned":
+            self._course = self._latin.direction.follow(self.snapshot(), self._course)
+
+    def snapshot(self, number: int = 0, seconds: float = 0.0) -> Iterate:
+        """The iterate of this number, after so many seconds."""
+        return Iterate(
             number=number,
-            seconds=0.0,
+            seconds=seconds,
             problem=self._problem,
             k=self.k,
             outgoing=self.outgoing,
@@ -130,6 +133,5 @@ class Iteration:
             local_displacement=read_only(self.local.displacement),
             local_incoming=self._read,
             bases=self.linear.bases(),
+            course=self._course,
         )
-        self._course = self._latin.direction.follow(iterate, self._course)
-        return replace(iterate, course=self._course)

@@ -10,7 +10,6 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL, Blocks
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
@@ -40,9 +39,9 @@ class Full:
 
     responses: Responses | None = field(default=None, repr=False)
 
-    def group(self, problem: Problem, parts: list[Substructure], k: Array) -> Group:
+    def group(self, problem: Problem, numbers: list[int], k: Array) -> Group:
         """Group of identical substructures with the same k, shape (n_rows,)."""
-        return Group(problem, parts, k, self.responses)
+        return Group(problem, numbers, k, self.responses)
 
 
 class LinearStage:
@@ -62,13 +61,7 @@ class LinearStage:
     """
 
     def __init__(
-        self,
-        problem: Problem,
-        k: Array,
-        form: Full | PGD,
-        blocks: Blocks,
-        *,
-        multiscale: bool,
+        self, problem: Problem, k: Array, form: Full | PGD, blocks: Blocks, *, multiscale: bool
     ) -> None:
         self.groups = [form.group(problem, alike, k) for alike in _alike(problem, k)]
         self.is_full = isinstance(form, Full)
@@ -128,31 +121,19 @@ class LinearStage:
 
 
 class Group:
-    """Identical substructures with the same k, which share one operator; their state is y in full.
+    """Identical substructures with the same k, which share one operator.
 
-    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous in space.
-
-    Attributes
-    ----------
-    rows
-        Boundary rows of the substructures, shape (n_boundary, n_substructures).
-    k
-        Shape (n_boundary,).
-    response
-        The boundary operator.
-    body
-        W_f, a field of the group, or None without body forces.
-    target
-        The field that the state is brought to.
-    state
-        y, a field of the group, changed in place.
+    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous in space: the
+    `state` y in full, changed in place; the `target` that it is brought to; and `body`, W_f, None
+    without body forces. `rows` are the boundary rows, (n_boundary, n_substructures).
     """
 
     state: Array
 
     def __init__(
-        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses | None
+        self, problem: Problem, numbers: list[int], k: Array, responses: Responses | None
     ) -> None:
+        self.numbers, parts = numbers, [problem.substructures[number] for number in numbers]
         self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
@@ -190,10 +171,9 @@ class Group:
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the state of a checkpoint, or that in which all is zero."""
-        if checkpoint is None:
-            self.state = self.field()
-        else:
-            self.state = np.copy(checkpoint.outgoing[self.rows], order="F")
+        self.state = self.field()
+        if checkpoint is not None:
+            self.state[:] = checkpoint.outgoing[self.rows]
 
     def outgoing(self) -> Array:
         """W + F/k, a field of the group."""
@@ -225,9 +205,9 @@ class Group:
         return iter(())
 
 
-def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:
-    """Substructures with one elasticity and one k, together."""
-    groups: dict[tuple[int, bytes], list[Substructure]] = {}
-    for part in problem.substructures:
-        groups.setdefault((id(part.elasticity), k[part.rows].tobytes()), []).append(part)
+def _alike(problem: Problem, k: Array) -> list[list[int]]:
+    """Numbers of substructures with one elasticity and one k, together."""
+    groups: dict[tuple[int, bytes], list[int]] = {}
+    for number, part in enumerate(problem.substructures):
+        groups.setdefault((id(part.elasticity), k[part.rows].tobytes()), []).append(number)
     return list(groups.values())

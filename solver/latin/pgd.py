@@ -15,7 +15,6 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
@@ -66,9 +65,9 @@ class PGD:
         for name in ("tolerance", "sharing"):
             check_range(self, name, 0.0, 1.0)
 
-    def group(self, problem: Problem, parts: list[Substructure], k: Array) -> PGDGroup:
+    def group(self, problem: Problem, numbers: list[int], k: Array) -> PGDGroup:
         """Group of identical substructures with the same k, shape (n_rows,)."""
-        return PGDGroup(problem, parts, k, self)
+        return PGDGroup(problem, numbers, k, self)
 
 
 @dataclass
@@ -102,23 +101,12 @@ class Family:
 
 
 class PGDGroup(Group):
-    """Identical substructures whose y is separated.
-
-    Attributes
-    ----------
-    families
-        One per substructure, fewer when bases are shared.
-    iterations
-        Iterations done, which set the pace of looking for bases to share.
-    """
+    """Identical substructures whose y is separated, in families that each share a basis."""
 
     families: list[Family]
 
-    def __init__(self, problem: Problem, parts: list[Substructure], k: Array, pgd: PGD) -> None:
-        super().__init__(problem, parts, k, pgd.responses)
-        alike = {id(part) for part in parts}
-        every = enumerate(problem.substructures)
-        self._numbers = [number for number, part in every if id(part) in alike]
+    def __init__(self, problem: Problem, numbers: list[int], k: Array, pgd: PGD) -> None:
+        super().__init__(problem, numbers, k, pgd.responses)
         self._pgd, self._weights = pgd, problem.time_weights
         self.iterations = 0
 
@@ -169,18 +157,18 @@ class PGDGroup(Group):
                     incoming=family.incoming_modes,
                     time_functions=time_functions[:, place :: len(family.members)].copy(),
                     k=self.k,
-                    stored=self._numbers[family.members[0]],
+                    stored=self.numbers[family.members[0]],
                     record=family.record,
                 )
-                yield self._numbers[member], modes
+                yield self.numbers[member], modes
 
     def _shown(self, bases: Sequence[Modes]) -> Iterator[Family]:
         """Families that were shown, bit by bit."""
         places: dict[int, list[int]] = {}
-        for place, number in enumerate(self._numbers):
+        for place, number in enumerate(self.numbers):
             places.setdefault(bases[number].stored, []).append(place)
         for members in places.values():
-            shown = [bases[self._numbers[place]] for place in members]
+            shown = [bases[self.numbers[place]] for place in members]
             modes = np.asfortranarray(shown[0].outgoing)
             time_functions = [basis.time_functions for basis in shown]
             joined = np.stack(time_functions, axis=2).reshape(modes.shape[1], -1)

@@ -35,16 +35,9 @@ eleven iterations to know, and a field that goes on as before needs one."""
 
 @dataclass(frozen=True)
 class Slab:
-    """A slab of time, ready to be solved.
+    """A slab of time, ready to be solved: its instants in the whole, what to solve, and from where.
 
-    Attributes
-    ----------
-    instants
-        Its place in the whole interval.
-    problem, latin
-        What to solve, and the method; slabs of one interval share k and the factors of it.
-    start
-        Where its iteration begins; None is the method's own start.
+    Slabs of one interval share the method, with k and the factors of it.
     """
 
     instants: slice
@@ -69,13 +62,8 @@ class _OfWhole(SearchDirection):
 def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     """The first slab of a problem.
 
-    Parameters
-    ----------
-    problem, latin
-        What to solve, and the method.
-    length
-        Instants of a slab: those of a cycle, or of several. The first has one more, the state of
-        rest at which time begins.
+    It has `length` instants, those of a cycle or of several, and one more, the state of rest at
+    which time begins.
 
     Raises
     ------
@@ -211,12 +199,8 @@ def _records(
     solutions: Sequence[Solution], whole: Iterate, distance: Distance | None
 ) -> list[Record]:
     """The records of all slabs, numbered through; the last is of the whole interval."""
-    records: list[Record] = []
-    for solution in solutions:
-        number = records[-1].iteration if records else 0
-        records += [
-            replace(record, iteration=number + record.iteration) for record in solution.records
-        ]
+    records = [record for solution in solutions for record in solution.records]
+    records = [replace(record, iteration=number) for number, record in enumerate(records, 1)]
     records[-1] = replace(
         records[-1],
         indicator=whole.indicator,

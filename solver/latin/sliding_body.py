@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.laws import Contact, Friction, Unilateral
+from solver.laws import Contact, Unilateral
 
 SAME = 1e-9
 """By how much a motion may differ from a slide along the support."""
@@ -44,7 +44,7 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     shares = np.linalg.lstsq(moved, wanted, rcond=None)[0]
     is_held = np.abs(moved @ shares - wanted).max() > SAME
     way = np.asarray(problem.motions @ shares)
-    return None if is_held else Slide(problem, way, k, law.normal, along, spring)
+    return None if is_held else Slide(problem, way, k, law, spring)
 
 
 def _is_spring(law: Contact) -> bool:
@@ -59,32 +59,15 @@ class Slide:
     With the pressing forces known, all points that rub move by one shift. Their forces and the
     spring's fall with it, in straight lines between the shifts at which a point begins to slip and
     the spring to pull, so that there is one zero. A point that sticks remembers where it came to
-    rest, which ties each instant to the one before.
-
-    Parameters
-    ----------
-    problem, way
-        What is solved, and the motion, 1 along the support, shape (n_dofs,).
-    k
-        Search direction of the rows, shape (n_rows,), scaled.
-    across, along, spring
-        Laws of the support, and of the spring.
-
-    Attributes
-    ----------
-    motion
-        Of the rows, shape (n_rows,).
+    rest, which ties each instant to the one before. The body moves by 1 along the support in the
+    `motion` of the rows, shape (n_rows,).
     """
 
     def __init__(
-        self,
-        problem: Problem,
-        way: Array,
-        k: Array,
-        across: Unilateral,
-        along: Friction,
-        spring: Unilateral,
+        self, problem: Problem, way: Array, k: Array, ground: Contact, spring: Unilateral
     ) -> None:
+        across, along = ground.normal, ground.tangential
+        assert across is not None
         assert spring.softness is not None
         self._across, self._along = across.component.above, along.component.above
         self._end = spring.component.above

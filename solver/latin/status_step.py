@@ -80,16 +80,8 @@ def status_step(
 ) -> tuple[Reference, Certificate | None]:
     """What the solver makes of states, mended, and its certificate if it is a solution.
 
-    Parameters
-    ----------
-    solver, problem
-        What is solved, and its incremental solver, which keeps what it condenses.
-    states
-        To begin with, as `states_of` returns those of an iterate.
-    most
-        Linear systems that it may solve.
-    stop
-        Called once per instant.
+    It begins with `states`, as `states_of` returns those of an iterate, may solve `most` linear
+    systems, and calls `stop` once per instant.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from solver.arrays import Array, Flags
+from solver.arrays import Array
 from solver.reduction.svd import Decomposition, decompose
 
 FADED = 1e-9
@@ -175,80 +175,67 @@ def _fitted(
     up = np.where((field - held[:, None]) @ weights < 0.0, -1.0, 1.0)
     limit = np.where(bound > 0.0, bound, np.inf)
     shares, low = (up[:, None] * force / limit for force in (field, held[:, None]))
-    ramps = _Ramps(shares, np.clip(low, -1.0, 1.0), way * load[some], way * before, weights)
-    slope, offset = ramps.fitted()
+    slope, offset = _ramps(shares, np.clip(low, -1.0, 1.0), way * load[some], way * before, weights)
     return Branch(some, way, way * up * slope, np.where(slope > 0.0, up * offset, BELOW))
 
 
-@dataclass(frozen=True, eq=False)
-class _Ramps:
-    """Shares of the bound at the points in one branch, each counted in the way that it goes.
+def _ramps(
+    shares: Array, low: Array, load: Array, before: float, weights: Array
+) -> tuple[Array, Array]:
+    """Slope and offset of the line fitted to every point in one branch, (n_points,) each.
 
     A point keeps the friction `low` that it had before, then follows the load g, which rises from
     `before`, in proportion, then slips at its bound: its share is min(1, max(low, a g + b)).
-    Shares have shape (n_points, n_instants); `low` is broadcast to that, `weights` of the instants
-    are non-negative.
+
+    Of lines through entries, as steep as the point is before them or after them, the nearest is
+    taken. With the ones through the entry farthest from both stops, and the first above their
+    middle, it is exact where the clip shows the line at one instant, or at none. Then lines are
+    fitted to the instants at which its clip shows it. A point that keeps what it has gets a slope
+    of 0, and all others one above.
     """
 
-    shares: Array
-    low: Array
-    load: Array
-    before: float
-    weights: Array
+    def miss(slope: Array, offset: Array) -> Array:
+        line = slope[:, None] * load + offset[:, None]
+        clipped = np.minimum(1.0, np.maximum(low, line))
+        return np.asarray((clipped - shares) ** 2 @ weights)
 
-    def fitted(self) -> tuple[Array, Array]:
-        """Slope and offset of the line fitted to every point, (n_points,) each.
+    def keep(new_slope: Array, new_offset: Array) -> None:
+        usable = np.isfinite(new_slope) & np.isfinite(new_offset) & (new_slope > 0.0)
+        tried = np.where(usable, new_slope, 0.0), np.where(usable, new_offset, BELOW)
+        misses = miss(*tried)
+        better = misses < missed
+        for kept, new in zip((missed, slope, offset), (misses, *tried), strict=True):
+            kept[better] = new[better]
 
-        Of lines through entries, as steep as the point is before them or after them, the nearest is
-        taken. With the ones through the entry farthest from both stops, and the first above their
-        middle, it is exact where the clip shows the line at one instant, or at none. Then lines are
-        fitted to the instants at which its clip shows it. A point that keeps what it has gets a
-        slope of 0, and all others one above.
-        """
-        slope, offset = np.zeros(len(self.shares)), np.full(len(self.shares), BELOW)
-        missed = self._miss(slope, offset)
+    slope, offset = np.zeros(len(shares)), np.full(len(shares), BELOW)
+    missed = miss(slope, offset)
+    with_start, loads = np.hstack([low[:, :1], shares]), np.append(before, load)
+    rises = np.diff(loads)
+    slopes = np.diff(with_start) / np.where(rises > 0.0, rises, np.inf)
+    steepest = np.maximum(slopes, np.hstack([slopes[:, 1:], slopes[:, -1:]]))
+    deepest = np.argmax(np.minimum(shares - low, 1.0 - shares), axis=1)
+    slid = np.argmax(shares >= 0.5 * (low + 1.0), axis=1)
+    points, count = np.arange(len(slid)), len(load)
+    evenly = np.linspace(0, count - 1, min(count, ENTRIES)).astype(int)
+    for entry in [slid, deepest, *evenly]:
+        steep = steepest[points, entry]
+        keep(steep, shares[points, entry] - steep * load[entry])
+    for _ in range(STEPS):
+        line = slope[:, None] * load + offset[:, None]
+        keep(*_regression(load, shares, ((line > low) & (line < 1.0)) * weights))
+    return slope, offset
 
-        def keep(new_slope: Array, new_offset: Array) -> None:
-            usable = np.isfinite(new_slope) & np.isfinite(new_offset) & (new_slope > 0.0)
-            tried = np.where(usable, new_slope, 0.0), np.where(usable, new_offset, BELOW)
-            misses = self._miss(*tried)
-            better = misses < missed
-            for kept, new in zip((missed, slope, offset), (misses, *tried), strict=True):
-                kept[better] = new[better]
 
-        shares, loads = np.hstack([self.low[:, :1], self.shares]), np.append(self.before, self.load)
-        rises = np.diff(loads)
-        slopes = np.diff(shares) / np.where(rises > 0.0, rises, np.inf)
-        steepest = np.maximum(slopes, np.hstack([slopes[:, 1:], slopes[:, -1:]]))
-        deepest = np.argmax(np.minimum(self.shares - self.low, 1.0 - self.shares), axis=1)
-        slid = np.argmax(self.shares >= 0.5 * (self.low + 1.0), axis=1)
-        points, count = np.arange(len(slid)), len(self.load)
-        evenly = np.linspace(0, count - 1, min(count, ENTRIES)).astype(int)
-        for entry in [slid, deepest, *evenly]:
-            steep = steepest[points, entry]
-            keep(steep, self.shares[points, entry] - steep * self.load[entry])
-        for _ in range(STEPS):
-            line = slope[:, None] * self.load + offset[:, None]
-            keep(*self._regression((line > self.low) & (line < 1.0)))
-        return slope, offset
-
-    def _miss(self, slope: Array, offset: Array) -> Array:
-        """Squared error of clipped lines, shape (n_points,)."""
-        line = slope[:, None] * self.load + offset[:, None]
-        clipped = np.minimum(1.0, np.maximum(self.low, line))
-        return np.asarray((clipped - self.shares) ** 2 @ self.weights)
-
-    def _regression(self, free: Flags) -> tuple[Array, Array]:
-        """Lines fitted to some of the entries; where these are fewer than two, not a number."""
-        weights = free * self.weights
-        with np.errstate(divide="ignore", invalid="ignore"):
-            whole = weights.sum(axis=1)
-            middle = weights @ self.load / whole
-            mean = (weights * self.shares).sum(axis=1) / whole
-            apart = self.load - middle[:, None]
-            weights *= apart
-            slope = (weights * self.shares).sum(axis=1) / (weights * apart).sum(axis=1)
-            return slope, mean - slope * middle
+def _regression(load: Array, shares: Array, weights: Array) -> tuple[Array, Array]:
+    """Lines fitted to entries by their weights; where fewer than two count, not a number."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        whole = weights.sum(axis=1)
+        middle = weights @ load / whole
+        mean = (weights * shares).sum(axis=1) / whole
+        apart = load - middle[:, None]
+        weights = weights * apart
+        slope = (weights * shares).sum(axis=1) / (weights * apart).sum(axis=1)
+        return slope, mean - slope * middle
 
 
 def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:

@@ -7,9 +7,8 @@ the friction rows and trapezoidal weights of the instants.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -37,16 +36,6 @@ class BoundaryFields(Protocol):
     @property
     def boundary_force(self) -> Array:
         """Nodal force F."""
-
-
-class InterfaceField(StrEnum):
-    """A field on the rows that rub, in L2 over length and time.
-
-    The unit of its singular values is N sqrt(s/m), of the displacement m sqrt(m s).
-    """
-
-    FRICTION_FORCE = "friction_force"
-    DISPLACEMENT = "displacement"
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,15 +113,21 @@ def decompose(
     )
 
 
-def decompositions(fields: BoundaryFields, name: InterfaceField) -> list[Decomposition]:
-    """Decomposition of an interface field in every substructure, in SI (paper, section 3.2)."""
+def decompositions(
+    fields: BoundaryFields, name: Literal["friction_force", "displacement"]
+) -> list[Decomposition]:
+    """Decomposition of a field on the rows that rub in every substructure (paper, section 3.2).
+
+    Singular values of the friction force, per length, are in N sqrt(s/m), of the displacement in
+    m sqrt(m s).
+    """
     problem, scales = fields.problem, fields.problem.scales
     lengths = np.zeros(problem.n_rows)
     for law in problem.rubbing.values():
         for rows in law.tangent.sides:
             lengths[rows] = law.weights
     slides = lengths > 0.0
-    if name is InterfaceField.FRICTION_FORCE:
+    if name == "friction_force":
         whole = fields.boundary_force * scales.force
         whole[slides] /= lengths[slides, None]
     else:

@@ -179,6 +179,7 @@ def _run(
                 iteration.local_stage()
                 local += time.process_time() - began
                 iteration.linear_stage()
+                iteration.choose_direction()
                 iterate = iteration.snapshot(number)
                 if iterate.new_course is not None:
                     iteration = Iteration(slab.problem, slab.latin, iterate.checkpoint)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.latin import Iterate, Record, solve
-from solver.reduction.svd import Decomposition, InterfaceField, decompositions
+from solver.reduction.svd import Decomposition, decompositions
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
@@ -85,6 +85,6 @@ def paper_runs() -> PaperRuns:
         run(multiscale=False, **ten),
         five,
         run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
-        decompositions(five.last, InterfaceField.FRICTION_FORCE),
-        decompositions(five.last, InterfaceField.DISPLACEMENT),
+        decompositions(five.last, "friction_force"),
+        decompositions(five.last, "displacement"),
     )

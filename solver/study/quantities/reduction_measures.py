@@ -9,7 +9,7 @@ import numpy as np
 from solver.latin import Iterate
 from solver.reduction.clips import Clips, clips_of
 from solver.reduction.sizes import Sizes, of_clips, of_products
-from solver.reduction.svd import InterfaceField, decompose, decompositions
+from solver.reduction.svd import decompose, decompositions
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import WITHIN, quantity
@@ -73,8 +73,7 @@ def modes(run: FinishedRun) -> float:
 @quantity("Singular vectors of the displacement for an error of", parameter=WITHIN, applies=on_rods)
 def svd_modes_displacement(run: FinishedRun, at: float) -> float:
     """Singular vectors that leave an error, in the substructure that needs most."""
-    field = InterfaceField.DISPLACEMENT
-    return max(part.modes_for(at) for part in decompositions(run.iterate, field))
+    return max(part.modes_for(at) for part in decompositions(run.iterate, "displacement"))
 
 
 @quantity(
@@ -82,8 +81,7 @@ def svd_modes_displacement(run: FinishedRun, at: float) -> float:
 )
 def svd_modes_force(run: FinishedRun, at: float) -> float:
     """Singular vectors that leave an error, in the substructure that needs most."""
-    field = InterfaceField.FRICTION_FORCE
-    return max(part.modes_for(at) for part in decompositions(run.iterate, field))
+    return max(part.modes_for(at) for part in decompositions(run.iterate, "friction_force"))
 
 
 @quantity(
