@@ -131,10 +131,6 @@ class Checked(param.Parameterized):
             values = {name: value for name, value in values.items() if name not in own}
         return self.checked({**values, **changes})
 
-    def with_change(self, name: str, value: object) -> Self:
-        """New settings with one changed, and those that could not stand beside it."""
-        return self.replace(**{name: value})
-
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
         """Refusal of the present value of a setting: what is allowed beside others, what to do."""
         return SettingError(name, getattr(self, name), allowed, remedy)

@@ -21,6 +21,8 @@ from solver.refusal import RefusedError, plain
 Rows = tuple[tuple[float, ...], ...]
 Parameter = param.Parameter[Any]
 ANY = -1e15, 1e15
+POSITIVE = ANY, (0.0, 1e15)
+"""Bounds of both columns of a path without values below zero."""
 FAR = 1e6
 """Numbers from here on are no limits to anybody's problem, but to the digits of a computer."""
 
@@ -71,11 +73,9 @@ class CurveParameter(Parameter):
         Names of the columns, and their units, empty for a pure number.
     bounds
         Ends of the columns, of integers for whole numbers.
-    is_positive
-        Whether no value may be below zero.
     """
 
-    __slots__ = ["bounds", "columns", "is_positive", "presets", "units"]
+    __slots__ = ["bounds", "columns", "presets", "units"]
 
     def __init__(
         self,
@@ -83,22 +83,16 @@ class CurveParameter(Parameter):
         presets: Mapping[str, Any],
         units: Mapping[str, str],
         bounds: Sequence[tuple[float, float]],
-        is_positive: bool,
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
-        self.presets, self.bounds, self.is_positive = presets, bounds, is_positive
+        self.presets, self.bounds = presets, bounds
         self.columns, self.units = tuple(units), tuple(units.values())
 
     @property
     def abscissa(self) -> str:
         """What the first column has."""
         return str(self.columns[0])
-
-    @property
-    def ordinate(self) -> str:
-        """What the second column has."""
-        return str(self.columns[1])
 
     @property
     def is_path(self) -> bool:
@@ -158,12 +152,11 @@ def curve(
     doc: str,
     *,
     bounds: Sequence[tuple[float, float]] = (),
-    is_positive: bool = False,
     **record: Any,
 ) -> CurveParameter:
-    """Path or table: a preset's name or rows, with the unit of each column."""
+    """Path or table: a preset's name or rows, with unit and bounds of each column."""
     bounds = bounds or [ANY] * len(units)
-    return CurveParameter(default, presets, units, bounds, is_positive, **_common(doc, record))
+    return CurveParameter(default, presets, units, bounds, **_common(doc, record))
 
 
 def redefined(
@@ -186,7 +179,7 @@ def redefined(
 def allowed(definition: Parameter) -> str:
     """Words on which values a setting takes."""
     if isinstance(definition, CurveParameter):
-        rows = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
+        rows = f"pairs [[{', '.join(definition.columns)}], ...]"
         if not definition.is_path:
             units = (f" in {unit}" if unit else "" for unit in definition.units)
             heads = map("".join, zip(definition.columns, units, strict=True))
@@ -227,12 +220,7 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     """
     refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(definition, CurveParameter):
-        rows = _checked_curve(definition, value, refuse)
-        if definition.is_positive and isinstance(rows, tuple) and min(row[1] for row in rows) < 0.0:
-            what, unit = definition.ordinate, definition.units[1]
-            least = f"{what}s of at least 0 {unit}".rstrip()
-            raise SettingError(name, value, least, f"raise the negative {what}")
-        return rows
+        return _checked_curve(definition, name, value)
     if isinstance(definition, param.Boolean):
         if not isinstance(value, bool):
             raise refuse("write true or false")
@@ -258,9 +246,8 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _checked_curve(
-    definition: CurveParameter, value: object, refuse: Callable[[str], SettingError]
-) -> str | Rows:
+def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:
+    refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(value, str):
         if value not in definition.presets:
             raise refuse("choose a preset, or give a table of points")
@@ -275,14 +262,17 @@ def _checked_curve(
         if not all(map(is_number, row)):
             raise refuse(f"row {number} has an entry that is not a number")
         columns = definition.columns, definition.units, definition.bounds
-        for entry, name, unit, (low, high) in zip(row, *columns, strict=True):
+        for entry, column, unit, (low, high) in zip(row, *columns, strict=True):
             if isinstance(entry, float) and not math.isfinite(entry):
                 raise refuse(f"row {number} has an entry that is not finite")
+            if entry < low == 0.0:
+                least = f"{column}s of at least 0 {unit}".rstrip()
+                raise SettingError(name, value, least, f"raise the negative {column}")
             is_counted = isinstance(low, int)
             if not low <= entry <= high or (is_counted and entry != int(entry)):
                 kind = "a whole number" if is_counted else "a number"
                 ends = " to ".join(f"{plain(end)} {unit}".strip() for end in (low, high))
-                raise refuse(f"row {number}: {name} is {plain(entry)}, give {kind} from {ends}")
+                raise refuse(f"row {number}: {column} is {plain(entry)}, give {kind} from {ends}")
         rows.append(tuple(map(float, row)))
         if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:
             raise refuse(f"row {number}: {definition.abscissa} must increase from row to row")

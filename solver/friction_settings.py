@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.definitions import Rows, about, choice, curve, quantity
+from solver.definitions import ANY, Rows, about, choice, curve, quantity
 from solver.laws import FrictionLaw, Strength
 from solver.method_settings import MethodSettings
 from solver.refusal import plain
@@ -81,6 +81,7 @@ class FrictionSettings(MethodSettings):
         "Factor on the largest friction force over the accumulated slip of a point. constant: 1. "
         "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
         "peak, softening and a residual; the last one stays.",
+        bounds=(ANY, (0.0, LARGEST_FACTOR)),
         group="Contact",
         title="Strength over slip",
         applies=lambda settings: settings.is_general,
@@ -161,14 +162,12 @@ class FrictionSettings(MethodSettings):
         table = self.strength
         if isinstance(table, str):
             return
-        slips, factors = np.array(table).T
         begins = len(table) > 1 and table[0] == (0.0, 1.0)
-        grows = begins and np.all(np.diff(slips) >= SHORTEST_SLIP)
-        if not (grows and factors.min() >= 0.0 and factors.max() <= LARGEST_FACTOR):
+        if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
             raise self.refusal(
                 "strength",
-                "at least two points (slip, factor), the first (0, 1), factors from 0 to "
-                f"{plain(LARGEST_FACTOR)}, slips that grow by {plain(SHORTEST_SLIP)} m",
+                "at least two points (slip, factor), the first (0, 1), and slips that grow by "
+                f"{plain(SHORTEST_SLIP)} m",
                 "the factor at slip 0 is 1, as the rest of the law says what friction is there",
             )
 

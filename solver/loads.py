@@ -123,13 +123,11 @@ PRESETS: dict[str, Preset] = {
 }
 
 PULLS: dict[str, Preset] = {
-    "ramp": PRESETS["ramp"],
-    "triangle": PRESETS["triangle"],
+    **PRESETS,
     "cycle": _lines(0.0, 1.0, 0.0, 1.0, 0.0, 1.0, repeats=0.2),
     "sine": _lines(*QUARTERS, repeats=0.0, wave=lambda phase: _sine(phase) ** 2),
     "decaying": _lines(0.0, *(0.5 + 0.5 * DECAY), 0.0, repeats=0.0),
     "random": Preset(_size_of_walk),
-    "hold": PRESETS["hold"],
     "delayed": _lines(*QUARTERS, begins=HELD, repeats=HELD, wave=lambda phase: _sine(phase) ** 2),
     "cycles": _lines(0.0, *[1.0, 0.0] * CYCLES, begins=HELD, repeats=HELD),
 }

@@ -9,14 +9,11 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.definitions import Rows
 from solver.loads import interpolate
-from solver.refusal import plain
 
 UNSEEN = 0.01
 """Share of its range by which a table may differ between nodes from the line through them."""
 STEEP = 1e-8
 """Relative change over a piece below which the mean of the inverse is that of the middle."""
-MOST_ELEMENTS = 5000
-"""Of a body, as `elements` allows."""
 
 
 def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
@@ -97,39 +94,7 @@ def gap_at(table: Rows, nodes: Array) -> Array:
     return lowest
 
 
-def unseen(name: str, table: Rows, length: float, elements: int, order: int) -> str | None:
-    """What a mesh does not see of a gap that is a table, and how many elements would.
-
-    Parameters
-    ----------
-    name
-        Of the setting.
-    table
-        Points, m.
-    length
-        Of the body, m.
-    elements, order
-        Elements along it, and pieces between nodes of each.
-
-    Returns
-    -------
-    None where the line through the nodes is within `UNSEEN` of the range of the table.
-    """
-    off = _off_nodes(table, length, elements * order)
-    most = UNSEEN * float(np.ptp(np.array(table)[:, 1]))
-    if off.max() <= most:
-        return None
-    finer = range(elements + 1, MOST_ELEMENTS + 1)
-    sees = (str(n) for n in finer if _off_nodes(table, length, n * order).max() <= most)
-    return (
-        f"{name}: {np.count_nonzero(off > most)} of {len(table)} points lie between nodes, up to "
-        f"{plain(float(f'{off.max():.3g}'))} m off the line through them; what is lower than both "
-        "nodes counts at the nearer one, for all of its share; "
-        f"{next(sees, f'more than {MOST_ELEMENTS}')} elements would see it"
-    )
-
-
-def _off_nodes(table: Rows, length: float, pieces: int) -> Array:
+def off_nodes(table: Rows, length: float, pieces: int) -> Array:
     """How far points are off the line through evenly spaced nodes, shape (n_points,)."""
     x, values = np.array(table).T
     nodes = np.linspace(0.0, length, pieces + 1)

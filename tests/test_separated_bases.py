@@ -130,6 +130,14 @@ def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
     assert modes_stored(shared.bases) < 0.75 * modes_stored(own.bases)
 
 
+def test_an_instant_right_after_another_does_not_blow_up_the_modes():
+    path = [[0.0, -1.0], [2.3e-308, 0.0], [1.0, -1.0]]
+    size = {"elements": 2, "layers": 1, "instants": 1, "substructures": 1, "length": 1.0}
+    method = {"method": "paper", "linear_stage": "pgd", "multiscale": False}
+    settings = settings_of("rope", **size, **method, load=path, friction=1.0, fall_off=1.0)
+    assert np.abs(sample(settings, 10).boundary_force).max() < 1.0
+
+
 def small(scene: str = "bar", **changes: Any) -> Any:
     return settings_of(scene, **SMALL[scene], **{"linear_stage": "pgd", **changes})
 

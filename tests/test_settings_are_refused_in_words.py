@@ -23,14 +23,14 @@ BAD_TABLES = [
     ([[0.0, 1.0], [1.0]], "row 2 must be a pair"),
     ([[0.0, 1.0, 2.0]], "row 1 must be a pair"),
     ([0.0, 1.0], "row 1 must be a pair"),
-    ([[0.0, 0.0], [0.5, 1.0], [0.5, 2.0]], "row 3"),
-    ([[1.0, 0.0], [0.0, 1.0]], "must increase"),
+    ([[0.0, 1.0], [0.5, 1.0], [0.5, 2.0]], "row 3"),
+    ([[1.0, 1.0], [0.0, 1.0]], "must increase"),
     ([[0.0, math.nan]], "not finite"),
-    ([[math.inf, 0.0]], "not finite"),
+    ([[math.inf, 1.0]], "not finite"),
     ([[0.0, "much"]], "not a number"),
     ([[0.0, True]], "not a number"),
-    ([[0.0, 1e16]], "1e15"),
-    ([[0.0, 10**400]], "1e15"),
+    ([[0.0, 1e16]], "give a number from"),
+    ([[0.0, 10**400]], "give a number from"),
 ]
 NO_NUMBERS = [10**400, -(10**400), math.nan, math.inf, -math.inf, True, "many", None, [1.0], {}]
 NO_CHOICES = ["nothing", 3, 0.0, None, [], ["none"], {"a": 1}]

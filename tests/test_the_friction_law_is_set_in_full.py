@@ -167,7 +167,7 @@ def test_soft_joints_under_steel_are_solved():
         ([[0.0, 2.0], [1e-3, 1.0]], "the factor at slip 0 is 1"),
         ([[1e-3, 1.0], [2e-3, 0.5]], "the factor at slip 0 is 1"),
         ([[0.0, 1.0]], "at least two points"),
-        ([[0.0, 1.0], [1e-3, -0.5]], "factors from 0"),
+        ([[0.0, 1.0], [1e-3, -0.5]], "factors of at least 0"),
         ([[0.0, 1.0], [1e-300, 0.5]], "slips that grow"),
         ([[0.0, 1.0], [0.0, 0.5]], "must increase"),
     ],

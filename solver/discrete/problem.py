@@ -121,7 +121,9 @@ class Problem:
         if self.n_instants == 1:
             return np.ones(1)
         halves = 0.5 * (np.diff(self.instants) / self.scales.time)
-        return np.append(halves, 0.0) + np.insert(halves, 0, 0.0)
+        weights = np.append(halves, 0.0) + np.insert(halves, 0, 0.0)
+        # A basis divides by them: a step may be as short as the smallest number.
+        return np.asarray(np.maximum(weights, np.finfo(float).eps))
 
     @cached_property
     def laws(self) -> list[Interface]:

@@ -9,7 +9,7 @@ import numpy as np
 import solver.scenes.bar_ends as bar_ends
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import count, quantity
+from solver.definitions import ANY, POSITIVE, count, quantity
 from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
@@ -27,8 +27,8 @@ SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falli
 """Those that leave no element without a section."""
 SETTLEMENTS = {"linear": ((0.0, 0.0), (1.0, 1.0)), **shared.PROFILES}
 """The first is nothing at the left end."""
-FACTORS = 1e-8, 1e8
 LARGEST_CONTRAST = 1e8
+"""Largest over smallest factor on the section, and the largest factor itself."""
 DONE = {
     "body_load": ("all along it is {}", "pulled", "pushed"),
     "temperature_load": ("it is {}", "heated", "cooled"),
@@ -162,8 +162,8 @@ class BarSettings(Settings):
     )
     friction = shared.friction("mu between bar and support")
     pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
-    friction_profile = shared.profile("μ", "the bar", is_positive=True)
-    pressure_profile = shared.profile("p", "the bar", is_positive=True)
+    friction_profile = shared.profile("μ", "the bar", bounds=POSITIVE)
+    pressure_profile = shared.profile("p", "the bar", bounds=POSITIVE)
     elements = count(
         50,
         (1, 20_000),
@@ -181,6 +181,7 @@ class BarSettings(Settings):
         SECTIONS,
         "a preset, taken at the middle of every element; or points (m, factor), where an element "
         "is as stiff as all that lies in it.",
+        bounds=(ANY, (1.0 / LARGEST_CONTRAST, LARGEST_CONTRAST)),
         group="Bar",
     )
 
@@ -215,18 +216,11 @@ class BarSettings(Settings):
             )
 
     def _check_section(self) -> None:
-        """Refuse a section that vanishes, or is too uneven for the digits of a number."""
+        """Refuse a section that is too uneven for the digits of a number."""
         table = self.section_profile
         if isinstance(table, str):
             return
         factors = [factor for _, factor in table]
-        low, high = FACTORS
-        if not low <= min(factors) <= max(factors) <= high:
-            raise self.refusal(
-                "section_profile",
-                f"factors above 0, from {plain(low)} to {plain(high)}",
-                "bring the factors into this range",
-            )
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",

@@ -16,7 +16,7 @@ from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.load_settings import POINTS, as_points
 from solver.loads import PRESETS
-from solver.profiles import gap_at, unseen
+from solver.profiles import UNSEEN, gap_at, off_nodes
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola
@@ -142,10 +142,24 @@ class BlockSettings(SideSettings):
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, the gap among them."""
         yield from super().left_out()
-        if not isinstance(self.gap, str):
-            message = unseen("gap", self.gap, self.length, self.elements, self.order)
-            if message is not None:
-                yield message
+        if isinstance(self.gap, str):
+            return
+        off = off_nodes(self.gap, self.length, self.elements * self.order)
+        most = UNSEEN * float(np.ptp(np.array(self.gap)[:, 1]))
+        if off.max() <= most:
+            return
+        largest = self.definitions()["elements"].bounds[1]
+        sees = (
+            str(n)
+            for n in range(self.elements + 1, largest + 1)
+            if off_nodes(self.gap, self.length, n * self.order).max() <= most
+        )
+        yield (
+            f"gap: {np.count_nonzero(off > most)} of {len(self.gap)} points lie between nodes, up "
+            f"to {plain(float(f'{off.max():.3g}'))} m off the line through them; what is lower "
+            "than both nodes counts at the nearer one, for all of its share; "
+            f"{next(sees, f'more than {largest}')} elements would see it"
+        )
 
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""

@@ -152,23 +152,6 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     yield ExactCurve("loop", slide, pushed + pull)
 
 
-def exact_slope(body: Stack) -> Iterator[ExactCurve]:
-    """Force of the spring over the angle: what friction leaves to it, up and down."""
-    assert body.tilt is not None
-    assert body.support is not None
-    if body.body_force is None or not _is_coulombs(body):
-        return
-    weight = np.hypot(*body.body_force) * body.length * body.height
-    down = weight * np.sin(body.tilt)
-    friction = float(np.max(body.support.friction)) * weight * np.cos(body.tilt)
-    force = np.zeros_like(down)
-    now = 0.0
-    for instant, (least, most) in enumerate(zip(down - friction, down + friction, strict=True)):
-        now = max(min(max(now, float(least)), float(most)), 0.0)
-        force[instant] = now
-    yield ExactCurve("loop", np.degrees(body.tilt), force)
-
-
 def exact_layers(
     body: Stack, problem: Problem, solution: LoopFields | None
 ) -> Iterator[ExactCurve]:

@@ -13,7 +13,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, quantity, redefined
+from solver.definitions import POSITIVE, SettingError, quantity, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
@@ -163,7 +163,7 @@ class FaultSettings(PlaneSettings):
         title="Normal stress σ",
         unit="Pa",
     )
-    normal_profile = shared.profile("σ", "the fault", PROFILES, is_positive=True)
+    normal_profile = shared.profile("σ", "the fault", PROFILES, bounds=POSITIVE)
     diffusivity = quantity(
         0.1,
         (1e-15, 1e9),
@@ -174,7 +174,7 @@ class FaultSettings(PlaneSettings):
         unit="m^2/s",
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
-    friction_profile = shared.profile("μ", "the fault", PROFILES, is_positive=True)
+    friction_profile = shared.profile("μ", "the fault", PROFILES, bounds=POSITIVE)
     length = shared.size(
         600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
     )
@@ -199,14 +199,10 @@ class FaultSettings(PlaneSettings):
 
     def strength_along(self, place: Array) -> Array:
         """Largest friction per area, shape (n_places, n_instants), Pa."""
-        mu, pressed = (
-            size * interpolate(self.points(name), place)[:, None]
-            for size, name in (
-                (self.friction, "friction_profile"),
-                (self.normal_stress, "normal_profile"),
-            )
-        )
-        return np.asarray(mu * (pressed - self.fluid(place)))
+        profiles = "friction_profile", "normal_profile"
+        mu, pressed = (interpolate(self.points(name), place)[:, None] for name in profiles)
+        effective = self.normal_stress * pressed - self.fluid(place)
+        return np.asarray(self.friction * mu * effective)
 
     def pressing_at_nodes(self) -> Array:
         """Normal stress of the nodes before any fluid is let in, shape (n_nodes,), Pa."""
@@ -230,9 +226,8 @@ class FaultSettings(PlaneSettings):
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
-            name = self.size_or_table("injection_load")
             raise self.refusal(
-                name,
+                self.size_or_table("injection_load"),
                 f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
                 "it would open the fault: lower the pressure of the fluid, or press more",
             )

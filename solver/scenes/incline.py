@@ -17,10 +17,10 @@ from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
+from solver.laws import FrictionLaw
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.exact import exact_slope
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
 from solver.settings import Features, Icon
@@ -100,10 +100,9 @@ class InclineSettings(PlaneSettings):
         loss = loss_of_equilibrium(self.structure())
         if loss is None:
             return
-        name = self.size_or_table("slope_load")
         angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
         raise self.refusal(
-            name,
+            self.size_or_table("slope_load"),
             "slopes on which the block stays in equilibrium",
             f"from {plain(loss.instant)} s on, at {angle:.4g}°, {loss.reason}: "
             "lower the slope, or take a longer base or a lower block",
@@ -122,8 +121,18 @@ class InclineSettings(PlaneSettings):
         )
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
-        """Force of the spring over the angle."""
-        return exact_slope(self.structure())
+        """Force of the spring over the angle: what friction leaves to it, up and down."""
+        mu = self.friction_at_nodes()
+        if not self.weight or self.law != FrictionLaw() or np.ptp(mu):
+            return
+        angle = np.radians(self.path("slope_load"))
+        down, friction = self.weight * np.sin(angle), np.max(mu) * self.weight * np.cos(angle)
+        force = np.zeros_like(down)
+        now = 0.0
+        for instant, (least, most) in enumerate(zip(down - friction, down + friction, strict=True)):
+            now = max(min(max(now, float(least)), float(most)), 0.0)
+            force[instant] = now
+        yield ExactCurve("loop", np.degrees(angle), force)
 
     def sentence(self) -> str:
         """The block on its slope in a sentence."""

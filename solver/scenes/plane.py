@@ -11,7 +11,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import choice, count, quantity, redefined
+from solver.definitions import POSITIVE, choice, count, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.laws import FrictionLaw
 from solver.loads import interpolate
@@ -43,7 +43,7 @@ class PlaneSettings(Settings):
 
     instants = redefined(Settings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
-    friction_profile = shared.profile("μ", "the body", is_positive=True)
+    friction_profile = shared.profile("μ", "the body", bounds=POSITIVE)
     tangential_stiffness = redefined(
         Settings.param["tangential_stiffness"],
         0.0,

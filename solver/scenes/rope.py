@@ -9,7 +9,16 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Rows, SettingError, choice, count, curve, quantity, redefined
+from solver.definitions import (
+    POSITIVE,
+    Rows,
+    SettingError,
+    choice,
+    count,
+    curve,
+    quantity,
+    redefined,
+)
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.problem import Problem
@@ -107,7 +116,7 @@ class RopeSettings(Settings):
         "steady",
         PRESSURES,
         path_doc=shared.OF_PRESSURES,
-        is_positive=True,
+        bounds=POSITIVE,
         places=("right x",),
     )
     instants = redefined(Settings.param["instants"], 61)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, Rows, curve, quantity
+from solver.definitions import POSITIVE, CurveParameter, Rows, curve, quantity
 from solver.loads import PRESETS, PRESSURES, Preset
 from solver.settings import Settings
 
@@ -87,7 +87,7 @@ def friction_factors(which: str) -> CurveParameter:
         {"interface": "", "factor": ""},
         f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
         "each, numbered from 1 on.",
-        is_positive=True,
+        bounds=POSITIVE,
         group="Contact",
         title="μ of each interface",
     )
@@ -98,7 +98,7 @@ def sized_path(
     what: str,
     unit: str,
     default: float,
-    bounds: tuple[float, float],
+    ends: tuple[float, float],
     slider: tuple[float, float],
     doc: str,
     preset: str,
@@ -106,7 +106,7 @@ def sized_path(
     *,
     path_doc: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
-    is_positive: bool = False,
+    bounds: Sequence[tuple[float, float]] = (),
     **record: Any,
 ) -> tuple[param.Number[float], CurveParameter]:
     """Define the largest value that presets of a path over time reach, and the path.
@@ -119,26 +119,26 @@ def sized_path(
         Name of the setting of the path.
     what, unit
         What it is a path of, and its unit.
-    default, bounds, slider, doc
+    default, ends, slider, doc
         Of the value.
     preset, presets
         The default of the path, and all that there are.
     path_doc
         What there is to say of the path beside that it is one.
-    applies, is_positive
-        Of the value and the path; whether no value is below zero.
+    applies, bounds
+        Of the value and the path; of the columns of the path.
     record
         Entries of `About`.
     """
     record = {"group": "Load", "title": f"{what[:1].upper()}{what[1:]}"} | record
-    size = quantity(default, bounds, slider, doc, unit=unit, applies=applies, path=path, **record)
+    size = quantity(default, ends, slider, doc, unit=unit, applies=applies, path=path, **record)
     named = (kind for kind in ("pressure", "tension") if kind in what)
     over_time = curve(
         preset,
         presets,
         {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
         f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
-        is_positive=is_positive,
+        bounds=bounds,
         group=record["group"],
         title=f"Path of the {what}",
         applies=lambda settings: applies(settings) and bool(default or settings.acts(path)),
@@ -159,7 +159,7 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
         "steady",
         PRESSURES,
         path_doc=OF_PRESSURES,
-        is_positive=True,
+        bounds=POSITIVE,
         group="Contact",
         title="Pressure p",
         places=("top y",),

@@ -24,7 +24,6 @@ PRESCRIBED: dict[str, tuple[bool, bool]] = {
 }
 """Whether the normal and the tangential displacement are prescribed; a traction is, otherwise."""
 AT_REST = ("free", "roller", "clamped")
-OUTWARD = {"left": -1.0, "right": 1.0, "top": 1.0}
 
 
 def _is_given(side: str) -> Callable[..., bool]:
@@ -96,9 +95,6 @@ def _settings_of(side: str, component: str) -> dict[str, Parameter]:
 class SideSettings(PlaneSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
-    def _prescribes(self, side: str, component: str) -> bool:
-        return PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
-
     def side(self, side: str) -> Side:
         """What is given along a side, for x and y."""
         normal, tangential = (self._given(side, component) for component in COMPONENTS)
@@ -106,11 +102,11 @@ class SideSettings(PlaneSettings):
 
     def _given(self, side: str, component: str) -> Given:
         kind = getattr(self, side)
-        prescribed = self._prescribes(side, component)
+        prescribed = PRESCRIBED[kind][COMPONENTS.index(component)]
         if kind in AT_REST:
             rest = np.zeros(self.n_instants)
             return Given(prescribed, rest, rest)
-        sign = OUTWARD[side] if component == "normal" else 1.0
+        sign = -1.0 if side == "left" and component == "normal" else 1.0
         mean = sign * self.path(f"{side}_{component}_load")
         return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import choice, count, quantity, redefined
+from solver.definitions import POSITIVE, choice, count, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods, neighbours
 from solver.discrete.structure import LoopFields
@@ -51,7 +51,7 @@ class StrandSettings(Settings):
         "Largest tension of a wire that the preset reaches.",
         "cycle",
         PULLS,
-        is_positive=True,
+        bounds=POSITIVE,
         title="Peak tension",
         places=("right x",),
     )

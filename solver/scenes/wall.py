@@ -271,6 +271,5 @@ class WallSettings(PlaneSettings):
         bond = "in running bond" if self.bond == "running" else "one above the other"
         hole = " round an opening" if self.opening else ""
         bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}{hole}{pressed}"
-        rubs = bool(self.friction or self.law.cohesion)
-        touch = "and rub on" if rubs else "and slide freely on"
+        touch = "and rub on" if self.is_rough else "and slide freely on"
         return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."

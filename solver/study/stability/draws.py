@@ -133,7 +133,8 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         settings = kind.checked(values)
         for path in settings.paths:
             if generator.random() < CHANGED:
-                size, least = settings.size_of(path), -1.0 + definitions[path].is_positive
+                size, lowest = settings.size_of(path), definitions[path].bounds[1][0]
+                least = -1.0 if lowest < 0.0 else 0.0
                 turns = size * generator.uniform(least, 1.0, int(generator.integers(1, 8)))
                 values[path] = _table(turns, size, settings.duration, generator)
     return values
