@@ -10,7 +10,7 @@ from bokeh.models import FixedTicker, PrintfTickFormatter
 from app.frame import Floats, Frame, Selection
 from app.views.axis import rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import View, hover, key_of
+from app.views.view import View, hover
 from app.worker.references import has_reference
 
 LEAST, MOST = 1e-4, 10.0
@@ -129,5 +129,5 @@ class ErrorTime(ErrorPlot):
         seconds = [run.reference_seconds] if np.isfinite(run.reference_seconds) else []
         self.fill("reference", x=seconds)
         if len(now["x"]) or len(ghosts["x"]):
-            self.x.hold(key_of(run), now["x"], ghosts["x"], seconds)
+            self.x.hold(newest.stage, now["x"], ghosts["x"], seconds)
             self.y.hold(run.number, now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME])

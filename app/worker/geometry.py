@@ -28,13 +28,11 @@ MOST_POINTS = 201
 """Contact points of an interface, and nodes of a rod, that are shown at most."""
 MOST_WIRES = 6
 """Wires whose axial force is shown at most, beside a broken one."""
-NONE = -1
-"""In place of a degree of freedom."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
 Indices = NDArray[np.intp]
-BREAK = -1
-"""Stands between two lines in a list of nodes."""
+NONE = -1
+"""In place of a degree of freedom, and between two lines in a list of nodes."""
 StressField = tuple[str, str, Floats]
 """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 Extras = dict[str, Callable[[Iterate, Needs], Any]]
@@ -97,15 +95,6 @@ class Drawn:
         return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
-        raise NotImplementedError
-
-    def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of the nodes, of bodies in the plane, by that of degrees of freedom."""
-        raise NotImplementedError
-
-    @property
-    def extras(self) -> Extras:
-        """What only some views need of the bodies."""
         raise NotImplementedError
 
 
@@ -302,8 +291,8 @@ def outlines_of(nodes: Array, quads: NDArray[np.int32], parts: Indices) -> tuple
     _, place = np.unique(places, axis=0, return_inverse=True)
     own = [_boundary(quads[parts == part], np.arange(len(nodes))) for part in np.unique(parts)]
     rims = _boundary(np.concatenate(own), place.ravel())
-    loops = [np.append(loop, BREAK) for sides in own for loop in _loops(sides)]
-    return np.concatenate(loops), np.insert(rims, 2, BREAK, axis=1).ravel()
+    loops = [np.append(loop, NONE) for sides in own for loop in _loops(sides)]
+    return np.concatenate(loops), np.insert(rims, 2, NONE, axis=1).ravel()
 
 
 def _boundary(cells: Indices, place: Indices) -> Indices:
