@@ -62,7 +62,6 @@ class Convergence(ErrorPlot):
         self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         self.add("answer", "Scatter", size=11, **ring)
-        self.mark({"answer": ERROR}, marker="circle", fill_alpha=0, line_width=2.5)
         titles = {column: title for column, (title, *_) in CURVES.items()}
         self.legend(**titles, answer="answer", ghost="ghost")
         hover(made, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})

@@ -52,7 +52,7 @@ class Picture:
 
     def __post_init__(self) -> None:
         self._geometry = self.frame.run.geometry
-        self._described = self._geometry.description
+        self._described = self.layout.description
         # Values of a description are not thinned.
         instant = self.frame.run.instants[self.column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
@@ -71,16 +71,17 @@ class Picture:
         local = self._moved(places, self.frame.deformed.points[:, :, self.column])
         if self._described.height is not None and self._described.bodies == 1:
             # Of rods, a band is thinner than the room that is left for it.
-            local[places[:, 1] <= 1e-6 * self.layout.length, 1] -= 0.5 * BAND
+            local[places[:, 1] <= 1e-6 * self._described.length, 1] -= 0.5 * BAND
         return local
 
     @cached_property
     def arrows(self) -> list[Arrows]:
         """Those of all that acts."""
-        size, described = [self.layout.length, self.layout.top], self._described
-        places = [self._follow(act.places * size) for act in described.acts]
-        given = described, self.layout, self.peaks, self._now
-        return [arrows_of(*each, *given) for each in zip(described.acts, places, strict=True)]
+        layout, peaks, now = self.layout, self.peaks, self._now
+        return [
+            arrows_of(act, self._follow(act.places * layout.size), layout, peaks, now)
+            for act in self._described.acts
+        ]
 
     @cached_property
     def handles(self) -> list[Handle]:
@@ -91,7 +92,7 @@ class Picture:
             if name is not None and len(arrows.handles):
                 place = arrows.handles[arrows.longest]
                 handles.append(Handle(name, place, color_of(arrows.act), arrows.scaled))
-        gap = gap_of(self._described, self.layout, self.factor)
+        gap = gap_of(self.layout, self.factor)
         if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
             depth = -float(gap[-1, 1])
             # What is behind a gap is a radius: the larger, the shallower.
@@ -100,7 +101,7 @@ class Picture:
             )
         if "break" in self.behind and len(self._at_break):
             place = self.nodes[self._at_break].mean(axis=(0, 1))
-            scale, middle = self.layout.scale[0], 0.5 * self.layout.length
+            scale, middle = self.layout.scale[0], 0.5 * self._described.length
             handles.append(
                 Handle(self.behind["break"], place, FORCE, lambda _, at: at[0] / scale + middle)
             )
@@ -193,11 +194,12 @@ class Picture:
         ]
 
     def _holds(self) -> Array:
-        feet = self._follow(np.array([[0.0, 0.0], [self.layout.length, 0.0]]))
-        strokes = strokes_of(self._described, self.layout, self.factor, self._now, feet)
+        layout, length = self.layout, self._described.length
+        feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
+        strokes = strokes_of(layout, self.factor, self._now, feet)
         if self._described.tilt is not None:
-            corner = np.array([-0.5 * self.layout.size[0] - 21.0, -5.0])
-            level = turned(np.array([0.9 * self.layout.size[0], 0.0]), -self.tilt)
+            corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
+            level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
         return np.concatenate([np.zeros((0, 2)), *strokes])
 
@@ -205,7 +207,7 @@ class Picture:
         """What rubs, by its status, on a rim where there is contact."""
         status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
         lines = bands(self.points, chains, status)
-        width = min(BAND, 0.35 * self.layout.size[1] / self._described.bodies)
+        width = min(BAND, 0.35 * self.layout.top * self.layout.scale[1] / self._described.bodies)
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
         rims = [line for kind, line in lines.items() if kind != OPEN]
@@ -216,10 +218,10 @@ class Picture:
 
     def _words(self) -> Columns:
         """What acts, and the slope; moved inwards where it would be cut."""
-        words, layout = words_of(self._described, self.layout, self.arrows, self._now), self.layout
+        words, layout = words_of(self.layout, self.arrows, self._now), self.layout
         places = [self._page(word.place) for word in words]
         if self._described.tilt is not None:
-            corner = np.array([0.5 * layout.size[0] + 30.0, 4.0])
+            corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, 4.0])
             angle = number(float(np.degrees(self.tilt)))
             words.append(Word(f"slope {angle}°", corner, "left", FORCE))
             places.append(corner + layout.origin)
