@@ -87,19 +87,14 @@ class View:
         self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
         self._filter = AllIndices()
         self._make()
-        self._size_type()
+        self.magnify(self._type)
         return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
-        if size != self._type:
-            self._type = size
-            if self._made is not None:
-                self._size_type()
-
-    def _size_type(self) -> None:
-        for model in (self._made, *self._made.legend):
-            model.styles = {**model.styles, "font-size": self._type}
+        self._type = size
+        for model in () if self._made is None else (self._made, *self._made.legend):
+            model.styles = {**model.styles, "font-size": size}
 
     def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
@@ -119,7 +114,6 @@ class View:
         made = self._made = figure(
             sizing_mode="stretch_both",
             min_height=120,
-            styles={"font-size": TEXT},
             tools=TOOLS,
             active_drag=None,
             active_scroll="wheel_zoom",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
 from solver.discrete.plane_parts import Inside
@@ -30,7 +30,6 @@ MOST_WIRES = 6
 """Wires whose axial force is shown at most, beside a broken one."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
-Indices = NDArray[np.intp]
 NONE = -1
 """In place of a degree of freedom, and between two lines in a list of nodes."""
 StressField = tuple[str, str, Floats]
