@@ -167,6 +167,11 @@ class Frame:
         arrays = [*fields, moved.nodes, moved.points, moved.status, self.loop]
         return sum(array.nbytes for array in arrays if array is not None)
 
+    @property
+    def stage(self) -> tuple[int, bool, bool]:
+        """Run, whether its reference is known, and whether it is over; axes are chosen for each."""
+        return self.run.number, bool(self.run.reference), self.status is not None
+
     def last(self, name: str) -> float:
         """The newest value of one of the history's scalars; NaN where there is none."""
         values = self.history[name]

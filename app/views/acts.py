@@ -14,7 +14,7 @@ from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, on_side
+from solver.discrete.structure import OUTWARD, Act, on_side
 
 LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn, or cannot be dragged."""
@@ -100,12 +100,7 @@ def color_of(act: Act) -> str:
 
 
 def arrows_of(
-    act: Act,
-    places: Array,
-    description: Description,
-    layout: Layout,
-    peaks: Mapping[str, float],
-    column: int,
+    act: Act, places: Array, layout: Layout, peaks: Mapping[str, float], column: int
 ) -> Arrows:
     """The arrows of what acts at an instant, the column of its values.
 
@@ -119,7 +114,7 @@ def arrows_of(
     now = np.broadcast_to(act.values.T[column], len(places))
     share = np.clip(now / peaks[act.where], -1.6, 1.6)
     is_shown = np.abs(share) >= LEAST
-    base = places[is_shown] + (beside(description, side) * away if aside else 0.0)
+    base = places[is_shown] + (beside(layout.description, side) * away if aside else 0.0)
     span = layout.arrow * share[is_shown, None] * towards
     pushes = (span @ away < 0.0)[:, None] & (not aside) & (side != "body")
     handles = np.where(pushes, base - span, base + span)
@@ -132,20 +127,18 @@ def arrows_of(
     return Arrows(act, places, base, handles, lines)
 
 
-def words_of(
-    description: Description, layout: Layout, acts: Sequence[Arrows], column: int
-) -> list[Word]:
+def words_of(layout: Layout, acts: Sequence[Arrows], column: int) -> list[Word]:
     """What acts in words; what presses from above and below alike is said once."""
-    above = [act for act in description.acts if act.where.startswith("top")]
+    above = [arrows.act for arrows in acts if arrows.act.where.startswith("top")]
     return [
-        Word(text_of(act, column), *_anchor(arrows, description, layout), color_of(act))
+        Word(text_of(act, column), *_anchor(arrows, layout), color_of(act))
         for arrows in acts
         if not (act := arrows.act).where.startswith("bottom")
         or not any(is_opposite(act, each) for each in above)
     ]
 
 
-def _anchor(arrows: Arrows, description: Description, layout: Layout) -> tuple[Array, str]:
+def _anchor(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     """Where the words of what acts stand, and on which side of them that is."""
     act, places = arrows.act, arrows.places
     side, aside, (away, up) = act.where.partition(" ")[0], is_aside(act), act.away
@@ -154,10 +147,10 @@ def _anchor(arrows: Arrows, description: Description, layout: Layout) -> tuple[A
         place = places[0 if is_left else -1]
         ends = np.append(arrows.lines[:, :, 0], place[0])
         x = ends.min() - 10.0 if is_left else ends.max() + 10.0
-        above = beside(description, side) if aside else 0.75 * layout.arrow
+        above = beside(layout.description, side) if aside else 0.75 * layout.arrow
         return np.array([x, place[1] + above * up]), "right" if is_left else "left"
     if side == "body":
-        length, height = layout.size
+        length, height = layout.size * layout.scale
         if length < 0.5 * layout.width:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         return np.array([0.0, 0.5 * height + 14.0]), "center"
@@ -180,33 +173,28 @@ def unit_of(act: Act) -> Unit:
     return unit_for(float(np.abs(act.values).max()), act.unit)
 
 
-def strokes_of(
-    description: Description, layout: Layout, factor: float, column: int, feet: Array
-) -> list[Array]:
+def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[Array]:
     """Lines of what holds the bodies at an instant, px from the middle of their foot, NaN between.
 
     `column` is that of the instant in the description's values; `feet` is where the left
     and the right end of the foot have gone, to which a spring is fixed, shape (2, 2).
     """
     lines: list[Array] = []
-    for hold in description.holds:
-        first, last = layout.local(
-            on_side(hold.side, [0.0, 1.0]) * np.array([layout.length, layout.top])
-        )
+    for hold in layout.description.holds:
+        first, last = layout.local(on_side(hold.side, [0.0, 1.0]) * layout.size)
+        moved = 0.0 if hold.moved is None else hold.moved[column]
+        shift = layout.shift(np.array([moved, 0.0]), factor)
         edge = np.array([first + share * (last - first) for share in hold.stretch])
         away = np.array(OUTWARD[hold.side])
         if hold.kind == "clamp":
             along = (last - first) / np.hypot(*(last - first)) * BEYOND
-            moved = 0.0 if hold.moved is None else hold.moved[column]
-            edge = edge + layout.shift(np.array([moved, 0.0]), factor) + [-along, along]
-            lines.append(hatched(edge, away))
+            lines.append(hatched(edge + shift + [-along, along], away))
         elif hold.kind == "rollers":
             lines.append(_rollers(edge, away))
         elif hold.kind == "support":
-            lines.append(hatched(_support(description, hold, layout, factor, edge), away))
+            lines.append(hatched(_support(layout, factor, edge), away))
         elif hold.kind == "spring":
-            moved = 0.0 if hold.moved is None else hold.moved[column]
-            wall = edge[0, 0] + WALL * away[0] + layout.shift(np.array([moved, 0.0]), factor)[0]
+            wall = edge[0, 0] + WALL * away[0] + shift[0]
             lines.append(_spring(feet[int(hold.side == "right")], float(wall), away))
     return lines
 
@@ -222,28 +210,25 @@ def hatched(edge: Array, away: Array) -> Array:
     return np.concatenate([gapped(edge[None]), gapped(np.stack([points, ends], axis=1))])
 
 
-def gap_of(description: Description, layout: Layout, factor: float) -> Array | None:
+def gap_of(layout: Layout, factor: float) -> Array | None:
     """The gap below the bodies as it is drawn, (n, 2) from the middle of their foot, px.
 
     It is magnified as displacements are, and at most so deep.
     """
-    for hold in description.holds:
+    for hold in layout.description.holds:
         if hold.gap is not None:
             depth = np.minimum(hold.gap * factor * layout.scale[1], DEEPEST)
-            x = (np.linspace(0.0, 1.0, len(depth)) - 0.5) * layout.size[0]
+            x = np.linspace(-0.5, 0.5, len(depth)) * layout.size[0] * layout.scale[0]
             return np.stack([x, -depth], axis=1)
     return None
 
 
-def _support(
-    description: Description, hold: Hold, layout: Layout, factor: float, edge: Array
-) -> Array:
-    if description.height is None:
-        below = (PITCH - THICKNESS) * layout.length * layout.scale[1]
+def _support(layout: Layout, factor: float, edge: Array) -> Array:
+    if layout.description.height is None:
+        below = (PITCH - THICKNESS) * layout.description.length * layout.scale[1]
         return np.asarray(edge - [0.0, max(below, BAND + 1.0)])
-    gap = gap_of(description, layout, factor)
-    if hold.gap is not None and gap is not None:
-        edge = gap
+    gap = gap_of(layout, factor)
+    edge = edge if gap is None else gap
     beyond = np.array([[-3.0 * BEYOND, 0.0], [3.0 * BEYOND, 0.0]]) + edge[[0, -1]]
     return np.concatenate([beyond[:1], edge, beyond[1:]]) - [0.0, 0.5 * BAND + 1.5]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.frame import Floats, Frame, InterfaceFields, Run, Selection
+from app.frame import Floats, Frame, InterfaceFields, Selection
 from app.views.axis import extent
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
-from app.views.view import View, hover, joined, key_of
+from app.views.view import View, hover, joined
 
 ROOM, MOST = 1.15, 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
@@ -60,7 +60,7 @@ class ContactForce(View):
         self.y.rename("traction" if is_plane else "force", "Pa" if is_plane else "N/m")
         curves = run.known("friction") + (run.known("pressure") if has_pressure else [])
         exact = [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
-        self._scale(run, name, fields, [curve.up for curve in exact])
+        self._scale(frame, name, fields, [curve.up for curve in exact])
         places = interface.positions
         # The error is nothing where there is no reference.
         for quantity in ("friction", "pressure"):
@@ -88,9 +88,10 @@ class ContactForce(View):
         self.draw("ghost", *_curves(places, past, column), self.ghost_name)
         self._show_beside(frame, float(run.instants[run.column(selection.phase)]))
 
-    def _scale(self, run: Run, name: str, fields: InterfaceFields, exact: list[Floats]) -> None:
+    def _scale(self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
-        key = (*key_of(run), name)
+        run = frame.run
+        key = (*frame.stage[:2], name)
         if key != self._scaled_for:
             known = run.reference.get(name, fields)
             bound = run.interfaces[name].bound

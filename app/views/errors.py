@@ -10,7 +10,7 @@ from bokeh.models import FixedTicker, PrintfTickFormatter
 from app.frame import Floats, Frame, Selection
 from app.views.axis import rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import View, hover, key_of
+from app.views.view import View, hover
 from app.worker.references import has_reference
 
 LEAST, MOST = 1e-4, 10.0
@@ -62,7 +62,6 @@ class Convergence(ErrorPlot):
         self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         self.add("answer", "Scatter", size=11, **ring)
-        self.mark({"answer": ERROR}, marker="circle", fill_alpha=0, line_width=2.5)
         titles = {column: title for column, (title, *_) in CURVES.items()}
         self.legend(**titles, answer="answer", ghost="ghost")
         hover(made, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
@@ -129,5 +128,5 @@ class ErrorTime(ErrorPlot):
         seconds = [run.reference_seconds] if np.isfinite(run.reference_seconds) else []
         self.fill("reference", x=seconds)
         if len(now["x"]) or len(ghosts["x"]):
-            self.x.hold(key_of(run), now["x"], ghosts["x"], seconds)
+            self.x.hold(newest.stage, now["x"], ghosts["x"], seconds)
             self.y.hold(run.number, now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME])

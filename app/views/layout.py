@@ -31,55 +31,51 @@ NARROW = 560.0
 """Width below which keys take two lines, px."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Layout:
     """From metres to pixels."""
 
     width: float
     height: float
     """Of the figure, px."""
-    length: float
+    description: Description
     top: float
-    """Of the bodies as they are drawn, m."""
-    scale: tuple[float, float]
+    """Height of the bodies as they are drawn, m."""
+    scale: Array
     """Pixels per metre, along x and y; these differ for rods alone."""
-    origin: tuple[float, float]
+    origin: Array
     """The middle of the foot of the bodies, px."""
     arrow: float
     """Length of an arrow at its largest value, px."""
-    motion: tuple[float, float]
+    motion: Array
     """Pixels that the largest displacement takes at most, along x and y."""
     key_rows: int
     """Of the keys below the bodies; 0 where these stand at their left."""
 
     @property
     def size(self) -> Array:
-        """Length and height of the bodies, px."""
-        return np.array([self.length, self.top]) * self.scale
+        """Length and height of the bodies, m."""
+        return np.array([self.description.length, self.top])
 
     def local(self, places: Array) -> Array:
         """Pixels from the middle of the foot, along the bodies, of places in m, (..., 2)."""
-        return np.asarray((places - np.array([0.5 * self.length, 0.0])) * self.scale)
+        return np.asarray((places - self.size * [0.5, 0.0]) * self.scale)
 
     def shift(self, moved: Array, factor: float) -> Array:
         """Pixels of magnified displacements, (..., 2)."""
-        return np.asarray(moved * np.multiply(factor, self.scale))
+        return np.asarray(moved * (factor * self.scale))
 
     def page(self, local: Array, tilt: float) -> Array:
         """Pixels of the figure, of such that are turned with the bodies by an angle, rad."""
         return turned(local, tilt) + self.origin
 
-    def fitting(self, largest: tuple[float, float], factor: float | None) -> float:
+    def fitting(self, largest: Array, factor: float | None) -> float:
         """Factor on displacements: the present one as long as motion is seen and has room.
 
         That depends on the largest displacement over all instants, along x and y, m.
         """
-        shares = [
-            size * scale / room
-            for size, scale, room in zip(largest, self.scale, self.motion, strict=True)
-            if room > 0.0
-        ]
-        share = max(shares)
+        room = np.where(self.motion > 0.0, self.motion, np.inf)
+        share = float((largest * self.scale / room).max())
         if share <= 0.0:
             return factor or 1.0
         if factor is not None and 0.2 <= factor * share <= 1.8:
@@ -130,18 +126,14 @@ def _layout(geometry: Geometry, width: float, height: float, key_rows: int) -> L
     motion = np.array([0.04 * width, (0.12 if is_long else 0.06) * height])
     if description.height is None:
         motion[1] = 0.0
-    across, up = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
+    scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
     if description.height is None:
-        up = min(up, THICK * description.bodies / top)
+        scale[1] = min(scale[1], THICK * description.bodies / top)
     else:
-        across = up = min(across, up)
-    free = room - (high - low) * [across, up]
-    x, y = left + 0.5 * free[0] - low[0] * across, below + 0.5 * free[1] - low[1] * up
-    motion[0] = min(motion[0], 0.12 * description.length * across)
-    return Layout(
-        width, height, description.length, top, (float(across), float(up)), (x, y), arrow,
-        (float(motion[0]), float(motion[1])), key_rows,
-    )  # fmt: skip
+        scale[:] = scale.min()
+    origin = np.array([left, below]) + 0.5 * (room - (high - low) * scale) - low * scale
+    motion[0] = min(motion[0], 0.12 * description.length * scale[0])
+    return Layout(width, height, description, top, scale, origin, arrow, motion, key_rows)
 
 
 def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array]:

@@ -22,7 +22,7 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
-from app.views.view import ExtraView, View, end_of, hover, key_of
+from app.views.view import ExtraView, View, hover
 from app.worker.geometry import thinned
 from solver.study.quantities.cycles import cycles_in
 
@@ -59,7 +59,7 @@ class HysteresisLoop(View):
         beside = _beside(frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
             curves = frame.loop[row], exact[row], reference[row], beside[row]
-            axis.hold(end_of(frame), *curves, [0.0], margin=0.08)
+            axis.hold(frame.stage, *curves, [0.0], margin=0.08)
         is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
         self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
@@ -118,7 +118,7 @@ class Cycles(CyclePlot):
         self.x.rename(*run.across)
         self.y.rename(*run.up)
         for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
-            axis.hold(key_of(run), values, margin=0.08)
+            axis.hold(frame.stage, values, margin=0.08)
         x, y = self.x(loop[0]), self.y(loop[1])
         count, columns = len(cycles["energy"]), cycles["columns"]
         shown = thinned(count, MOST_LOOPS)
@@ -145,7 +145,7 @@ class CycleEnergy(CyclePlot):
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
-        self.y.hold(key_of(frame.run), [0.0], energy, 1.1 * energy)
+        self.y.hold(frame.stage, [0.0], energy, 1.1 * energy)
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
 
 

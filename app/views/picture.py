@@ -42,8 +42,6 @@ class Picture:
     frame: Frame
     column: int
     """Of the instant in it."""
-    geometry: Geometry
-    """That of its run, with what is to be seen of what acts."""
     layout: Layout
     factor: float
     """Where bodies lie, and how much displacements are magnified."""
@@ -53,7 +51,8 @@ class Picture:
     """Settings behind what acts, by where it does."""
 
     def __post_init__(self) -> None:
-        self._described = self.geometry.description
+        self._geometry = self.frame.run.geometry
+        self._described = self.layout.description
         # Values of a description are not thinned.
         instant = self.frame.run.instants[self.column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
@@ -63,25 +62,26 @@ class Picture:
     @cached_property
     def nodes(self) -> Array:
         """Deformed nodes, px from the middle of the foot."""
-        return self._moved(self.geometry.nodes, self.frame.deformed.nodes[:, :, self.column])
+        return self._moved(self._geometry.nodes, self.frame.deformed.nodes[:, :, self.column])
 
     @cached_property
     def points(self) -> Array:
         """Contact points, px from the middle of the foot."""
-        places = self.geometry.points
+        places = self._geometry.points
         local = self._moved(places, self.frame.deformed.points[:, :, self.column])
         if self._described.height is not None and self._described.bodies == 1:
             # Of rods, a band is thinner than the room that is left for it.
-            local[places[:, 1] <= 1e-6 * self.layout.length, 1] -= 0.5 * BAND
+            local[places[:, 1] <= 1e-6 * self._described.length, 1] -= 0.5 * BAND
         return local
 
     @cached_property
     def arrows(self) -> list[Arrows]:
         """Those of all that acts."""
-        size, described = [self.layout.length, self.layout.top], self._described
-        places = [self._follow(act.places * size) for act in described.acts]
-        given = described, self.layout, self.peaks, self._now
-        return [arrows_of(*each, *given) for each in zip(described.acts, places, strict=True)]
+        layout, peaks, now = self.layout, self.peaks, self._now
+        return [
+            arrows_of(act, self._follow(act.places * layout.size), layout, peaks, now)
+            for act in self._described.acts
+        ]
 
     @cached_property
     def handles(self) -> list[Handle]:
@@ -92,7 +92,7 @@ class Picture:
             if name is not None and len(arrows.handles):
                 place = arrows.handles[arrows.longest]
                 handles.append(Handle(name, place, color_of(arrows.act), arrows.scaled))
-        gap = gap_of(self._described, self.layout, self.factor)
+        gap = gap_of(self.layout, self.factor)
         if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
             depth = -float(gap[-1, 1])
             # What is behind a gap is a radius: the larger, the shallower.
@@ -101,7 +101,7 @@ class Picture:
             )
         if "break" in self.behind and len(self._at_break):
             place = self.nodes[self._at_break].mean(axis=(0, 1))
-            scale, middle = self.layout.scale[0], 0.5 * self.layout.length
+            scale, middle = self.layout.scale[0], 0.5 * self._described.length
             handles.append(
                 Handle(self.behind["break"], place, FORCE, lambda _, at: at[0] / scale + middle)
             )
@@ -109,7 +109,7 @@ class Picture:
 
     def columns(self, *, with_status: bool) -> dict[str, Columns]:
         """Columns of all sources, by their names, with the status of what rubs or without."""
-        parts = _drawn(self.geometry.outlines, self.nodes)
+        parts = _drawn(self._geometry.outlines, self.nodes)
         image = np.zeros((0, 2))
         if any(hold.kind == "image" for hold in self._described.holds):
             # The bodies go on below, turned by half a turn, as far as there is room.
@@ -135,8 +135,8 @@ class Picture:
         """Outline of the bodies as they begin to collapse, on the page."""
         size = float(np.abs(moved).max(initial=0.0)) or 1.0
         shown = MECHANISM * self.layout.top / size * moved
-        nodes = self.layout.local(self.geometry.nodes + shown)
-        return _pair(self._page(_drawn(self.geometry.outlines, nodes)))
+        nodes = self.layout.local(self._geometry.nodes + shown)
+        return _pair(self._page(_drawn(self._geometry.outlines, nodes)))
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""
@@ -155,7 +155,7 @@ class Picture:
 
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
-        away = ((self.geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
+        away = ((self._geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
         return self._moved(places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column])
 
     @cached_property
@@ -164,7 +164,7 @@ class Picture:
         if self._described.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
         body, place = self._described.broken
-        x, y = self.geometry.nodes.T
+        x, y = self._geometry.nodes.T
         is_there = np.abs(x - place) < 1e-4 * self._described.length
         row = np.floor(y * self._described.bodies / self.layout.top)
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
@@ -186,7 +186,7 @@ class Picture:
             for each in self.arrows
         ]
         return [
-            (_drawn(self.geometry.rims, self.nodes), EDGE, 1.4),
+            (_drawn(self._geometry.rims, self.nodes), EDGE, 1.4),
             (self._holds(), EDGE, 1.3),
             *bands,
             (gapped(self.nodes[self._at_break]), ERROR, 3.0),
@@ -194,19 +194,20 @@ class Picture:
         ]
 
     def _holds(self) -> Array:
-        feet = self._follow(np.array([[0.0, 0.0], [self.layout.length, 0.0]]))
-        strokes = strokes_of(self._described, self.layout, self.factor, self._now, feet)
+        layout, length = self.layout, self._described.length
+        feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
+        strokes = strokes_of(layout, self.factor, self._now, feet)
         if self._described.tilt is not None:
-            corner = np.array([-0.5 * self.layout.size[0] - 21.0, -5.0])
-            level = turned(np.array([0.9 * self.layout.size[0], 0.0]), -self.tilt)
+            corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
+            level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
         return np.concatenate([np.zeros((0, 2)), *strokes])
 
     def _bands(self) -> Strokes:
         """What rubs, by its status, on a rim where there is contact."""
-        status, chains = self.frame.deformed.status[:, self.column], self.geometry.chains
+        status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
         lines = bands(self.points, chains, status)
-        width = min(BAND, 0.35 * self.layout.size[1] / self._described.bodies)
+        width = min(BAND, 0.35 * self.layout.top * self.layout.scale[1] / self._described.bodies)
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
         rims = [line for kind, line in lines.items() if kind != OPEN]
@@ -217,10 +218,10 @@ class Picture:
 
     def _words(self) -> Columns:
         """What acts, and the slope; moved inwards where it would be cut."""
-        words, layout = words_of(self._described, self.layout, self.arrows, self._now), self.layout
+        words, layout = words_of(self.layout, self.arrows, self._now), self.layout
         places = [self._page(word.place) for word in words]
         if self._described.tilt is not None:
-            corner = np.array([0.5 * layout.size[0] + 30.0, 4.0])
+            corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, 4.0])
             angle = number(float(np.degrees(self.tilt)))
             words.append(Word(f"slope {angle}°", corner, "left", FORCE))
             places.append(corner + layout.origin)

@@ -13,7 +13,7 @@ from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.axis import edges, extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.view import ExtraView, color_bar, end_of, hover, joined, key_of
+from app.views.view import ExtraView, color_bar, hover, joined
 from app.worker.geometry import MOST_WIRES
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
@@ -131,7 +131,7 @@ class StressRanges(RopePlot):
     def _show(self, found: Any, frame: Frame, selection: Selection) -> None:
         count = len(found["wire_layers"])
         self.x.span(0.5, count + 0.5)
-        self.y.hold(key_of(frame.run), [0.0], 1.08 * found["ranges"])
+        self.y.hold(frame.stage, [0.0], 1.08 * found["ranges"])
         colors = [LAYERS[layer % len(LAYERS)] for layer in found["wire_layers"]]
         top, layer = self.y(found["ranges"]), found["wire_layers"] + 1
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
@@ -158,7 +158,7 @@ class AxialForces(ExtraView):
         run = frame.run
         column, known = run.column(selection.phase), run.known("axial force")
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
-        key = (*end_of(frame), *names)
+        key = (*frame.stage, *names)
         along = run.interfaces[selection.interface_of(run)].positions
         bent = [] if stuck is None else [stuck]
         self.x.hold(key, x, *([] if bent else [along]))

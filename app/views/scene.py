@@ -84,11 +84,11 @@ class Scene(View):
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
-            self._factor = layout.fitting((float(largest[0]), float(largest[1])), self._factor)
+            self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
         self.picture = picture = Picture(
-            frame, run.column(selection.phase), geometry, layout, self._factor, self._peaks,
+            frame, run.column(selection.phase), layout, self._factor, self._peaks,
             run.settings.behind(),
         )  # fmt: skip
         for name, columns in picture.columns(with_status=self.shows_status).items():

@@ -31,7 +31,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
-from app.frame import Bytes, Floats, Frame, Run, Selection
+from app.frame import Bytes, Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis, edges
 from app.views.colors import CUT, KEYS, STATUS
@@ -89,7 +89,7 @@ class View:
         self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
         self._filter = AllIndices()
         self._make()
-        self._size_type()
+        self.magnify(self._type)
         return self._made
 
     def magnify(self, size: str) -> None:
@@ -131,7 +131,6 @@ class View:
         made = self._made = figure(
             sizing_mode="stretch_both",
             min_height=120,
-            styles={"font-size": TEXT},
             tools=TOOLS,
             active_drag=None,
             active_scroll="wheel_zoom",
@@ -330,13 +329,3 @@ def legend(made: figure, items: Sequence[Any], place: str = "above") -> Legend:
     )
     made.add_layout(box, place)
     return box
-
-
-def key_of(run: Run) -> tuple[int, bool]:
-    """What units and ends of axes are chosen for: a run, and anew once its reference is known."""
-    return run.number, bool(run.reference)
-
-
-def end_of(frame: Frame) -> tuple[int, bool, bool]:
-    """The same, and anew for the last iterate, as those before may have been far from it."""
-    return (*key_of(frame.run), frame.status is not None)

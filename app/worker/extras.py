@@ -21,13 +21,15 @@ from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
-from solver.study.comparison import Comparison, OtherResults
+from solver.study.comparison import Comparison
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of
 from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
+
+_comparison = lru_cache(maxsize=1)(Comparison)
 
 MOST_SPECTRA, MOST_VALUES = 24, 64
 """Substructures, and singular values of each, that are shown at most."""
@@ -199,11 +201,6 @@ def _pairs(sizes: Sizes) -> Floats:
     return floats(np.stack([sizes.numbers, sizes.errors]))
 
 
-@lru_cache(maxsize=1)
-def _laid_beside(brought: OtherResults, sampler: Sampler, interface: str) -> Comparison:
-    return Comparison(brought, sampler.problem, interface)
-
-
 def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """Results of another program and their distance to the iterate, if they are of its scene.
 
@@ -217,7 +214,7 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
         return _loop_beside(brought, sampler, iterate)
     if brought is None or brought.scene != sampler.settings.scene:
         return None
-    laid = _laid_beside(brought, sampler, needs.interface)
+    laid = _comparison(brought, sampler.problem, needs.interface)
     return {
         "name": brought.source,
         "quantity": brought.quantity,

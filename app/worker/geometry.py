@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
 from solver.discrete.plane_parts import Inside
@@ -27,13 +27,10 @@ MOST_POINTS = 201
 """Contact points of an interface, and nodes of a rod, that are shown at most."""
 MOST_WIRES = 6
 """Wires whose axial force is shown at most, beside a broken one."""
-NONE = -1
-"""In place of a degree of freedom."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
-Indices = NDArray[np.intp]
-BREAK = -1
-"""Stands between two lines in a list of nodes."""
+NONE = -1
+"""In place of a degree of freedom, and between two lines in a list of nodes."""
 StressField = tuple[str, str, Floats]
 """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 Extras = dict[str, Callable[[Iterate, Needs], Any]]
@@ -98,44 +95,31 @@ class Drawn:
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         raise NotImplementedError
 
-    def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of the nodes, of bodies in the plane, by that of degrees of freedom."""
-        raise NotImplementedError
-
-    @property
-    def extras(self) -> Extras:
-        """What only some views need of the bodies."""
-        raise NotImplementedError
-
 
 class DrawnRods(Drawn):
     """Rods as rectangles above each other; they rub between them, or on what is below."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         description = settings.structure().described()
-        per_rod = len(problem.substructures) // description.bodies
-        length, between = description.length, 0.5 * (PITCH - THICKNESS)
-        kept, corners, parts, lows, elements = [], [], [], [], []
+        rods, length = problem.substructures, description.length
+        per_rod = len(rods) // description.bodies
+        lows = PITCH * length * (np.arange(len(rods)) // per_rod)
         heights = np.zeros(problem.n_dofs)
-        size = first_element = 0
-        for number, part in enumerate(problem.substructures):
-            places = thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))
-            low = PITCH * length * (number // per_rod)
-            heights[part.dofs] = low - between * length
-            first = size + 2 * np.arange(len(places) - 1)
-            corners.append(np.stack([first, first + 2, first + 3, first + 1], axis=1))
-            parts.append(np.full(len(places) - 1, number))
-            kept.append(np.repeat(part.dofs[places], 2))
-            lows.append(np.tile([low, low + THICKNESS * length], len(places)))
-            elements.append(first_element + (places[:-1] + places[1:]) // 2)
-            size += 2 * len(places)
-            first_element += len(part.dofs) - 1
-        self._along = np.concatenate(kept)
-        self._force, self._elements = AxialForce(problem, columns), np.concatenate(elements)
+        for rod, low in zip(rods, lows, strict=True):
+            heights[rod.dofs] = low - 0.5 * (PITCH - THICKNESS) * length
+        kept = [thinned(len(rod.dofs), max(MOST_POINTS // per_rod, 2)) for rod in rods]
+        parts = np.repeat(np.arange(len(rods)), list(map(len, kept)))
+        dofs = np.concatenate([rod.dofs[own] for rod, own in zip(rods, kept, strict=True)])
+        first = np.flatnonzero(parts[1:] == parts[:-1])
+        quads = (2 * first[:, None] + [0, 2, 3, 1]).astype(np.int32)
+        y = lows[parts, None] + [0.0, THICKNESS * length]
+        self._along = np.repeat(dofs, 2)
+        nodes = np.stack([problem.positions[self._along], y.ravel()], axis=1)
+        elements = np.cumsum([0, *(len(rod.dofs) - 1 for rod in rods[:-1])])
+        middles = [n + (own[:-1] + own[1:]) // 2 for n, own in zip(elements, kept, strict=True)]
+        self._force, self._elements = AxialForce(problem, columns), np.concatenate(middles)
         self._broken = None if description.broken is None else description.broken[0]
-        nodes = np.stack([problem.positions[self._along], np.concatenate(lows)], axis=1)
-        quads = np.concatenate(corners).astype(np.int32)
-        mesh = floats(nodes), quads, np.concatenate(parts)
+        mesh = floats(nodes), quads, parts[first]
         super().__init__(problem, description, columns, mesh, heights)
 
     @property
@@ -301,8 +285,8 @@ def outlines_of(nodes: Array, quads: NDArray[np.int32], parts: Indices) -> tuple
     _, place = np.unique(places, axis=0, return_inverse=True)
     own = [_boundary(quads[parts == part], np.arange(len(nodes))) for part in np.unique(parts)]
     rims = _boundary(np.concatenate(own), place.ravel())
-    loops = [np.append(loop, BREAK) for sides in own for loop in _loops(sides)]
-    return np.concatenate(loops), np.insert(rims, 2, BREAK, axis=1).ravel()
+    loops = [np.append(loop, NONE) for sides in own for loop in _loops(sides)]
+    return np.concatenate(loops), np.insert(rims, 2, NONE, axis=1).ravel()
 
 
 def _boundary(cells: Indices, place: Indices) -> Indices:

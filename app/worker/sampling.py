@@ -75,10 +75,11 @@ class Sampler:
         )
         self.run = replace(self.run, exact=exact)
         if reference is not None:
-            contact, loop = self._contact(reference, self.problem.rubbing), self._loop(reference)
-            seconds = reference.seconds
             self.run = replace(
-                self.run, reference=contact, reference_loop=loop, reference_seconds=seconds
+                self.run,
+                reference=self._contact(reference, self.problem.rubbing),
+                reference_loop=self._loop(reference),
+                reference_seconds=reference.seconds,
             )
 
     def collapse(self, collapse: Collapse) -> None:

@@ -19,13 +19,12 @@ from app.messages import Needs
 from app.worker.geometry import (
     MOST_POINTS,
     Extras,
-    Indices,
     StressField,
     floats,
     outlines_of,
     thinned,
 )
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import (
