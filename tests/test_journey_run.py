@@ -109,7 +109,8 @@ def test_what_is_typed_runs_or_is_refused_beside_it_and_leaves_the_pinned_run_an
     holds(page, f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
 
     hidden = f"[...{legend}.values()].filter(m => m.type === 'GlyphRenderer' && !m.visible).length"
-    for count in (1, 0):
+    # The curve and its copy in the legend.
+    for count in (2, 0):
         page.get_by_text("closed form", exact=True).first.click()
         holds(page, f"{hidden} === {count}")
 

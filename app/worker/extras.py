@@ -21,15 +21,13 @@ from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
-from solver.study.comparison import Comparison
+from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of
 from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
-
-_comparison = lru_cache(maxsize=1)(Comparison)
 
 MOST_SPECTRA, MOST_VALUES = 24, 64
 """Substructures, and singular values of each, that are shown at most."""
@@ -214,7 +212,7 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
         return _loop_beside(brought, sampler, iterate)
     if brought is None or brought.scene != sampler.settings.scene:
         return None
-    laid = _comparison(brought, sampler.problem, needs.interface)
+    laid = _comparison(brought, sampler, needs.interface)
     return {
         "name": brought.source,
         "quantity": brought.quantity,
@@ -224,6 +222,11 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
         "distance": laid.of(iterate),
         "interface": laid.interface,
     }
+
+
+@lru_cache(maxsize=1)
+def _comparison(brought: OtherResults, sampler: Sampler, interface: str) -> Comparison:
+    return Comparison(brought, sampler.problem, interface)
 
 
 def _loop_beside(
