@@ -251,9 +251,7 @@ class ClassMember(param.Parameterized):
             values |= {name: getattr(leader, name) for name in SHARED}
         # Watchers of what is as it was have nothing to do.
         changed = {name: value for name, value in values.items() if value != getattr(state, name)}
-        # A picture is sent at once: without the hold it would overtake figures that come with it.
-        with pn.io.hold():
-            state.param.update(**changed)
+        state.param.update(**changed)
         self.message = self._sentence(room)
         if room.is_alone and not room.is_over:
             self._document.add_timeout_callback(self._take, int(1000 * KEPT) + 1000)

@@ -93,15 +93,13 @@ class Page:
     def loaded(self) -> None:
         """Show the figures, and let the first run go on or follow a class: a browser is there."""
         self._supervisor.open()
-        # A picture is sent at once: without the hold it would overtake the figures.
-        with pn.io.hold():
-            self._live.open()
-            if not self.state.room:
-                if not self._iteration:
-                    self.state.param.trigger("pace")
-            elif not self._member.enter(self.state.room):
-                self._supervisor.begin()
-                self.state.run()
+        self._live.open()
+        if not self.state.room:
+            if not self._iteration:
+                self.state.param.trigger("pace")
+        elif not self._member.enter(self.state.room):
+            self._supervisor.begin()
+            self.state.run()
 
     def end(self, _context: Any) -> None:
         """Leave nothing behind."""

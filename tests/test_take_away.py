@@ -10,6 +10,7 @@ import re
 import runpy
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -53,7 +54,8 @@ def page(scene: str) -> TakeAway:
     _, frame = ended(scene)
     state = PageState(frame.run.settings)
     state.newest = state.frame = frame
-    display = Display(state, None, lambda: None)
+    at_once = SimpleNamespace(add_next_tick_callback=lambda act: act())
+    display = Display(state, at_once, lambda: None)
     kinds = [kind for card in CARDS for kind in card if kind.applies(state.settings)]
     views = [kind(state) for kind in (Scene, Timeline, *kinds)]
     assert all(view.figure is not None for view in views)
