@@ -1,8 +1,8 @@
 """The incremental reference where contacts open or two sides rub: instant by instant, exact.
 
 The structure is condensed onto the jumps of its contacts once, for all instants together. Then
-every instant seeks the states of the jumps (`solver.reference.newton`), and is judged by how far it
-is from equilibrium and laws.
+every instant seeks the states of the jumps (`solver.reference.instants`), and is judged by how far
+it is from equilibrium and laws.
 
 In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the laws of
 LATIN: friction opposes the increment of the tangential jump.
@@ -20,11 +20,11 @@ from solver.arrays import Array, Flags
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.laws.play import follow, play
-from solver.reference.changing_friction import NewtonWithChangingFriction
 from solver.reference.condensation import Condensation, NoReferenceError
 from solver.reference.distance import broken_laws
+from solver.reference.instants import Instants, Marched
 from solver.reference.limit_analysis import Collapse, collapse_of
-from solver.reference.newton import CONVERGED, Marched, Newton
+from solver.reference.newton import CONVERGED
 from solver.reference.rules import Rules, States, rules_of
 from solver.reference.solution import Interrupted, Reference
 
@@ -92,8 +92,7 @@ class IncrementalContact:
         problem, condensed, rules = self._problem, self._condensed, self._rules
         own = rules.kept(condensed.moving)
         guesses = None if guess is None else guess[condensed.moving]
-        kind = NewtonWithChangingFriction if own.ages or np.isfinite(own.cap).any() else Newton
-        newton = kind(condensed, own, problem.rest, guesses, self._may_hold)
+        instants = Instants(condensed, own, problem.rest, guesses, self._may_hold)
         n_moving, sizes = len(condensed.moving), condensed.gauge.shape
         done = Marched(
             *(np.zeros((size, problem.n_instants)) for size in (n_moving, n_moving, *sizes))
@@ -102,11 +101,11 @@ class IncrementalContact:
         for instant in range(problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and newton.system.solutions >= most:
+            if most is not None and instants.system.solutions >= most:
                 break
-            for field, values in zip(done, newton(instant), strict=True):
+            for field, values in zip(done, instants(instant), strict=True):
                 field[:, instant] = values
-            ambiguous[instant] = newton.system.turned
+            ambiguous[instant] = instants.system.turned
             reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
@@ -114,8 +113,8 @@ class IncrementalContact:
         return replace(
             solution,
             ambiguous=ambiguous & solution.converged,
-            steps=newton.system.solutions,
-            jumps_at=newton.jumps_at,
+            steps=instants.system.solutions,
+            jumps_at=instants.jumps_at,
             collapse=self._collapse,
             is_lost=bool(np.any(reached & ~solution.converged)),
             seconds=time.perf_counter() - start,

@@ -65,18 +65,13 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
     """
     ground = jumps.shape[1]
     edges = graph_of(jumps)
-    _, number = trees_of(edges, ground)
+    count, number = trees_of(edges, ground)
     _, roots = np.unique(number, return_index=True)
-    roots[number[ground]] = ground
-    return _along_branches(jumps, edges, roots), _of_whole_trees(number)
-
-
-def _of_whole_trees(number: Indices) -> sparse.csr_array:
-    """Move every tree as one; `number` is the tree of every point, the last of all the ground."""
-    trees, standing = number[:-1], number[-1]
-    moved = np.flatnonzero(trees != standing)
-    columns = trees[moved] - (trees[moved] > standing)
-    return sparse.csr_array((np.ones(len(moved)), (moved, columns)), (len(trees), number.max()))
+    standing = number[ground]
+    roots[standing] = ground
+    points = np.arange(ground)
+    whole = sparse.csr_array((np.ones(ground), (points, number[:-1])), (ground, count))
+    return _along_branches(jumps, edges, roots), whole[:, np.arange(count) != standing]
 
 
 def _along_branches(

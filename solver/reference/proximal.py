@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
-from solver.reference.rules import Increment, Rules, Sides, States
+from solver.reference.rules import Rules, Sides, Solution, States
 
 FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
 """Springs, as shares of the stiffness of each jump alone."""
@@ -28,17 +28,17 @@ STEPS = 60
 MOST_JUMPS = 4000
 """Jumps up to which it is tried: it keeps two more matrices of their size."""
 
-Solved = tuple[States, Increment]
-
 
 def approach(
     condensed: Condensation,
     rules: Rules,
     states: States,
     sides: Sides,
-    seek: Callable[[LinearSystem, States, Sides], Solved | None],
+    seek: Callable[[LinearSystem, States, Sides], Solution | None],
 ) -> Iterator[States]:
     """States of an instant that have come to rest, each nearer to those without springs.
+
+    None where no body is loose, or there are too many jumps.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def approach(
     seek
         Newton's method from some states, None where it cycles.
     """
-    if len(condensed.stiffness) > MOST_JUMPS:
+    if not condensed.gauge.size or len(condensed.stiffness) > MOST_JUMPS:
         return
     alone, share = np.diagonal(condensed.stiffness), FIRST
     moved = np.zeros_like(sides.load)
@@ -62,7 +62,7 @@ def approach(
         pulled = replace(sides, load=sides.load + springs * moved)
         solved = seek(sprung, states, pulled)
         if solved is not None:
-            before, states, moved = states, solved[0], solved[1].strained
+            before, states, moved = states, solved.states, solved.step.strained
             share = max(SOFTER * share, SOFTEST)
             if np.array_equal(states, before):
                 yield states

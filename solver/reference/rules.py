@@ -8,7 +8,7 @@ where the contact is open or there is no friction.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -102,10 +102,21 @@ class Rules:
         """Whether friction changes with slip anywhere."""
         return any(set(strength.factors) != {1.0} for strength in self.strengths)
 
-    @property
-    def is_linear(self) -> bool:
-        """Whether friction is r + mu f_n, whatever was before: no strength, cap or bond."""
-        return not (self.ages or self.bonds.size or np.isfinite(self.cap).any())
+    @cached_property
+    def softens(self) -> bool:
+        """Whether friction falls with slip anywhere."""
+        return any(strength.slopes.min() < 0.0 for strength in self.strengths)
+
+    @cached_property
+    def is_curved(self) -> bool:
+        """Whether friction is not linear in pressing force and slip: it changes, or has a cap."""
+        return self.ages or bool(np.isfinite(self.cap).any())
+
+    def without_slip(self, factor: Array) -> Rules:
+        """Rules of a friction that slip has changed by a factor, (n,), and changes no more."""
+        endless, plain = np.full_like(self.cap, np.inf), np.zeros_like(self.strength)
+        friction = self.friction * factor
+        return replace(self, friction=friction, cap=endless, strength=plain, strengths=(PLAIN,))
 
     def factor(self, gone: Array) -> Array:
         """Factor on the friction bound after accumulated slip, shape (n, ...) both."""
@@ -200,6 +211,16 @@ class Sides:
     bound: Array
     held: Array
 
+    def towards(self, end: Sides, share: float) -> Sides:
+        """Right sides at a share of the way to others."""
+        if share == 1.0:
+            return end
+        return Sides(
+            self.load + share * (end.load - self.load),
+            self.bound + share * (end.bound - self.bound),
+            self.held + share * (end.held - self.held),
+        )
+
 
 class Increment(NamedTuple):
     """What an instant adds to the one before, and the forces at its end.
@@ -218,6 +239,14 @@ class Increment(NamedTuple):
     force: Array
     strained: Array
     motion: Array
+
+
+class Solution(NamedTuple):
+    """States of an instant, what it adds, and the slip of tangential jumps, (n,)."""
+
+    states: States
+    step: Increment
+    slip: Array
 
 
 class Starts:

@@ -177,7 +177,13 @@ def slip_space(problem: Problem) -> SlipSpace:
     condensed = Condensation(problem)
     rules = rules_of(problem).kept(condensed.moving)
     is_whole = len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
-    if not is_whole or rules.compliance.any() or not rules.is_linear or rules.smooth.any():
+    if (
+        not is_whole
+        or rules.compliance.any()
+        or rules.is_curved
+        or rules.bonds.size
+        or rules.smooth.any()
+    ):
         raise NoReferenceError(
             "The planes are those of Coulomb's friction, where forces follow from slips."
         )

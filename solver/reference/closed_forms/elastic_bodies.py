@@ -51,16 +51,16 @@ class HalfPlane:
 
     def pressure(self, place: Array) -> Array:
         """Pressure at places from the middle of the contact, m; Pa."""
-        return self.peak * _root(place / self.half_width)
+        square = np.maximum(self.half_width**2 - place**2, 0.0)
+        return np.asarray(0.5 * self.modulus / self.radius * np.sqrt(square))
 
     def traction(self, place: Array, friction: float, share: float) -> Array:
         """Shear traction under a share of mu P that has grown, Pa; places as above.
 
         It is that of sliding, less the same for what sticks: two square roots.
         """
-        stuck = self.stuck(share)
-        back = stuck / self.half_width * _root(place / stuck) if stuck > 0.0 else 0.0
-        return np.asarray(friction * self.peak * (_root(place / self.half_width) - back))
+        back = replace(self, force=(1.0 - share) * self.force)
+        return friction * (self.pressure(place) - back.pressure(place))
 
     def traction_over(self, place: Array, friction: float, shear: Array) -> Array:
         """Shear traction under a shear force that turns, Pa, shape (n, n_instants).
@@ -81,8 +81,8 @@ class HalfPlane:
             Over time from none on, with the force that presses at hand, shape (n_instants,), N/m.
         """
         level = np.linspace(0.0, 1.0, LEVELS + 1)
-        widths = [replace(self, force=self.force * one) for one in level[1:]]
-        grown = np.stack([np.zeros_like(place), *(one.pressure(place) for one in widths)])
+        widths = [replace(self, force=self.force * share) for share in level]
+        grown = np.stack([width.pressure(place) for width in widths])
         most = friction * self.force
         within = play(np.tile(shear, (len(level), 1)), most * (1.0 - level))
         share = np.diff(within, axis=0) / (most / LEVELS)
@@ -92,10 +92,6 @@ class HalfPlane:
         """What friction takes in a cycle between plus and minus a share of mu P, J/m."""
         bracket = 4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
         return float((friction * self.force) ** 2 / (np.pi * self.modulus) * bracket)
-
-
-def _root(share: Array) -> Array:
-    return np.asarray(np.sqrt(np.maximum(1.0 - share**2, 0.0)))
 
 
 def cantilever(length: float, height: float, young: float, poisson: float) -> float:

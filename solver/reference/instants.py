@@ -1,0 +1,225 @@
+"""Frictional contact through time, each instant from the states of the one before.
+
+Where Newton's method cycles, springs lead loose bodies home (`solver.reference.proximal`), or
+following the solution down from large pressure finds it (`solver.reference.unloading`). Where
+friction softens an instant may have several solutions: the one that goes on from the instant before
+is followed while the load of the instant grows, in steps so small that between their ends no other
+branches off (`solver.reference.stability`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array, at_instant
+from solver.laws import OPEN
+from solver.reference.condensation import Condensation
+from solver.reference.newton import Newton
+from solver.reference.proximal import approach
+from solver.reference.rules import (
+    HELD,
+    Increment,
+    Rules,
+    Sides,
+    Solution,
+    Starts,
+    States,
+    states_at,
+)
+from solver.reference.unloading import unload
+
+PASSES = 30
+"""Times at most that an instant is solved to keep dependent jumps together."""
+TOGETHER = 1e-10
+"""Force that still ties dependent jumps, as a share of the largest load."""
+SHORTEST = 2.0**-12
+"""Share of the load of an instant within which the solution is lost, where it jumps."""
+SLIDES = 100
+"""Slips at most, each with the friction that the one before has left, up to the next solution."""
+
+
+class Marched(NamedTuple):
+    """What every instant adds: slip, force in all, y of the base, motion; (n, n_instants) each."""
+
+    slip: Array
+    force: Array
+    strained: Array
+    motion: Array
+
+
+class Instants:
+    """Jumps and forces of one instant after the other.
+
+    From what rules say of the condensed structure; `rest` is a displacement from which contacts may
+    be guessed, (n_dofs, n_instants), and `guesses` are states to try, (n, n_instants). `may_hold`
+    says whether there may be an equilibrium at an instant, where none is found at once.
+
+    Attributes
+    ----------
+    jumps_at
+        First instant at which no solution goes on from the one before; None while all do.
+    """
+
+    jumps_at: int | None = None
+
+    def __init__(
+        self,
+        condensed: Condensation,
+        rules: Rules,
+        rest: Array | None,
+        guesses: States | None,
+        may_hold: Callable[[int], bool],
+    ) -> None:
+        self._newton = Newton(condensed, rules)
+        self.system = self._newton.system
+        self._may_hold, self._is_lost = may_hold, False
+        self._condensed, self._rules = condensed, rules
+        self._opening, self._force = rules.gap.copy(), np.zeros_like(rules.gap)
+        self._load, self._shift = np.zeros_like(self._newton.strained), np.zeros_like(rules.gap)
+        self._motion, self._intact = np.zeros(condensed.gauge.shape[1]), np.ones_like(rules.gap)
+        self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self._guesses, self._starts = guesses, Starts()
+        if guesses is not None:
+            guesses[rules.smooth] = OPEN
+        self._at_rest: States | None = None
+        if rest is not None:
+            self._at_rest = states_at(condensed.jump(rest)[condensed.moving], rules)
+        has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
+        # Nothing has acted yet: then nothing moves, though a free body might.
+        self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
+
+    def __call__(self, instant: int) -> Marched:
+        """What an instant adds.
+
+        The forces that move nothing are the multipliers that keep dependent jumps together
+        (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
+        """
+        condensed, rules = self._condensed, self._rules
+        if self._is_at_rest[instant]:
+            still = self._force, self._force, self._newton.strained, self._motion
+            return Marched(*map(np.zeros_like, still))
+        load = condensed.load[:, instant] - self._load - self.system.on_base(self._force)
+        before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
+        held = before - np.where(rules.normal, self._opening, 0.0)
+        step = self._together(Sides(load[:, None], self._bound(instant), held[:, None]), instant)
+        self._load, self._shift = condensed.load[:, instant], condensed.shift[:, instant]
+        slip, self._force = step.jump[:, 0] - before, step.force[:, 0]
+        self._opening += slip
+        self._newton.gone += np.abs(slip)
+        self._newton.strained += step.strained[:, 0]
+        self._motion += step.motion[:, 0]
+        opened = self._states[rules.partner[rules.bonds]] == OPEN
+        self._intact[rules.bonds[opened]] = 0.0
+        return Marched(slip, self._force, step.strained[:, 0], step.motion[:, 0])
+
+    def _bound(self, instant: int) -> Array:
+        """Friction force that needs no pressing one, where no bond is broken yet, (n, 1)."""
+        return at_instant(self._rules.bound, instant) * self._intact[:, None]
+
+    def _together(self, sides: Sides, instant: int) -> Increment:
+        """Solve an instant until jumps that depend on each other are together."""
+        condensed, stresses = self._condensed, self._condensed.stresses
+        done, from_guess = self.system.solutions, self._starts.from_guess
+        for _ in range(PASSES):
+            solved = self._solved(sides, instant)
+            if solved is None:
+                # All contacts stay where they are.
+                held = sides.held + (self._rules.normal * self._opening)[:, None]
+                return self.system(np.full_like(self._states, HELD), replace(sides, held=held))
+            self._states, step, _ = solved
+            if not stresses.size:
+                break
+            given = condensed.given[condensed.moving[condensed.base], instant]
+            moved = self._newton.strained + condensed.gauge @ self._motion - given
+            moved += step.strained[:, 0] + condensed.gauge @ step.motion[:, 0]
+            pull = condensed.tie * (stresses @ (stresses.T @ moved))
+            if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest:
+                break
+            sides = replace(sides, load=sides.load - pull[:, None])
+        self._starts.took(self.system.solutions - done, from_guess=from_guess)
+        return step
+
+    def _solved(self, sides: Sides, instant: int) -> Solution | None:
+        """Find the states of the jumps and the step, or None."""
+        condensed, rules, newton = self._condensed, self._rules, self._newton
+        # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
+        # or slips as a whole.
+        given = [states for states in (self._guesses, self._at_rest) if states is not None]
+        known = [states[:, instant] for states in given]
+        guesses = [self._states, *known]
+        # Where there may be several solutions, the one that goes on from the instant before.
+        if self._guesses is not None and self._starts.from_guess and not rules.is_curved:
+            guesses[:2] = guesses[1::-1]
+        still = np.zeros_like(sides.held)
+        nothing = Increment(still, self._force[:, None], still[: len(sides.load)], still[:0])
+        begin = Solution(self._states, nothing, still[:, 0])
+        solved = newton.follow(begin, sides, guesses, rules)
+        if solved is None and rules.is_curved:
+            solved = self._in_parts(begin, sides, known, instant)
+        elif solved is None and not self._is_lost and self._may_hold(instant):
+            seek = partial(newton.seek, near=begin, rules=rules)
+            steps = approach(condensed, rules, self._states, sides, seek)
+            solved = newton.follow(begin, sides, steps, rules)
+            solved = solved or self._unloaded(begin, sides, rules)
+        self._is_lost = self._is_lost or solved is None
+        return solved
+
+    def _unloaded(self, at: Solution, sides: Sides, rules: Rules) -> Solution | None:
+        """Find states and step from large pressure on, or None."""
+        states = unload(self.system, rules, sides)
+        return None if states is None else self._newton.seek(self.system, states, sides, at, rules)
+
+    def _in_parts(
+        self, at: Solution, sides: Sides, known: list[States], instant: int
+    ) -> Solution | None:
+        """Follow the solution from the instant before; where it is lost, look for any."""
+        rules, force = self._rules, self._force
+        held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
+        # Under these nothing is added to the instant before.
+        pulled = -self.system.on_base(force)[:, None]
+        begin = Sides(pulled, self._bound(max(instant - 1, 0)), held[:, None])
+        share, length = 0.0, 0.25
+        while share < 1.0:
+            target = min(share + length, 1.0)
+            part = begin.towards(sides, target)
+            following = self._newton.follow(at, part, [at.states, *known], rules)
+            if following is not None:
+                at, share, length = following, target, 2.0 * length
+            elif length > SHORTEST:
+                length *= 0.25
+            else:
+                if self.jumps_at is None and rules.softens:
+                    self.jumps_at = instant
+                return self._beyond(at, sides, known) if self._may_hold(instant) else None
+        return at
+
+    def _beyond(self, at: Solution, sides: Sides, known: list[States]) -> Solution | None:
+        """A stable solution beyond one that is lost, or None.
+
+        With the friction that slip so far has left the next slip is larger, and so on up to the
+        nearest solution; Newton's method is tried once the same contacts slip again. What the last
+        friction alone comes to is the last resort.
+        """
+        gone = self._newton.gone
+        lefts = (self._rules.factor(gone + np.abs(at.slip)) for _ in range(SLIDES))
+        last = self._rules.factor(np.full_like(gone, np.inf))
+        for factor in chain(lefts, [last]):
+            before, rules = at.states, self._rules.without_slip(factor)
+            self.system.set_friction(rules.friction, np.zeros_like(factor))
+            given = replace(sides, bound=sides.bound * factor[:, None])
+            slid = self._newton.follow(at, given, [before, *known], rules)
+            slid = slid or self._unloaded(at, given, rules)
+            if slid is None:
+                return None
+            at = slid
+            if factor is last or np.array_equal(at.states, before):
+                stable = self._newton.stable(at, sides)
+                if stable is not None:
+                    return stable
+        return None
