@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import panel as pn
@@ -61,7 +61,7 @@ class Display:
 
     def __init__(self, state: PageState, document: Any, also: Callable[[], None]) -> None:
         self._state, self._document, self._also = state, document, also
-        self.views: Sequence[View] = ()
+        self.views: list[View] = []
         self._is_due = self._is_settling = False
         self._sent_at = self._took = 0.0
         self.pulse = Pulse(name="pulse")
@@ -69,11 +69,13 @@ class Display:
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
         state.param.watch(lambda *events: self._update(), ["frame", "selection", "ghost"])
 
-    def look_at(self, views: Sequence[View]) -> None:
+    def look_at(self, views: list[View]) -> None:
         """Have other views be in sight; they are painted once the browser has their figures.
 
         What is new on a page is sent at the end of a callback, a picture at once.
         """
+        if views == self.views:
+            return
         self.views, self._is_due = views, True
         self._state.needs = frozenset(need for view in views for need in view.needs)
         if views and not self._is_settling:
