@@ -242,7 +242,7 @@ class Increment(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """States of an instant, what it adds, and the slip of tangential jumps, (n,)."""
+    """States of an instant, what it adds, and (n,) slips of the jumps where friction changes."""
 
     states: States
     step: Increment
