@@ -87,7 +87,7 @@ class Newton:
             # Those with springs count, too.
             self.system.solutions += system is not self.system
             corrected = self._corrected(states, step, tangent)
-            if rules.is_curved:
+            if self._rules.is_curved:
                 slip = np.where(rules.normal, 0.0, (step.jump - sides.held)[:, 0])
             force, reached = step.force[:, 0], Solution(states, step, slip)
             if np.array_equal(corrected, states) and self._obeys(system, reached, sides, rules):
