@@ -51,7 +51,8 @@ class CoarseProblem:
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
             self._members.append(_Member(group, rows, local, np.asfortranarray(forces)))
         self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
-        system = self._spread @ sparse.block_diag(systems, format="csr") @ self._spread.T
+        whole = sparse.block_diag(list(map(sparse.coo_array, systems)), format="csr")
+        system = self._spread @ whole @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
         ends = accumulate((member.size for member in self._members), initial=0)
         self._places = [slice(first, last) for first, last in pairwise(ends)]
