@@ -25,9 +25,9 @@ from solver.reference.proximal import approach
 from solver.reference.rules import (
     HELD,
     Increment,
+    InstantSolution,
     Rules,
     Sides,
-    Solution,
     Starts,
     States,
     states_at,
@@ -145,7 +145,7 @@ class Instants:
         self._starts.took(self.system.solutions - done, from_guess=from_guess)
         return step
 
-    def _solved(self, sides: Sides, instant: int) -> Solution | None:
+    def _solved(self, sides: Sides, instant: int) -> InstantSolution | None:
         """Find the states of the jumps and the step, or None."""
         condensed, rules, newton = self._condensed, self._rules, self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
@@ -158,7 +158,7 @@ class Instants:
             guesses[:2] = guesses[1::-1]
         still = np.zeros_like(sides.held)
         nothing = Increment(still, self._force[:, None], still[: len(sides.load)], still[:0])
-        begin = Solution(self._states, nothing, still[:, 0])
+        begin = InstantSolution(self._states, nothing, still[:, 0])
         solved = newton.follow(begin, sides, guesses, rules)
         if solved is None and rules.is_curved:
             solved = self._in_parts(begin, sides, known, instant)
@@ -170,14 +170,14 @@ class Instants:
         self._is_lost = self._is_lost or solved is None
         return solved
 
-    def _unloaded(self, at: Solution, sides: Sides, rules: Rules) -> Solution | None:
+    def _unloaded(self, at: InstantSolution, sides: Sides, rules: Rules) -> InstantSolution | None:
         """Find states and step from large pressure on, or None."""
         states = unload(self.system, rules, sides)
         return None if states is None else self._newton.seek(self.system, states, sides, at, rules)
 
     def _in_parts(
-        self, at: Solution, sides: Sides, known: list[States], instant: int
-    ) -> Solution | None:
+        self, at: InstantSolution, sides: Sides, known: list[States], instant: int
+    ) -> InstantSolution | None:
         """Follow the solution from the instant before; where it is lost, look for any."""
         rules, force = self._rules, self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
@@ -199,7 +199,9 @@ class Instants:
                 return self._beyond(at, sides, known) if self._may_hold(instant) else None
         return at
 
-    def _beyond(self, at: Solution, sides: Sides, known: list[States]) -> Solution | None:
+    def _beyond(
+        self, at: InstantSolution, sides: Sides, known: list[States]
+    ) -> InstantSolution | None:
         """A stable solution beyond one that is lost, or None.
 
         With the friction that slip so far has left the next slip is larger, and so on up to the

@@ -18,7 +18,7 @@ from solver.arrays import ROUNDING, Array, Flags, Indices
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
-from solver.reference.rules import HELD, Increment, Rules, Sides, Solution, States
+from solver.reference.rules import HELD, Increment, InstantSolution, Rules, Sides, States
 from solver.reference.stability import is_stable
 
 NEWTON_LIMIT = 30
@@ -54,8 +54,8 @@ class Newton:
         self.largest = float(np.abs(condensed.load).max(initial=0.0))
 
     def follow(
-        self, at: Solution, sides: Sides, guesses: Iterable[States], rules: Rules
-    ) -> Solution | None:
+        self, at: InstantSolution, sides: Sides, guesses: Iterable[States], rules: Rules
+    ) -> InstantSolution | None:
         """Go on to other right sides, None where no guess leads there or to another branch."""
         for states in guesses:
             reached = self.seek(self.system, states, sides, at, rules)
@@ -63,14 +63,19 @@ class Newton:
                 return reached
         return None
 
-    def stable(self, near: Solution, sides: Sides) -> Solution | None:
+    def stable(self, near: InstantSolution, sides: Sides) -> InstantSolution | None:
         """The solution near what is none yet, or None where it is not stable."""
         reached = self.seek(self.system, near.states, sides, near, self._rules)
         return reached if reached and self._goes_on(reached, reached, sides) else None
 
     def seek(
-        self, system: LinearSystem, states: States, sides: Sides, near: Solution, rules: Rules
-    ) -> Solution | None:
+        self,
+        system: LinearSystem,
+        states: States,
+        sides: Sides,
+        near: InstantSolution,
+        rules: Rules,
+    ) -> InstantSolution | None:
         """Seek states and slip, from those of a solution nearby; None where they cycle."""
         slip, force = near.slip, near.step.force[:, 0]
         pieces: list[bytes] = []
@@ -89,7 +94,7 @@ class Newton:
             corrected = self._corrected(states, step, tangent)
             if self._rules.is_curved:
                 slip = np.where(rules.normal, 0.0, (step.jump - sides.held)[:, 0])
-            force, reached = step.force[:, 0], Solution(states, step, slip)
+            force, reached = step.force[:, 0], InstantSolution(states, step, slip)
             if np.array_equal(corrected, states) and self._obeys(system, reached, sides, rules):
                 return reached
             states = corrected
@@ -112,7 +117,7 @@ class Newton:
         rules = self._rules
         return sides.bound[:, 0] + np.maximum(rules.friction * force[rules.partner], 0.0)
 
-    def _obeys(self, system: LinearSystem, at: Solution, sides: Sides, rules: Rules) -> bool:
+    def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides, rules: Rules) -> bool:
         """Whether forces balance, and friction is what slip has left, not only by its tangent."""
         slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest, slack):
@@ -125,7 +130,7 @@ class Newton:
         largest = max(self.largest, np.abs(force).max())
         return bool(wrong[np.abs(at.states) == 1].max(initial=0.0) <= SETTLED * largest)
 
-    def _goes_on(self, at: Solution, reached: Solution, sides: Sides) -> bool:
+    def _goes_on(self, at: InstantSolution, reached: InstantSolution, sides: Sides) -> bool:
         """Whether a solution is the one that another goes over into.
 
         So it is if the structure is stable however far the contacts that slip in either have

@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
-from solver.reference.rules import Rules, Sides, Solution, States
+from solver.reference.rules import InstantSolution, Rules, Sides, States
 
 FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
 """Springs, as shares of the stiffness of each jump alone."""
@@ -34,7 +34,7 @@ def approach(
     rules: Rules,
     states: States,
     sides: Sides,
-    seek: Callable[[LinearSystem, States, Sides], Solution | None],
+    seek: Callable[[LinearSystem, States, Sides], InstantSolution | None],
 ) -> Iterator[States]:
     """States of an instant that have come to rest, each nearer to those without springs.
 

@@ -241,7 +241,7 @@ class Increment(NamedTuple):
     motion: Array
 
 
-class Solution(NamedTuple):
+class InstantSolution(NamedTuple):
     """States of an instant, what it adds, and (n,) slips of the jumps where friction changes."""
 
     states: States
