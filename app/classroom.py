@@ -16,6 +16,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 import segno
+from panel.io.state import set_curdoc
 
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
@@ -217,7 +218,9 @@ class ClassMember(param.Parameterized):
         """Take what is new on the page's own next tick: of several news the last."""
         if not self._is_due:
             self._is_due = True
-            self._document.add_next_tick_callback(self._take)
+            # Else the tick would take the page that told it for its own.
+            with set_curdoc(self._document):
+                self._document.add_next_tick_callback(self._take)
 
     def _lead(self, room: Classroom) -> None:
         self.room = room

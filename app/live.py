@@ -81,6 +81,11 @@ class Live:
 
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
+        # What changes within a hold is sent at once, and in this order.
+        with pn.io.hold():
+            self._arrange(kinds)
+
+    def _arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         state, self._kinds = self.state, kinds
         self._cards = self._all
         if kinds is not None:
@@ -113,8 +118,9 @@ class Live:
 
     def _fit(self) -> None:
         if self._is_open:
-            for card in self._cards:
-                card.fit()
+            with pn.io.hold():
+                for card in self._cards:
+                    card.fit()
             self.look()
 
     def _write(self) -> None:

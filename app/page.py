@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from panel.util import edit_readonly
 
 from app.browser import listen
 from app.classroom import ClassDialog, ClassMember
@@ -79,6 +80,9 @@ class Page:
             busy_indicator=None,
             sx=COMPACT,
         )
+        with edit_readonly(self.template):
+            # It follows the server as a whole: each event of a page would be told to all others.
+            self.template.busy = False
         listen(
             state, document, {**self._live.transport.keys(), "p": self._present, "?": self._help}
         )

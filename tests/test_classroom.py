@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextvars import copy_context
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
+import panel as pn
 import pytest
+from panel.io.state import set_curdoc
 
 from app import classroom
 from app.classroom import ClassMember, find
@@ -22,13 +26,13 @@ Callback = Callable[[], Any]
 
 
 class Document:
-    """A document whose next tick comes when it is called for."""
+    """A document whose next tick comes when it is called for, in the context that asked for it."""
 
     def __init__(self) -> None:
         self.due: list[Callback] = []
 
     def add_next_tick_callback(self, callback: Callback) -> None:
-        self.due.append(callback)
+        self.due.append(partial(copy_context().run, callback))
 
     def add_timeout_callback(self, callback: Callback, milliseconds: int) -> None:
         pass
@@ -111,6 +115,17 @@ def test_a_follower_sees_what_the_leader_sees_and_has_no_worker(leader: Seat, fr
     assert follower.state.selection.phase == 0.3
     assert not follower.worker.is_there
     assert leader.member.message == f"Class {code_of(leader)}: 1 follows."
+
+
+def test_a_followers_page_is_changed_as_its_own_document(leader: Seat, frame: Frame) -> None:
+    follower = Seat("rope", code_of(leader))
+    tick(leader, follower)
+    changed: list[Any] = []
+    follower.state.param.watch(lambda event: changed.append(pn.state.curdoc), "frame")
+    with set_curdoc(leader.document):
+        show(leader, frame)
+    tick(leader, follower)
+    assert changed == [follower.document]
 
 
 def test_who_comes_late_has_the_present_frame_at_once(leader: Seat, frame: Frame) -> None:

@@ -89,6 +89,6 @@ def test_keys_open_dialogs_and_the_view_for_a_projector(visit: Visit) -> None:
     expect(status(page)).to_contain_text("certified")
     assert "view=present" in page.url
     # 2.6 % of the height, whatever the theme sets.
-    assert page.evaluate(SIZE) == "19px"
+    page.wait_for_function(f"({SIZE})() == '19px'")
     page.keyboard.press("p")
     expect(page.locator(".bk-Figure")).to_have_count(count)
