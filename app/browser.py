@@ -62,7 +62,7 @@ class Display:
     def __init__(self, state: PageState, document: Any, also: Callable[[], None]) -> None:
         self._state, self._document, self._also = state, document, also
         self.views: list[View] = []
-        self._is_due = self._is_settling = False
+        self._is_due = False
         self._sent_at = self._took = 0.0
         self.pulse = Pulse(name="pulse")
         self.pulse.js_on_change("sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED))
@@ -70,21 +70,11 @@ class Display:
         state.param.watch(lambda *events: self._update(), ["frame", "selection", "ghost"])
 
     def look_at(self, views: list[View]) -> None:
-        """Have other views be in sight; they are painted once the browser has their figures.
-
-        What is new on a page is sent at the end of a callback, a picture at once.
-        """
-        if views == self.views:
-            return
-        self.views, self._is_due = views, True
-        self._state.needs = frozenset(need for view in views for need in view.needs)
-        if views and not self._is_settling:
-            self._is_settling = True
-            self._document.add_next_tick_callback(self._settle)
-
-    def _settle(self) -> None:
-        self._is_settling = False
-        self._update()
+        """Have other views be in sight."""
+        if views != self.views:
+            self.views = views
+            self._state.needs = frozenset(need for view in views for need in view.needs)
+            self._update()
 
     def catch_up(self) -> None:
         """Ask again whether the last picture is on the screen, once its answer counts as lost."""
@@ -93,11 +83,12 @@ class Display:
         if self._is_due:
             self._paint()
         else:
-            self._count()
+            with pn.io.hold():
+                self._count()
 
     def _is_waiting(self) -> bool:
         is_sent = self.pulse.painted < self.pulse.sent
-        return self._is_settling or (is_sent and time.monotonic() < self._sent_at + LOST)
+        return is_sent and time.monotonic() < self._sent_at + LOST
 
     def _update(self) -> None:
         """Paint what there is, now or once the last picture is on the screen."""

@@ -156,8 +156,9 @@ class PageState(param.Parameterized):
         """Follow a slider as far as is allowed; the answer alone is shown until it is let go."""
         allowed = nearest_allowed(self.settings, name, value)
         settings = self.settings.with_change(name, allowed)
-        self.param.update(refusal="", settings=settings, is_dragged=True)
+        # The worker begins while the page follows.
         self._start(answer(settings), is_dragged=True)
+        self.param.update(refusal="", settings=settings)
 
     def release(self, name: str, value: float) -> None:
         """Run what a slider or an arrow is let go at; where that is refused, the nearest before."""

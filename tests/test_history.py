@@ -15,7 +15,6 @@ from app.browser import Display
 from app.frame import Frame
 from app.messages import Needs, Ready, Start
 from app.state import History, PageState, default_settings
-from app.views.contact_force import ContactForce
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 
@@ -108,17 +107,3 @@ def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
     assert orders == [Ready()]
     display.pulse.painted = display.pulse.sent
     assert orders == [Ready(), Ready()]
-
-
-def test_what_comes_in_sight_is_painted_after_its_figure_is_sent(answer: Frame) -> None:
-    ticks: list[Callable[[], None]] = []
-    state = PageState(answer.run.settings)
-    display = Display(state, SimpleNamespace(add_next_tick_callback=ticks.append), lambda: None)
-    state.frame = answer
-    display.pulse.painted = sent = display.pulse.sent
-    display.look_at([ContactForce(state)])
-    state.select(phase=0.5)
-    assert display.pulse.sent == sent
-    ticks.pop()()
-    assert display.pulse.sent == sent + 1
-    assert not ticks
