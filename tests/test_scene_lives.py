@@ -1,0 +1,79 @@
+"""A scene that was solved plays its load cycle until somebody does something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app import transport
+from app.messages import Needs
+from app.server import PAGES
+from app.state import PageState, Selection, default_settings
+from app.transport import Transport
+from app.worker.sampling import Sampler
+from solver.scenes import discretise
+from solver.study.quantities.finished import finished_run
+
+
+class Document:
+    """A document whose periodic callbacks are called by hand."""
+
+    def __init__(self) -> None:
+        self.periodic: list[Callable[[], Any]] = []
+
+    def add_periodic_callback(self, callback: Callable[[], Any], period: int) -> Callable[[], Any]:
+        self.periodic.append(callback)
+        return callback
+
+    def remove_periodic_callback(self, callback: Callable[[], Any]) -> None:
+        self.periodic.remove(callback)
+
+
+class Watched:
+    """A page that has just solved its first run, and a clock that is set by hand."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 0.0
+        monkeypatch.setattr(transport, "time", SimpleNamespace(monotonic=lambda: self.now))
+        settings = default_settings("bar").replace(elements=10, instants=11)
+        self.state, self.document = PageState(settings), Document()
+        self.transport = Transport(self.state, self.document)
+        run = finished_run(settings)
+        sampler = Sampler(discretise(settings), settings, self.state.number)
+        frame = sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+        self.state.param.update(newest=frame, frame=frame)
+        self.wait(1.0)
+
+    def wait(self, seconds: float) -> None:
+        self.now += seconds
+        for callback in list(self.document.periodic):
+            callback()
+
+    def plays(self) -> bool:
+        before = self.state.selection.phase
+        self.wait(0.3)
+        return self.state.selection.phase != before
+
+
+@pytest.mark.parametrize(("pages", "seconds"), [(1, 60.0), (3, 20.0), (30, 2.0)])
+def test_pages_share_the_minute_of_playing(
+    monkeypatch: pytest.MonkeyPatch, pages: int, seconds: float
+) -> None:
+    monkeypatch.setattr(PAGES, "count", pages)
+    page = Watched(monkeypatch)
+    page.wait(0.9 * seconds)
+    assert page.plays()
+    page.wait(0.2 * seconds)
+    assert not page.plays()
+    assert page.state.selection.phase == Selection.phase
+
+
+def test_it_plays_until_somebody_does_something(monkeypatch: pytest.MonkeyPatch) -> None:
+    page = Watched(monkeypatch)
+    assert page.plays()
+    page.state.settings = page.state.settings.replace(friction=0.2)
+    assert not page.plays()
+    assert page.state.selection.phase == Selection.phase
