@@ -247,10 +247,12 @@ class PageState(param.Parameterized):
             self.ghost = self._ghost_at(self.frame)
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
-        """The frame that a frame is compared with: of the pinned run at the same iteration."""
-        if self.pinned is None or self.pinned is self.history:
-            return self._last_run
-        return self.pinned.newest if frame.is_answer else self.pinned.at(frame.iteration)
+        """The frame that a frame is compared with, of the pinned or the last run of the scene."""
+        ghost, pinned = self._last_run, self.pinned
+        if pinned is not None and pinned is not self.history:
+            ghost = pinned.newest if frame.is_answer else pinned.at(frame.iteration)
+        is_of_scene = ghost is not None and ghost.run.settings.scene == frame.run.settings.scene
+        return ghost if is_of_scene else None
 
     def take(self, report: Report) -> None:
         """Take what the worker reports."""

@@ -13,10 +13,11 @@ import pytest
 import app.browser
 from app.browser import Display
 from app.frame import Frame
-from app.messages import Needs, Ready, Start
+from app.messages import Needs, NewFrame, Ready, Start
 from app.state import History, PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
+from solver.settings import Settings
 
 
 @pytest.fixture(scope="module")
@@ -107,3 +108,21 @@ def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
     assert orders == [Ready()]
     display.pulse.painted = display.pulse.sent
     assert orders == [Ready(), Ready()]
+
+
+def test_a_run_is_compared_with_others_of_its_scene_alone(answer: Frame) -> None:
+    state = PageState(answer.run.settings)
+
+    def show(settings: Settings) -> Frame | None:
+        state.adopt(settings)
+        run = replace(answer.run, number=state.number, settings=settings)
+        state.take(NewFrame(replace(answer, run=run)))
+        return state.ghost
+
+    bar = answer.run.settings
+    assert show(bar) is None
+    first = state.frame
+    assert show(bar.replace(friction=0.2)) is first
+    state.pin()
+    assert show(default_settings("rope")) is None
+    assert show(bar).run.settings.friction == 0.2
