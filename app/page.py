@@ -100,10 +100,19 @@ class Page:
         self._live.open()
         if not self.state.room:
             if not self._iteration:
-                self.state.param.trigger("pace")
+                self._live.display.pulse.on_change("painted", self._go_on)
         elif not self._member.enter(self.state.room):
             self._supervisor.begin()
             self.state.run()
+
+    def _go_on(self, *change: Any) -> None:
+        """Go on once the first picture is on the screen: a search is seen from its beginning.
+
+        What changes while the browser still mounts the widgets some of them would not show.
+        """
+        self._live.display.pulse.remove_on_change("painted", self._go_on)
+        if self.state.running:
+            self.state.param.trigger("pace")
 
     def end(self, _context: Any) -> None:
         """Leave nothing behind."""
