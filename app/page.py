@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +77,8 @@ class Page:
             header=[self._header(take_away)],
             main=[self._main],
             busy_indicator=None,
+            # As `theme` in the address has it.
+            dark_theme=pn.config.theme == "dark",
             sx=COMPACT,
         )
         with edit_readonly(self.template):
@@ -193,14 +194,13 @@ def open_page() -> pmui.Page:
         return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
     location = pn.state.location
     place, refusal = read(location.search if location is not None else "")
-    state = PageState(place.settings, refusal=refusal)
-    show(state, replace(place, iteration=0))
-    page = Page(state, place.iteration)
+    state = PageState(place["settings"], refusal=refusal)
+    iteration = place.pop("iteration", 0)
+    show(state, place)
+    page = Page(state, iteration)
     if "Mobi" in pn.state.headers.get("User-Agent", ""):
         # There the controls would lie over all else.
         page.template.sidebar_open = False
-    if place.theme:
-        page.template.dark_theme = place.theme == "dark"
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template
