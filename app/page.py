@@ -18,8 +18,7 @@ from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
 from app.files.export import TakeAway
 from app.files.link import Link, read, show
-from app.lessons.cases import CasePanel
-from app.lessons.panel import LessonPanel
+from app.lessons.guide import Guide
 from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
@@ -56,19 +55,16 @@ class Page:
             state.running = not iteration
         self._live = Live(state, document)
         self._member = ClassMember(state, self._supervisor, document)
-        self._lesson = LessonPanel(
-            state, self._live.transport, self._dress, self._member.open_counts
-        )
-        self._case = CasePanel(state, self._dress)
+        transport, open_counts = self._live.transport, self._member.open_counts
+        self._guide = Guide(state, transport, self._dress, open_counts)
         self._class = ClassDialog(self._member)
-        for part in (self._lesson, self._case, self._class):
-            part.view.stylesheets = [STYLE]
+        self._guide.view.stylesheets = self._class.view.stylesheets = [STYLE]
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         take_away, self._words = TakeAway(state, self._live.display), glossary()
-        dialogs = [part.dialog for part in (self._lesson, self._case, self._class)]
-        for each in (*dialogs, take_away.view, self._words):
+        dialogs = *self._guide.dialogs.values(), self._class.dialog, take_away.view, self._words
+        for each in dialogs:
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
@@ -84,16 +80,13 @@ class Page:
         with edit_readonly(self.template):
             # It follows the server as a whole: each event of a page would be told to all others.
             self.template.busy = False
-        listen(
-            state, document, {**self._live.transport.keys(), "p": self._present, "?": self._help}
-        )
+        listen(state, document, {**transport.keys(), "p": self._present, "?": self._help})
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda event: state.view == "present" and self._dress(), "height")
         self._turn(state.tab)
-        self._lesson.show()
-        self._case.show()
+        self._guide.show()
 
     def loaded(self) -> None:
         """Show the figures, and let the first run go on or follow a class: a browser is there."""
@@ -114,8 +107,8 @@ class Page:
 
     def _header(self, take_away: TakeAway) -> pn.Row:
         actions = {
-            "Lessons": ("school", lambda event: self._lesson.offer()),
-            "Cases": ("cases", lambda event: self._case.offer()),
+            "Lessons": ("school", lambda event: self._guide.offer("lesson")),
+            "Cases": ("cases", lambda event: self._guide.offer("case")),
             "A class": ("groups", lambda event: self._class.open()),
             "Presenter view (p)": ("slideshow", lambda event: self._present()),
             "Take away": ("download", lambda event: take_away.open()),
@@ -163,10 +156,9 @@ class Page:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
         # What comes in front is appended, and put there by the style sheet: a column whose children
         # change their order loses some of them.
-        beside = [part.view for part in (self._lesson, self._case) if part.view.visible]
-        line = self._class.view
+        text, line = self._guide.view, self._class.view
         views = (
-            (self._beside, [self._live.view, *beside]),
+            (self._beside, [self._live.view] + [text] * text.visible),
             (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
         )
         for place, objects in views:
@@ -180,10 +172,10 @@ class Page:
         """
         self._place()
         is_bare = self.state.view != "page"
-        self._live.arrange(self._lesson.kinds)
+        self._live.arrange(self._guide.kinds)
         self.template.param.update(
             sx=BARE if is_bare else COMPACT,
-            sidebar_open=not (is_bare or self._lesson.view.visible or self._case.view.visible),
+            sidebar_open=not (is_bare or self._guide.view.visible),
         )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from app.frame import Frame
@@ -30,13 +29,6 @@ VALUE = re.compile(r"\{value:(.*?)\}")
 PENDING = "…"
 """What only the rest of the run will tell."""
 _KINDS = {kind.name: kind for card in CARDS for kind in card}
-
-
-@dataclass(frozen=True)
-class Control:
-    """A place in a sentence where the widget of a setting stands."""
-
-    setting: str
 
 
 def settings_of(lesson: Lesson | Case) -> Settings:
@@ -69,11 +61,10 @@ def readings_of(lesson: Lesson) -> list[str]:
     return list(dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))))
 
 
-def parts_of(paragraph: str) -> list[str | Control]:
-    """A paragraph, split where a control stands; the rest is Markdown with `{value:NAME}` in it."""
+def parts_of(paragraph: str) -> list[str]:
+    """Markdown with `{value:NAME}` in it and, in turn, names of settings whose control follows."""
     # A sentence ends with its control: its full stop would stand alone.
-    parts = re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
-    return [Control(part) if place % 2 else part for place, part in enumerate(parts)]
+    return re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
 
 
 def without_controls(paragraph: str) -> str:
