@@ -143,20 +143,16 @@ def proposed(settings: Settings, name: str) -> str:
     return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_logarithmic(definition)}"
 
 
-def iterations_over_k(settings: Settings, name: str = "acceleration") -> Question:
-    """Iterations over the search direction, for the values of another setting."""
-    vary = [proposed(settings, "k_scale")]
-    if name == "substructures":
-        cuts = []
-        for cut in CUTS:
-            with contextlib.suppress(SettingError):
-                settings.replace(substructures=cut)
-                cuts.append(str(cut))
-        vary.append(f"{name}={','.join(cuts)}")
-    elif name in variable(settings):
-        vary.append(proposed(settings, name))
-    of = f"iterations_to_force@{TENTH}" if has_reference(settings) else "iterations"
-    return Question(tuple(vary), of)
+def iterations_over_k(settings: Settings) -> Question:
+    """Iterations over the search direction, with and without acceleration."""
+    names = "k_scale", *["acceleration"] * ("acceleration" in variable(settings))
+    return _iterations(settings, TENTH, *(proposed(settings, name) for name in names))
+
+
+def _iterations(settings: Settings, within: float, *vary: str) -> Question:
+    """Iterations until the force is within a share, or else all, over settings."""
+    of = f"iterations_to_force@{within}" if has_reference(settings) else "iterations"
+    return Question(vary, of)
 
 
 def _energy(settings: Settings) -> Question | None:
@@ -169,8 +165,7 @@ def _bricks(settings: Settings) -> Question | None:
     if "courses" not in variable(settings):
         return None
     courses = ",".join(map(str, COURSES))
-    of = f"iterations_to_force@{HUNDREDTH}" if has_reference(settings) else "iterations"
-    return Question((f"courses={courses}", "multiscale=true,false"), of)
+    return _iterations(settings, HUNDREDTH, f"courses={courses}", "multiscale=true,false")
 
 
 def _fretting(settings: Settings) -> Question | None:
@@ -210,8 +205,15 @@ def _over(settings: Settings, of: str, count: int, *names: str | None) -> Questi
 
 
 def _cuts(settings: Settings) -> Question | None:
-    has_cuts = "substructures" in variable(settings)
-    return iterations_over_k(settings, "substructures") if has_cuts else None
+    if "substructures" not in variable(settings):
+        return None
+    allowed = []
+    for cut in CUTS:
+        with contextlib.suppress(SettingError):
+            settings.replace(substructures=cut)
+            allowed.append(str(cut))
+    cuts = ",".join(allowed)
+    return _iterations(settings, TENTH, proposed(settings, "k_scale"), f"substructures={cuts}")
 
 
 def _energies(settings: Settings) -> Question | None:
