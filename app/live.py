@@ -79,13 +79,10 @@ class Live:
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._timeline, self._plots])
 
+    # What changes within a hold is sent at once, and in this order.
+    @pn.io.hold()
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
-        # What changes within a hold is sent at once, and in this order.
-        with pn.io.hold():
-            self._arrange(kinds)
-
-    def _arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         state, self._kinds = self.state, kinds
         self._cards = self._all
         if kinds is not None:

@@ -10,7 +10,7 @@ import panel as pn
 import panel_material_ui as pmui
 from panel.util import edit_readonly
 
-from app.browser import listen
+from app.browser import Browser
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.experiments.fit import FitTab
@@ -46,7 +46,8 @@ class Page:
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state, self._iteration = state, iteration
         document = pn.state.curdoc
-        link = Link(state)
+        browser = Browser(name="browser")
+        link = Link(state, browser)
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
@@ -80,7 +81,7 @@ class Page:
         with edit_readonly(self.template):
             # It follows the server as a whole: each event of a page would be told to all others.
             self.template.busy = False
-        listen(state, document, {**transport.keys(), "p": self._present, "?": self._help})
+        browser.listen(state, document, {**transport.keys(), "p": self._present, "?": self._help})
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.browser import Browser
 from app.files.link import LESSONS, LONGEST, Link, link_of, place_of, query_of, read, show
 from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
@@ -128,7 +129,7 @@ def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -
 
 def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     state = PageState(default_settings("bar"))
-    link = Link(state)
+    link = Link(state, Browser())
     before = query_of(place_of(state))
     state.change(peak=1200.0)
     state.choose_scene("rope")
@@ -140,7 +141,7 @@ def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
 
 def test_a_slider_that_is_dragged_writes_no_address_until_it_is_let_go() -> None:
     state = PageState(default_settings("bar"))
-    link = Link(state)
+    link = Link(state, Browser())
     before = link.query
     state.drag("peak", 700.0)
     assert link.query == before

@@ -10,12 +10,10 @@ from urllib.parse import parse_qsl, quote
 
 import panel as pn
 import param
-from bokeh.core.properties import String
-from bokeh.model import DataModel
-from bokeh.models import CustomJS
 
+from app.browser import Browser
 from app.frame import Selection
-from app.lessons.catalogue import CASES, LESSONS, plots_of, settings_of
+from app.lessons.catalogue import KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
@@ -32,16 +30,6 @@ LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
 MOST_TOLD = 3
 """Refusals that are told of one address."""
-COPY = """
-if (page.copied) {
-  navigator.clipboard?.writeText(page.copied).catch(() => prompt("The link", page.copied))
-}
-"""
-BACK = """
-addEventListener("popstate", () => { page.search = ""; page.search = location.search || "?" })
-"""
-"""One may come back to the same address again, and to that which says nothing."""
-
 
 Place = dict[str, Any]
 """What an address says, by the names of `PageState`: `settings` in any case; the room is "class" in
@@ -54,15 +42,6 @@ _CHECKED: dict[str, Any] = {
     **{name: PageState.param[name] for name in ("tab", "pace", "view")},
 }
 """Definitions of what may be refused beside settings, scene, lesson, case and plots."""
-_OPENED: dict[str, Mapping[str, Any]] = {"lesson": LESSONS, "case": CASES}
-"""What has settings from which an address says what differs, as a scene has."""
-
-
-class Browser(DataModel):
-    """The address that the browser has gone back, or on, to; and the link that it copies."""
-
-    search: str = String(default="")  # type: ignore[assignment]
-    copied: str = String(default="")  # type: ignore[assignment]
 
 
 class Link:
@@ -72,16 +51,10 @@ class Link:
     dragged, and instants and iterations. `query` is the address from the question mark on.
     """
 
-    def __init__(self, state: PageState) -> None:
-        self._state, self._location = state, pn.state.location
+    def __init__(self, state: PageState, browser: Browser) -> None:
+        self._state, self._browser, self._location = state, browser, pn.state.location
         self.query = query_of(place_of(state))
-        self.browser = Browser(name="browser")
-        self.browser.on_change("search", lambda name, old, new: new and self.go(new))
-        args = {"page": self.browser}
-        self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
-        if pn.state.curdoc is not None:
-            pn.state.curdoc.add_root(self.browser)
-            pn.state.curdoc.js_on_event("document_ready", CustomJS(args=args, code=BACK))
+        browser.on_change("search", lambda name, old, new: new and self.go(new))
         state.param.watch(lambda *events: self._write(), ["settings", "is_dragged", *SHARED])
 
     def _write(self) -> None:
@@ -97,8 +70,8 @@ class Link:
 
     def copy(self) -> str:
         """Have the browser copy the whole link; what it had to leave out."""
-        self.browser.copied = ""
-        self.browser.copied, message = link_of(self._state)
+        self._browser.copied = ""
+        self._browser.copied, message = link_of(self._state)
         return message
 
     def go(self, query: str) -> None:
@@ -150,7 +123,7 @@ def query_of(place: Place) -> str:
         return f"?class={quote(place['room'])}"
     settings, lesson = place["settings"], LESSONS.get(place.get("lesson", ""))
     base, pairs = default_settings(settings.scene), {"scene": settings.scene}
-    for kind, known in _OPENED.items():
+    for kind, known in KNOWN.items():
         if (name := place.get(kind)) in known:
             base, pairs = settings_of(known[name]), {kind: name}
     long = too_long(settings)
@@ -210,9 +183,9 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
     """Settings from which an address says what differs, and the lesson or case that has them."""
-    scene, names = pairs.pop("scene", ""), {kind: pairs.pop(kind, "") for kind in _OPENED}
+    scene, names = pairs.pop("scene", ""), {kind: pairs.pop(kind, "") for kind in KNOWN}
     for kind, name in names.items():
-        found = _OPENED[kind].get(name)
+        found = KNOWN[kind].get(name)
         if found is not None:
             if scene not in ("", found.settings.scene):
                 refused.append(f"the {kind} has a scene of its own, {found.settings.scene}")

@@ -15,7 +15,6 @@ from app.files.tables import (
     TABLES,
     Content,
     axes_on,
-    opened,
     paths_of,
     read_as,
     renamed,
@@ -27,9 +26,11 @@ from app.state import PageState, default_settings
 from app.widgets import button, changing_text, dialog, download
 from solver.checked import dump
 from solver.definitions import about
+from solver.files import settings_from_toml
 from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.measured_loop import MeasuredLoop
+from solver.study.comparison import read_results
+from solver.study.measured_loop import MeasuredLoop, is_a_loop
 from solver.tables import Table
 
 HELP = (
@@ -45,33 +46,27 @@ SHOWN = 5
 """Lines of a table that are shown."""
 
 
-class FilesPanel:
-    """Buttons that save settings and open files, and what was understood of these.
+def files_panel(state: PageState, copy: Callable[[], str], width: int) -> pn.Column:
+    """Buttons that copy the link, save and reset settings and open files.
 
     `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
     """
+    look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
+    opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
 
-    def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
-        self._state, self._copy = state, copy
-        look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
-        outlined = {**look, "variant": "outlined"}
-        self._opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
-        self.file, self.message = self._opener.file, self._opener.message
-        self.view = pn.Column(
-            button("Copy link", self._copy_link, icon="link", **outlined),
-            download(
-                "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
-            ),
-            self._opener.view,
-            button("All settings to default", self._reset, icon="restart_alt", **outlined),
-            margin=0,
-        )
+    def copy_link() -> None:
+        opener.message.object = f"The link to what is shown is copied. {copy()}"
 
-    def _copy_link(self) -> None:
-        self.message.object = f"The link to what is shown is copied. {self._copy()}"
+    def reset() -> None:
+        state.adopt(default_settings(state.settings.scene))
 
-    def _reset(self) -> None:
-        self._state.adopt(default_settings(self._state.settings.scene))
+    return pn.Column(
+        button("Copy link", copy_link, icon="link", variant="outlined", **look),
+        download("Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look),
+        opener.view,
+        button("All settings to default", reset, icon="restart_alt", variant="outlined", **look),
+        margin=0,
+    )
 
 
 class TableOpener:
@@ -136,19 +131,24 @@ class TableOpener:
 
     def _read(self, source: str, data: bytes) -> tuple[list[Content], str]:
         state, axes = self._state, axes_on(self._state)
-        if (content := opened(source, data, state.settings)) is not None:
-            return content
-        self._table, self._source = table_of(data, source), source
-        names = [name.replace(",", " ") for name in names_of(self._table)]
-        cells = [cells + [""] * len(names) for _, cells in self._table.rows[:SHOWN]]
+        if source.lower().endswith(".toml"):
+            settings = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
+            return [settings], f"{source}: settings of the scene {settings.scene}."
+        table = table_of(data, source)
+        if not is_a_loop(data, source):
+            results = read_results(data, source, state.settings)
+            return [results], f"{source}: {results.message}."
+        self._table, self._source = table, source
+        names = [name.replace(",", " ") for name in names_of(table)]
+        cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
         self._rows.object = pd.DataFrame([row[: len(names)] for row in cells], columns=names)
         self._is_updating = True
         self.heads.value = ", ".join(names)
         self._is_updating = False
         self._offer(LOOP)
-        use = use_of(self._table, state.settings, axes)
+        use = use_of(table, state.settings, axes)
         self._offer(use)
-        return read_as(use, self._table, source, state.settings, axes)
+        return read_as(use, table, source, state.settings, axes)
 
     def _offer(self, use: str) -> None:
         """Offer what a table may be used as in this scene."""

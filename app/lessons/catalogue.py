@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 from app.frame import Frame
@@ -24,6 +25,8 @@ LESSONS = {
 """By name, in order, those of one subject together."""
 CASES = {case.name: case for case in all_cases()}
 """By name, in order."""
+KNOWN: dict[str, Mapping[str, Lesson | Case]] = {"lesson": LESSONS, "case": CASES}
+"""Both, as addresses and states call them."""
 VALUE = re.compile(r"\{value:(.*?)\}")
 """A quantity in what a lesson says."""
 PENDING = "…"

@@ -16,6 +16,7 @@ from app.frame import Selection
 from app.lessons.cases import gallery, introduction, known_beside_found, source_and_change
 from app.lessons.catalogue import (
     CASES,
+    KNOWN,
     LESSONS,
     filled,
     kinds_of,
@@ -73,11 +74,10 @@ class Guide:
     def open(self, kind: str, name: str) -> None:
         """Begin a lesson or a case, with its scene and settings, in place of another."""
         self.dialogs[kind].open = False
-        is_case = kind == "case"
         places = {"lesson": "", "case": "", "prediction": None, kind: name}
         with param.parameterized.batch_call_watchers(self._state):
-            self._state.param.update(**places, plots=plots_of(name) if is_case else "")
-            self._state.adopt(settings_of(CASES[name] if is_case else LESSONS[name]))
+            self._state.param.update(**places, plots=plots_of(places["case"]))
+            self._state.adopt(settings_of(KNOWN[kind][name]))
 
     def offer(self, kind: str) -> None:
         """Show the list of all lessons, or of all cases."""
