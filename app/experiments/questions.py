@@ -18,7 +18,8 @@ from app.refusals import message_of
 from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
-from solver.definitions import CurveParameter, Parameter, SettingError, about, is_logarithmic
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
+from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
@@ -59,14 +60,14 @@ class Question:
 
         Raises
         ------
-        SettingError
+        RefusedError
             For whatever of it cannot be run.
         """
         beside = [name for name in BESIDE if QUANTITIES[name].applies(settings)]
         plan = plan_of(self.asked(settings), self.vary, [self.of, *beside])
         for name in plan.idle():
             can = "settings that do something here"
-            raise SettingError(name, "varied", can, "vary another setting")
+            raise RefusedError(name, "varied", can, "vary another setting")
         return plan
 
     def asked(self, settings: Settings) -> Settings:
@@ -79,7 +80,7 @@ class Question:
             return settings
         if not self.of.startswith("iterations"):
             return answer(settings)
-        with contextlib.suppress(SettingError):
+        with contextlib.suppress(RefusedError):
             nearer = min(reading(self.of).at or settings.accuracy, settings.accuracy)
             return settings.replace(finish=SEARCH["finish"], accuracy=nearer)
         return settings
@@ -88,22 +89,21 @@ class Question:
         """What of it cannot be run and why, or nothing."""
         try:
             self.plan(settings)
-        except SettingError as refusal:
+        except RefusedError as refusal:
             return message_of(refusal, settings)
         return ""
 
 
 def question_of(text: str, settings: Settings) -> Question:
-    """The question that a text asks; where settings do not have it, energy, or else k's."""
+    """The question that a text asks; where settings do not have it, the first that is ready."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     names = {setting.partition("=")[0] for setting in vary}
     is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
     if is_known and not question.refusal(settings):
         return question
-    energy = _energy(settings)
-    is_posed = energy is not None and not energy.refusal(settings)
-    return energy if energy is not None and is_posed else iterations_over_k(settings)
+    ready = filter(None, (make(settings) for make in READY.values()))
+    return next((each for each in ready if not each.refusal(settings)), iterations_over_k(settings))
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -209,7 +209,7 @@ def _cuts(settings: Settings) -> Question | None:
         return None
     allowed = []
     for cut in CUTS:
-        with contextlib.suppress(SettingError):
+        with contextlib.suppress(RefusedError):
             settings.replace(substructures=cut)
             allowed.append(str(cut))
     cuts = ",".join(allowed)

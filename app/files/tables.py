@@ -9,6 +9,7 @@ from app.state import PageState
 from solver.columns import column_of
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
+from solver.refusal import RefusedError
 from solver.remarks import ends_of_tables
 from solver.scenes import discretise
 from solver.settings import Settings
@@ -24,7 +25,7 @@ Content = Settings | OtherResults | MeasuredLoop
 
 def use_of(table: Table, settings: Settings, axes: Axes) -> str:
     """What a table is used as by its head: a loop, or a path."""
-    with suppress(SettingError):
+    with suppress(RefusedError):
         columns_of(table, axes)
         return LOOP
     return path_of(table, settings)
