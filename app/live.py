@@ -49,7 +49,6 @@ class Live:
         self._timeline = pn.Row(
             self.transport.play_button, sizing_mode="stretch_width", height=LOW, margin=0
         )
-        self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
         look = {"styles": {"flex-wrap": "wrap", "justify-content": "space-between"}}
         below = wrapped(self._sentence, self._figures, sizing_mode="stretch_width", **look)
@@ -64,13 +63,13 @@ class Live:
         for view in self._in_sight():
             view.figure  # noqa: B018  # it is made when it is first asked for
 
-    def open(self) -> None:
+    def open(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the figures, and what there is of a run, now that a browser has all else.
 
         It would lay them out anew for each widget that follows.
         """
         self._is_open = True
-        self.arrange(self._kinds)
+        self.arrange(kinds)
         scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
         scene.sizing_mode = "stretch_both"
         timeline.sizing_mode = "stretch_both"
@@ -83,8 +82,7 @@ class Live:
     @pn.io.hold()
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
-        state, self._kinds = self.state, kinds
-        self._cards = self._all
+        state, self._cards = self.state, self._all
         if kinds is not None:
             self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":

@@ -92,7 +92,7 @@ class Page:
     def loaded(self) -> None:
         """Show the figures, and let the first run go on or follow a class: a browser is there."""
         self._supervisor.open()
-        self._live.open()
+        self._live.open(self._guide.kinds)
         if not self.state.room:
             if not self._iteration:
                 self.state.param.trigger("pace")
