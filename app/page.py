@@ -16,7 +16,7 @@ from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
-from app.files.export import TakeAway
+from app.files.export import offers
 from app.files.link import Link, read, show
 from app.lessons.guide import Guide
 from app.live import STYLE, Live, column
@@ -63,15 +63,15 @@ class Page:
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        take_away, self._words = TakeAway(state, self._live.display), glossary()
-        dialogs = *self._guide.dialogs.values(), self._class.dialog, take_away.view, self._words
+        self._away, self._words = dialog("Take away"), glossary()
+        dialogs = *self._guide.dialogs.values(), self._class.dialog, self._away, self._words
         for each in dialogs:
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header(take_away)],
+            header=[self._header()],
             main=[self._main],
             busy_indicator=None,
             # As `theme` in the address has it.
@@ -106,13 +106,13 @@ class Page:
         self._supervisor.end()
         PAGES.leave()
 
-    def _header(self, take_away: TakeAway) -> pn.Row:
+    def _header(self) -> pn.Row:
         actions = {
             "Lessons": ("school", lambda event: self._guide.offer("lesson")),
             "Cases": ("cases", lambda event: self._guide.offer("case")),
             "A class": ("groups", lambda event: self._class.open()),
             "Presenter view (p)": ("slideshow", lambda event: self._present()),
-            "Take away": ("download", lambda event: take_away.open()),
+            "Take away": ("download", lambda event: self._take_away()),
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
@@ -133,6 +133,11 @@ class Page:
         """Put a dialog on the page when it is first opened."""
         if event.obj not in self.template.main:
             self.template.main = [*self.template.main, event.obj]
+
+    def _take_away(self) -> None:
+        """Offer to save what is seen."""
+        self._away[:] = offers(self.state, list(self._live.display.views))
+        self._away.open = True
 
     def _help(self) -> None:
         self._words.open = True
