@@ -143,7 +143,7 @@ class Card:
 
     def fit(self) -> None:
         """Offer the views that say anything here; the one that the state names is in sight."""
-        state, names = self._state, self._state.plots.split(",")
+        state, names = self._state, self._state.plots
         offered = [view for view in self.views if view.applies(state.settings)]
         first = offered[0] if offered else None
         seen = next((view for view in offered if view.name in names), first)
@@ -164,8 +164,8 @@ class Card:
         view = self._offered[place]
         if view is not self.seen:
             mine = {view.name for view in self.views}
-            names = [name for name in self._state.plots.split(",") if name and name not in mine]
-            self._state.plots = ",".join([*names, view.name] if place else names)
+            names = [name for name in self._state.plots if name not in mine]
+            self._state.plots = [*names, view.name] if place else names
 
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; it is made when it is first seen."""

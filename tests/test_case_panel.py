@@ -84,7 +84,7 @@ def test_a_page_is_in_a_lesson_or_in_a_case() -> None:
     panel = panel_of(state)
     for _ in range(2):
         panel.open("lesson", "leaf-spring")
-        assert (state.case, state.plots) == ("", "")
+        assert (state.case, state.plots) == ("", [])
         assert state.readings == readings_of(LESSONS["leaf-spring"])
         panel.open("case", NAME)
         assert state.lesson == ""
@@ -103,7 +103,7 @@ def test_a_plot_that_only_the_next_run_has_comes_to_the_front() -> None:
     card = Card(CARDS[1], state)
     card.fit()
     cycled = state.settings.replace(load="cycles")
-    state.param.update(settings=cycled, plots="Energy a cycle")
+    state.param.update(settings=cycled, plots=["Energy a cycle"])
     card.fit()
     assert card.seen is not None
     assert card.seen.name == "Energy a cycle"

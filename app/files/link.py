@@ -138,7 +138,7 @@ def query_of(place: Place) -> str:
     first["instant"] = lesson.instant if lesson else Selection().phase
     for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view"):
         if place.get(name, first[name]) != first[name]:
-            pairs[name] = str(place[name])
+            pairs[name] = ",".join(place[name]) if name == "plots" else str(place[name])
     return "?" + "&".join(f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items())
 
 
@@ -156,9 +156,10 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     place |= opened
     if "lesson" in opened:
         place["instant"] = LESSONS[opened["lesson"]].instant
-    plots = pairs.pop("plots", plots_of(opened.get("case", ""))).split(",")
-    plots = [name.strip() for name in plots if name.strip()]
-    place["plots"] = ",".join(name for name in plots if name in _PLOTS)
+    plots = plots_of(opened.get("case", ""))
+    if "plots" in pairs:
+        plots = list(filter(None, map(str.strip, pairs.pop("plots").split(","))))
+    place["plots"] = [name for name in plots if name in _PLOTS]
     refused += [f"there is no plot {name[:40]}" for name in plots if name not in _PLOTS]
     for name in [name for name in _CHECKED if name in pairs]:
         text, definition = pairs.pop(name), _CHECKED[name]

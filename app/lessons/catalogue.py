@@ -44,9 +44,9 @@ def settings_of(lesson: Lesson | Case) -> Settings:
     return settings.replace(**SEARCH) if settings.finish == "at-once" else settings
 
 
-def plots_of(case: str) -> str:
-    """Plots that come to the front with a case, as `PageState` has them; none without one."""
-    return ",".join(CASES[case].views) if case in CASES else ""
+def plots_of(case: str) -> list[str]:
+    """Names of the plots that come to the front with a case; none without one."""
+    return list(CASES[case].views) if case in CASES else []
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
