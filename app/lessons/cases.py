@@ -38,13 +38,19 @@ def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
     return pn.FlexBox(*cards, gap="4px", margin=0)
 
 
-def introduction(case: Case) -> str:
-    """Which case it is, and its question (Markdown)."""
+def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
+    """Its question, what is known beside what the run has found so far, and its source (Markdown).
+
+    They are called again with each frame.
+    """
     place = f"<small>Case {list(CASES).index(case.name) + 1} of {len(CASES)}</small>"
-    return f"{place}\n\n### {case.title}\n\n**{_raised(case.question)}**"
+    head = f"{place}\n\n### {case.title}\n\n**{_raised(case.question)}**"
+    known = f"*{_raised(case.formula)}*. {_raised(case.how)}\n\n<small>{case.source}</small>"
+    change = f"{known}\n\n#### What to change first\n\n{case.change}"
+    return [lambda: head, lambda: _known_beside_found(case, state), lambda: change]
 
 
-def known_beside_found(case: Case, state: PageState) -> str:
+def _known_beside_found(case: Case, state: PageState) -> str:
     """What is known beside what the run finds (Markdown)."""
     frame, quantity, is_known = state.frame, case.quantity, _is_known(case, state.settings)
     found = math.nan if frame is None else frame.readings.get(quantity.name, math.nan)
@@ -55,12 +61,6 @@ def known_beside_found(case: Case, state: PageState) -> str:
     known = "known" if is_known else "known before the change"
     words = f"{known} **{_written(case.known, quantity)}**, this run **{run}**{off}"
     return f"{quantity.title}: {words}"
-
-
-def source_and_change(case: Case) -> str:
-    """How it is known, and what to change first (Markdown)."""
-    known = f"*{_raised(case.formula)}*. {_raised(case.how)}\n\n<small>{case.source}</small>"
-    return f"{known}\n\n#### What to change first\n\n{case.change}"
 
 
 def _is_known(case: Case, settings: Settings) -> bool:

@@ -13,7 +13,7 @@ import param
 
 from app.controls import SettingControl
 from app.frame import Selection
-from app.lessons.cases import gallery, introduction, known_beside_found, source_and_change
+from app.lessons.cases import gallery, texts_of
 from app.lessons.catalogue import (
     CASES,
     KNOWN,
@@ -139,17 +139,13 @@ class Guide:
             pn.state.execute(curve.reveal, schedule=True)
 
     def _parts_of_case(self, case: Case) -> list[Any]:
-        texts = (
-            lambda: introduction(case),
-            lambda: known_beside_found(case, self._state),
-            lambda: source_and_change(case),
-        )
         buttons = pn.FlexBox(
             text_button("As it was", partial(self.open, "case", case.name), variant="outlined"),
             text_button("All settings", self._end),
             margin=(8, 0),
         )
-        return [*map(self._markdown, texts), *map(self._control, case.controls), buttons]
+        texts = map(self._markdown, texts_of(case, self._state))
+        return [*texts, *map(self._control, case.controls), buttons]
 
     def _look(self, lesson: Lesson) -> None:
         """Look at what it speaks of: the moving picture, or the instant of its plots."""
