@@ -155,11 +155,6 @@ def _iterations(settings: Settings, within: float, *vary: str) -> Question:
     return Question(vary, of)
 
 
-def _energy(settings: Settings) -> Question | None:
-    """Over the load's amplitude: small ones take its third power along rods (Masing)."""
-    return _over(settings, "dissipation", VALUES, _load(settings))
-
-
 def _bricks(settings: Settings) -> Question | None:
     """Over the courses, which the load passes one after the other; more bricks a course help."""
     if "courses" not in variable(settings):
@@ -216,18 +211,17 @@ def _cuts(settings: Settings) -> Question | None:
     return _iterations(settings, TENTH, proposed(settings, "k_scale"), f"substructures={cuts}")
 
 
-def _energies(settings: Settings) -> Question | None:
-    return _over(settings, "dissipation", COARSE, "friction", _load(settings))
-
-
 TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))
 """A word on each question and report, by what its button says."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
-    "Energy over amplitude": _energy,
+    # Small ones take its third power along rods (Masing).
+    "Energy over amplitude": lambda given: _over(given, "dissipation", VALUES, _load(given)),
     "Iterations over k": iterations_over_k,
     "Iterations over k and substructures": _cuts,
     "Iterations over bricks": _bricks,
-    "Energy over friction and load": _energies,
+    "Energy over friction and load": lambda given: _over(
+        given, "dissipation", COARSE, "friction", _load(given)
+    ),
     "Fretting map": _fretting,
     "Shakedown limit": _shakedown,
 }
