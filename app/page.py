@@ -44,7 +44,7 @@ class Page:
     """
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
-        self.state, self._iteration = state, iteration
+        self.state = state
         document = pn.state.curdoc
         browser = Browser(name="browser")
         link = Link(state, browser)
@@ -94,7 +94,7 @@ class Page:
         self._supervisor.open()
         self._live.open(self._guide.kinds)
         if not self.state.room:
-            if not self._iteration:
+            if self.state.running:
                 self.state.param.trigger("pace")
         elif not self._member.enter(self.state.room):
             self._supervisor.begin()

@@ -13,10 +13,9 @@ import param
 
 from app.browser import Browser
 from app.frame import Selection
-from app.lessons.catalogue import KNOWN, LESSONS, plots_of, settings_of
+from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from app.views.catalogue import CARDS
 from solver.checked import dump
 from solver.definitions import about, checked_value, count, parse, quantity
 from solver.refusal import RefusedError
@@ -35,7 +34,6 @@ Place = dict[str, Any]
 """What an address says, by the names of `PageState`: `settings` in any case; the room is "class" in
 the address. Beside that the `instant` as a share of the interval, and the `iteration` at which the
 run waits."""
-_PLOTS = [view.name for card in CARDS for view in card]
 _CHECKED: dict[str, Any] = {
     "instant": quantity(0.0, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
     "iteration": count(0, (0, 100_000), (0, 100_000), "", group="", title=""),
@@ -159,8 +157,8 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     plots = plots_of(opened.get("case", ""))
     if "plots" in pairs:
         plots = list(filter(None, map(str.strip, pairs.pop("plots").split(","))))
-    place["plots"] = [name for name in plots if name in _PLOTS]
-    refused += [f"there is no plot {name[:40]}" for name in plots if name not in _PLOTS]
+    place["plots"] = [name for name in plots if name in KINDS]
+    refused += [f"there is no plot {name[:40]}" for name in plots if name not in KINDS]
     for name in [name for name in _CHECKED if name in pairs]:
         text, definition = pairs.pop(name), _CHECKED[name]
         try:

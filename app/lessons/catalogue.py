@@ -31,7 +31,8 @@ VALUE = re.compile(r"\{value:(.*?)\}")
 """A quantity in what a lesson says."""
 PENDING = "…"
 """What only the rest of the run will tell."""
-_KINDS = {kind.name: kind for card in CARDS for kind in card}
+KINDS = {kind.name: kind for card in CARDS for kind in card}
+"""The plots, by name."""
 
 
 def settings_of(lesson: Lesson | Case) -> Settings:
@@ -51,7 +52,7 @@ def plots_of(case: str) -> list[str]:
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
     """The plots that stand beside a lesson; before the choice only those that leave it open."""
-    return tuple(_KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
+    return tuple(KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
 
 
 def place_of(lesson: Lesson) -> str:
