@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -116,16 +117,9 @@ class TableOpener:
         """Take a file as what it seems to be; of a loop the columns are shown."""
         if not self.file.value:
             return
-        source, data, settings = self.file.filename, self.file.value, self._state.settings
         self._table = None
-        try:
-            contents, message = self._read(source, data)
-        except RefusedError as refused:
-            self._state.refusal = message = message_of(refused, settings)
-            contents = []
-        self.message.object = message
+        contents = self._take(partial(self._read, self.file.filename, self.file.value))
         self.columns_button.visible = self._table is not None
-        self._take(contents)
         if any(isinstance(content, MeasuredLoop) for content in contents):
             self.show()
 
@@ -166,26 +160,27 @@ class TableOpener:
 
     def _reread(self) -> None:
         """Use the table as the dialog says."""
-        if self._is_updating or self._table is None:
-            return
-        settings, contents = self._state.settings, list[Content]()
-        try:
-            table = renamed(self._table, self.heads.value)
-            axes = axes_on(self._state)
-            contents, message = read_as(self.use.value, table, self._source, settings, axes)
-            self.message.object = message
-        except RefusedError as refused:
-            message = message_of(refused, settings)
-        self._understood.object = message
-        self._take(contents)
+        if not self._is_updating and self._table is not None:
+            self._take(self._read_as)
 
-    def _take(self, contents: list[Content]) -> None:
-        """Have the page show what was brought, or take settings over."""
+    def _read_as(self) -> tuple[list[Content], str]:
+        table, settings = renamed(self._table, self.heads.value), self._state.settings
+        return read_as(self.use.value, table, self._source, settings, axes_on(self._state))
+
+    def _take(self, read: Callable[[], tuple[list[Content], str]]) -> list[Content]:
+        """What is read, which the page shows or runs; nothing where it is refused, as is said."""
+        contents = list[Content]()
+        try:
+            contents, message = read()
+        except RefusedError as refused:
+            self._state.refusal = message = message_of(refused, self._state.settings)
+        self.message.object = self._understood.object = message
         for content in contents:
             if isinstance(content, Settings):
                 self._state.adopt(content)
             else:
                 self._state.brought = content
+        return contents
 
     def _forget(self) -> None:
         self.message.object = ""
