@@ -1,4 +1,4 @@
-"""What the browser says: that a picture is painted, a key pressed, a widget's value come back."""
+"""What the browser says: a picture is painted, a key pressed, one goes back, a value comes back."""
 
 from __future__ import annotations
 
@@ -29,18 +29,25 @@ LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
 """Elements that take keys for themselves."""
+COPY = """
+if (browser.copied) {
+  navigator.clipboard?.writeText(browser.copied).catch(() => prompt("The link", browser.copied))
+}
+"""
 LISTEN = """
-const measure = () => { keys.height = innerHeight }
+const measure = () => { browser.height = innerHeight }
 measure()
 addEventListener("resize", measure)
+// One may come back to the same address again, and to that which says nothing.
+addEventListener("popstate", () => { browser.search = ""; browser.search = location.search || "?" })
 document.addEventListener("keydown", (event) => {
   const target = event.composedPath()[0]
   const takes = target.closest?.(taken) || (event.key == " " && target.closest?.("button"))
   const name = (event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key
   if (takes || event.ctrlKey || event.metaKey || event.altKey || !names.includes(name)) { return }
   event.preventDefault()
-  keys.pressed = name
-  keys.count += 1
+  browser.pressed = name
+  browser.count += 1
 })
 """
 
@@ -136,25 +143,32 @@ class Display:
             self._state.send(Ready())
 
 
-class Keys(DataModel):
-    """The last key that was pressed, a count of them, and the height of the window in pixels."""
+class Browser(DataModel):
+    """The window and what is done there.
 
+    The height in pixels; the last key and a count of them; the address that one has gone back, or
+    on, to; and the link that is to be copied.
+    """
+
+    height: int = Int(default=0)  # type: ignore[assignment]
     pressed: str = String(default="")  # type: ignore[assignment]
     count: int = Int(default=0)  # type: ignore[assignment]
-    height: int = Int(default=0)  # type: ignore[assignment]
+    search: str = String(default="")  # type: ignore[assignment]
+    copied: str = String(default="")  # type: ignore[assignment]
 
+    def listen(
+        self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
+    ) -> None:
+        """Have keys do something, by their names in the browser, wherever nothing else takes them.
 
-def listen(state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]) -> None:
-    """Have keys do something, by their names in the browser, wherever nothing else takes them.
-
-    The state has the height of the window.
-    """
-    keys = Keys(name="keys")
-    keys.on_change("height", lambda name, old, new: state.param.update(height=new))
-    keys.on_change("count", lambda name, old, new: actions[keys.pressed]())
-    document.add_root(keys)
-    code = CustomJS(args={"keys": keys, "names": list(actions), "taken": TAKEN}, code=LISTEN)
-    document.js_on_event(DocumentReady, code)
+        The state has the height of the window.
+        """
+        self.on_change("height", lambda name, old, new: state.param.update(height=new))
+        self.on_change("count", lambda name, old, new: actions[self.pressed]())
+        args = {"browser": self, "names": list(actions), "taken": TAKEN}
+        self.js_on_change("copied", CustomJS(args=args, code=COPY))
+        document.add_root(self)
+        document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
 
 
 class Echoes:

@@ -114,17 +114,6 @@ def find(code: str) -> Classroom | None:
     return None if room is None or room.is_over else room
 
 
-def begin_class(leader: ClassMember) -> Classroom:
-    """A new class; those that are over are forgotten."""
-    for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
-        del CLASSROOMS[code]
-    code = ""
-    while not code or code in CLASSROOMS:
-        code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
-    CLASSROOMS[code] = Classroom(code, leader)
-    return CLASSROOMS[code]
-
-
 class ClassMember(param.Parameterized):
     """The part of a page in a class: it leads one, follows one, or neither.
 
@@ -179,9 +168,16 @@ class ClassMember(param.Parameterized):
         return room is not None and self.follows
 
     def begin(self) -> None:
-        """Begin a class that sees what this page shows."""
-        if self.room is None:
-            self._lead(begin_class(self))
+        """Begin a class that sees what this page shows; those that are over are forgotten."""
+        if self.room is not None:
+            return
+        for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
+            del CLASSROOMS[code]
+        code = ""
+        while not code or code in CLASSROOMS:
+            code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
+        CLASSROOMS[code] = Classroom(code, self)
+        self._lead(CLASSROOMS[code])
 
     def leave(self) -> None:
         """End the class that this page leads, or go on with a run of its own."""

@@ -11,7 +11,7 @@ import panel_material_ui as pmui
 import param
 
 from app.browser import Echoes
-from app.files.opener import FilesPanel
+from app.files.opener import files_panel
 from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
@@ -87,9 +87,7 @@ class SettingControl:
 
     def _make_slider(self) -> pmui.FloatSlider:
         low, high = (self._to_slider(end) for end in self._definition.softbounds)
-        is_count = isinstance(self._definition, param.Integer) and not is_logarithmic(
-            self._definition
-        )
+        is_count = isinstance(self._definition, param.Integer) and not self._is_logarithmic
         slider = pmui.FloatSlider(
             label=self._about.title,
             start=low,
@@ -209,7 +207,7 @@ class SettingControl:
 class Controls:
     """All controls of the present scene: the chief ones, and groups that open.
 
-    `copy` is that of `FilesPanel`.
+    `copy` is that of `files_panel`.
     """
 
     def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
@@ -260,24 +258,20 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
-        self._names = list(groups.values())
         self._groups.active = []
         # What is opened takes the place of a spacer, which costs a page less than a column.
-        self._titles = [*groups, "Files"]
-        self._groups[:] = [(title, pn.Spacer(height=0)) for title in self._titles]
+        self._closed = dict(enumerate([*groups.items(), ("Files", [])]))
+        self._groups[:] = [(title, pn.Spacer(height=0)) for title, _ in self._closed.values()]
 
     def _open(self) -> None:
         """Fill the groups that are opened for the first time."""
-        for place in self._groups.active:
-            if not isinstance(self._groups[place], pn.Spacer):
-                continue
-            if place == len(self._names):
-                view = FilesPanel(self._state, self._copy, WIDTH).view
-            else:
-                controls = [SettingControl(name, self._state) for name in self._names[place]]
-                self._controls += controls
-                view = pn.Column(*(control.view for control in controls), margin=0)
-            self._groups[place] = (self._titles[place], view)
+        for place in self._closed.keys() & {*self._groups.active}:
+            title, names = self._closed.pop(place)
+            controls = [SettingControl(name, self._state) for name in names]
+            self._controls += controls
+            settings = pn.Column(*(control.view for control in controls), margin=0)
+            view = settings if names else files_panel(self._state, self._copy, WIDTH)
+            self._groups[place] = (title, view)
 
 
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:

@@ -49,7 +49,6 @@ class Live:
         self._timeline = pn.Row(
             self.transport.play_button, sizing_mode="stretch_width", height=LOW, margin=0
         )
-        self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
         look = {"styles": {"flex-wrap": "wrap", "justify-content": "space-between"}}
         below = wrapped(self._sentence, self._figures, sizing_mode="stretch_width", **look)
@@ -64,13 +63,13 @@ class Live:
         for view in self._in_sight():
             view.figure  # noqa: B018  # it is made when it is first asked for
 
-    def open(self) -> None:
+    def open(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the figures, and what there is of a run, now that a browser has all else.
 
         It would lay them out anew for each widget that follows.
         """
         self._is_open = True
-        self.arrange(self._kinds)
+        self.arrange(kinds)
         scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
         scene.sizing_mode = "stretch_both"
         timeline.sizing_mode = "stretch_both"
@@ -79,15 +78,11 @@ class Live:
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._timeline, self._plots])
 
+    # What changes within a hold is sent at once, and in this order.
+    @pn.io.hold()
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
-        # What changes within a hold is sent at once, and in this order.
-        with pn.io.hold():
-            self._arrange(kinds)
-
-    def _arrange(self, kinds: tuple[type[View], ...] | None) -> None:
-        state, self._kinds = self.state, kinds
-        self._cards = self._all
+        state, self._cards = self.state, self._all
         if kinds is not None:
             self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":
@@ -148,7 +143,7 @@ class Card:
 
     def fit(self) -> None:
         """Offer the views that say anything here; the one that the state names is in sight."""
-        state, names = self._state, self._state.plots.split(",")
+        state, names = self._state, self._state.plots
         offered = [view for view in self.views if view.applies(state.settings)]
         first = offered[0] if offered else None
         seen = next((view for view in offered if view.name in names), first)
@@ -169,8 +164,8 @@ class Card:
         view = self._offered[place]
         if view is not self.seen:
             mine = {view.name for view in self.views}
-            names = [name for name in self._state.plots.split(",") if name and name not in mine]
-            self._state.plots = ",".join([*names, view.name] if place else names)
+            names = [name for name in self._state.plots if name not in mine]
+            self._state.plots = [*names, view.name] if place else names
 
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; it is made when it is first seen."""

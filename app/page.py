@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +10,15 @@ import panel as pn
 import panel_material_ui as pmui
 from panel.util import edit_readonly
 
-from app.browser import listen
+from app.browser import Browser
 from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
-from app.files.export import TakeAway
+from app.files.export import offers
 from app.files.link import Link, read, show
-from app.lessons.cases import CasePanel
-from app.lessons.panel import LessonPanel
+from app.lessons.guide import Guide
 from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
@@ -46,9 +44,10 @@ class Page:
     """
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
-        self.state, self._iteration = state, iteration
+        self.state = state
         document = pn.state.curdoc
-        link = Link(state)
+        browser = Browser(name="browser")
+        link = Link(state, browser)
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
@@ -57,50 +56,45 @@ class Page:
             state.running = not iteration
         self._live = Live(state, document)
         self._member = ClassMember(state, self._supervisor, document)
-        self._lesson = LessonPanel(
-            state, self._live.transport, self._dress, self._member.open_counts
-        )
-        self._case = CasePanel(state, self._dress)
+        transport, open_counts = self._live.transport, self._member.open_counts
+        self._guide = Guide(state, transport, self._dress, open_counts)
         self._class = ClassDialog(self._member)
-        for part in (self._lesson, self._case, self._class):
-            part.view.stylesheets = [STYLE]
+        self._guide.view.stylesheets = self._class.view.stylesheets = [STYLE]
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        take_away, self._words = TakeAway(state, self._live.display), glossary()
-        dialogs = [part.dialog for part in (self._lesson, self._case, self._class)]
-        for each in (*dialogs, take_away.view, self._words):
+        self._away, self._words = dialog("Take away"), glossary()
+        dialogs = *self._guide.dialogs.values(), self._class.dialog, self._away, self._words
+        for each in dialogs:
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header(take_away)],
+            header=[self._header()],
             main=[self._main],
             busy_indicator=None,
+            # As `theme` in the address has it.
+            dark_theme=pn.config.theme == "dark",
             sx=COMPACT,
         )
         with edit_readonly(self.template):
             # It follows the server as a whole: each event of a page would be told to all others.
             self.template.busy = False
-        listen(
-            state, document, {**self._live.transport.keys(), "p": self._present, "?": self._help}
-        )
+        browser.listen(state, document, {**transport.keys(), "p": self._present, "?": self._help})
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda event: state.view == "present" and self._dress(), "height")
         self._turn(state.tab)
-        self._lesson.show()
-        self._case.show()
+        self._guide.show()
 
     def loaded(self) -> None:
         """Show the figures, and let the first run go on or follow a class: a browser is there."""
         self._supervisor.open()
-        self._live.open()
+        self._live.open(self._guide.kinds)
         if not self.state.room:
-            if not self._iteration:
-                self._live.display.pulse.on_change("painted", self._go_on)
+            self._live.display.pulse.on_change("painted", self._go_on)
         elif not self._member.enter(self.state.room):
             self._supervisor.begin()
             self.state.run()
@@ -120,13 +114,13 @@ class Page:
         self._supervisor.end()
         PAGES.leave()
 
-    def _header(self, take_away: TakeAway) -> pn.Row:
+    def _header(self) -> pn.Row:
         actions = {
-            "Lessons": ("school", lambda event: self._lesson.offer()),
-            "Cases": ("cases", lambda event: self._case.offer()),
+            "Lessons": ("school", lambda event: self._guide.offer("lesson")),
+            "Cases": ("cases", lambda event: self._guide.offer("case")),
             "A class": ("groups", lambda event: self._class.open()),
             "Presenter view (p)": ("slideshow", lambda event: self._present()),
-            "Take away": ("download", lambda event: take_away.open()),
+            "Take away": ("download", lambda event: self._take_away()),
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
@@ -147,6 +141,11 @@ class Page:
         """Put a dialog on the page when it is first opened."""
         if event.obj not in self.template.main:
             self.template.main = [*self.template.main, event.obj]
+
+    def _take_away(self) -> None:
+        """Offer to save what is seen."""
+        self._away[:] = offers(self.state, list(self._live.display.views))
+        self._away.open = True
 
     def _help(self) -> None:
         self._words.open = True
@@ -171,10 +170,9 @@ class Page:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
         # What comes in front is appended, and put there by the style sheet: a column whose children
         # change their order loses some of them.
-        beside = [part.view for part in (self._lesson, self._case) if part.view.visible]
-        line = self._class.view
+        text, line = self._guide.view, self._class.view
         views = (
-            (self._beside, [self._live.view, *beside]),
+            (self._beside, [self._live.view] + [text] * text.visible),
             (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
         )
         for place, objects in views:
@@ -188,10 +186,10 @@ class Page:
         """
         self._place()
         is_bare = self.state.view != "page"
-        self._live.arrange(self._lesson.kinds)
+        self._live.arrange(self._guide.kinds)
         self.template.param.update(
             sx=BARE if is_bare else COMPACT,
-            sidebar_open=not (is_bare or self._lesson.view.visible or self._case.view.visible),
+            sidebar_open=not (is_bare or self._guide.view.visible),
         )
 
 
@@ -202,14 +200,13 @@ def open_page() -> pmui.Page:
         return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
     location = pn.state.location
     place, refusal = read(location.search if location is not None else "")
-    state = PageState(place.settings, refusal=refusal)
-    show(state, replace(place, iteration=0))
-    page = Page(state, place.iteration)
+    state = PageState(place["settings"], refusal=refusal)
+    iteration = place.pop("iteration", 0)
+    show(state, place)
+    page = Page(state, iteration)
     if "Mobi" in pn.state.headers.get("User-Agent", ""):
         # There the controls would lie over all else.
         page.template.sidebar_open = False
-    if place.theme:
-        page.template.dark_theme = place.theme == "dark"
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template

@@ -117,7 +117,7 @@ class PageState(param.Parameterized):
     question = param.String(doc="What the tab What if asks, as `Question` writes it.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
     height = param.Integer(default=720, doc="Of the browser's window, pixels.")
-    plots = param.String(doc="Names of the views on top of their cards, between commas.")
+    plots = param.List(default=[], doc="Names of the views on top of their cards.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(
         class_=(OtherResults, MeasuredLoop), default=None, doc="Results, or a measured loop."

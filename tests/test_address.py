@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.files.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
+from app.browser import Browser
+from app.files.link import LESSONS, LONGEST, Link, link_of, place_of, query_of, read, show
 from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
@@ -18,15 +19,14 @@ from solver.definitions import CurveParameter
 from solver.scenes import CATALOGUE
 from solver.study.comparison import read_results
 
-PARTS: dict[str, Any] = {
+LOOKED_AT: dict[str, Any] = {
     "tab": "What if",
     "question": "friction=0.2:0.4:3 peak=600:900:2 dissipation",
     "instant": 0.25,
     "iteration": 12,
     "pace": "5 a second",
-    "plots": "Convergence,Singular values",
+    "plots": ["Convergence", "Singular values"],
     "view": "present",
-    "theme": "dark",
 }
 
 
@@ -37,28 +37,28 @@ def test_an_address_says_every_setting_that_is_not_the_default(scene: str) -> No
         if isinstance(definition, CurveParameter):
             settings = settings.replace(**{name: settings.points(name)})
     settings = settings.with_change("friction", 0.45).with_change("method", "paper")
-    place, refusal = read(query_of(Place(settings)))
+    place, refusal = read(query_of({"settings": settings}))
     assert not refusal
-    assert place.settings.values() == settings.values()
+    assert place["settings"].values() == settings.values()
 
 
 def test_an_address_says_what_is_looked_at() -> None:
-    place, refusal = read(query_of(Place(**PARTS)))
+    place, refusal = read(query_of({"settings": default_settings("bar"), **LOOKED_AT}))
     assert not refusal
-    assert {name: getattr(place, name) for name in PARTS} == PARTS
+    assert {name: place[name] for name in LOOKED_AT} == LOOKED_AT
 
 
 def test_what_begins_a_scene_needs_no_words() -> None:
     for scene in CATALOGUE:
-        assert query_of(Place(default_settings(scene))) == f"?scene={scene}"
+        assert query_of({"settings": default_settings(scene)}) == f"?scene={scene}"
 
 
 @pytest.mark.parametrize("name", sorted(LESSONS))
 def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
     place, refusal = read(f"?lesson={name}&k_scale=3")
     assert not refusal
-    assert place.settings.k_scale == 3.0
-    assert read(query_of(place))[0].settings.values() == place.settings.values()
+    assert place["settings"].k_scale == 3.0
+    assert read(query_of(place))[0]["settings"].values() == place["settings"].values()
     assert query_of(place) == f"?lesson={name}&k_scale=3.0"
 
 
@@ -66,10 +66,10 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
 def test_a_case_is_its_name_and_what_was_changed(name: str) -> None:
     place, refusal = read(f"?case={name}&friction=0.25")
     assert not refusal
-    assert place.plots.split(",") == list(CASES[name].views or ("",))
+    assert place["plots"] == list(CASES[name].views)
     assert query_of(place) == f"?case={name}&friction=0.25"
-    assert read(query_of(place))[0].settings.values() == place.settings.values()
-    assert read(f"?case={name}&plots=Convergence")[0].plots == "Convergence"
+    assert read(query_of(place))[0]["settings"].values() == place["settings"].values()
+    assert read(f"?case={name}&plots=Convergence")[0]["plots"] == ["Convergence"]
 
 
 def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
@@ -102,19 +102,19 @@ def test_a_part_that_is_refused_is_told_and_the_rest_holds(query: str, told: str
     assert told in refusal
     assert refusal.startswith("From the address: ")
     assert refusal.endswith(".")
-    assert (place.settings.peak, place.view) == (1100.0, "embed")
+    assert (place["settings"].peak, place["view"]) == (1100.0, "embed")
 
 
 def test_settings_whose_path_was_refused_go_to_the_worker_all_the_same() -> None:
     place, refusal = read("?load=[[0,0],[0,1]]&peak=800")
     assert refusal
-    assert pickle.loads(pickle.dumps(place.settings)).peak == 800.0
+    assert pickle.loads(pickle.dumps(place["settings"])).peak == 800.0
 
 
 def test_settings_that_hold_together_may_stand_in_any_order() -> None:
     place, refusal = read("?substructures=80&elements=100")
     assert not refusal
-    assert place.settings.substructures == 80
+    assert place["settings"].substructures == 80
 
 
 def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -> None:
@@ -123,13 +123,13 @@ def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -
     link, message = link_of(state)
     assert len(link) < LONGEST
     assert message.endswith("Path of the force at the right end.")
-    assert read(link)[0].settings.load == "sine"
-    assert read(link, state.settings)[0].settings.load == path
+    assert read(link)[0]["settings"].load == "sine"
+    assert read(link, state.settings)[0]["settings"].load == path
 
 
 def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     state = PageState(default_settings("bar"))
-    link = Link(state)
+    link = Link(state, Browser())
     before = query_of(place_of(state))
     state.change(peak=1200.0)
     state.choose_scene("rope")
@@ -141,7 +141,7 @@ def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
 
 def test_a_slider_that_is_dragged_writes_no_address_until_it_is_let_go() -> None:
     state = PageState(default_settings("bar"))
-    link = Link(state)
+    link = Link(state, Browser())
     before = link.query
     state.drag("peak", 700.0)
     assert link.query == before

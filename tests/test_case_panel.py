@@ -10,9 +10,8 @@ import panel as pn
 import pytest
 
 from app.frame import Frame
-from app.lessons.cases import CasePanel
 from app.lessons.catalogue import CASES, LESSONS, PENDING, readings_of, settings_of
-from app.lessons.panel import LessonPanel
+from app.lessons.guide import Guide
 from app.live import Card
 from app.messages import Needs
 from app.state import PageState, default_settings
@@ -26,13 +25,14 @@ each = pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))
 NAME = "lap-joint"
 
 
-def panel_of(state: PageState) -> CasePanel:
-    panel = CasePanel(state, lambda: None)
+def panel_of(state: PageState) -> Guide:
+    player: Any = SimpleNamespace(play=lambda until: None, stop=lambda: None)
+    panel = Guide(state, player, lambda: None, lambda: None)
     panel.show()
     return panel
 
 
-def words_of(panel: CasePanel) -> str:
+def words_of(panel: Guide) -> str:
     return " ".join(pane.object for pane in panel.view.select(pn.pane.Markdown))
 
 
@@ -56,7 +56,7 @@ def test_every_plot_that_a_case_brings_to_the_front_says_something_of_its_run(ca
 def test_a_case_brings_its_run_its_words_and_the_settings_to_change(case: Case) -> None:
     state = PageState(default_settings("incline"))
     panel = panel_of(state)
-    panel.open(case.name)
+    panel.open("case", case.name)
     assert state.settings.values() == settings_of(case).values()
     assert state.readings == [case.quantity.name]
     assert panel.view.visible
@@ -81,15 +81,13 @@ def test_the_runs_own_number_stands_beside_the_known_one(frame: Frame) -> None:
 
 def test_a_page_is_in_a_lesson_or_in_a_case() -> None:
     state = PageState(default_settings("bar"))
-    player: Any = SimpleNamespace(play=lambda until: None, stop=lambda: None)
-    lessons = LessonPanel(state, player, lambda: None, lambda: None)
-    cases = panel_of(state)
+    panel = panel_of(state)
     for _ in range(2):
-        lessons.open("leaf-spring")
-        assert (state.case, cases.view.visible) == ("", False)
+        panel.open("lesson", "leaf-spring")
+        assert (state.case, state.plots) == ("", [])
         assert state.readings == readings_of(LESSONS["leaf-spring"])
-        cases.open(NAME)
-        assert (state.lesson, lessons.view.visible) == ("", False)
+        panel.open("case", NAME)
+        assert state.lesson == ""
         assert state.readings == [CASES[NAME].quantity.name]
 
 
@@ -105,7 +103,7 @@ def test_a_plot_that_only_the_next_run_has_comes_to_the_front() -> None:
     card = Card(CARDS[1], state)
     card.fit()
     cycled = state.settings.replace(load="cycles")
-    state.param.update(settings=cycled, plots="Energy a cycle")
+    state.param.update(settings=cycled, plots=["Energy a cycle"])
     card.fit()
     assert card.seen is not None
     assert card.seen.name == "Energy a cycle"

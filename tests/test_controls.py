@@ -9,7 +9,7 @@ import param
 import pytest
 
 from app.controls import POINTS, Controls, SettingControl
-from app.files.opener import FilesPanel
+from app.files.opener import TableOpener
 from app.refusals import nearest_allowed
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
@@ -226,13 +226,13 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> N
 
 def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:
     state = of_scene("bar")
-    panel = FilesPanel(state, str, 280)
+    opener = TableOpener(state, "Open", ".toml,.csv", 280)
     saved = dump(state.settings)
 
     def open_file(name: str, text: str) -> str:
-        panel.file.filename = name
-        panel.file.value = text.encode()
-        return str(panel.message.object)
+        opener.file.filename = name
+        opener.file.value = text.encode()
+        return str(opener.message.object)
 
     assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
     assert state.settings.duration == 2.0

@@ -13,7 +13,6 @@ from app.frame import Frame
 from app.lessons.catalogue import (
     LESSONS,
     PENDING,
-    Control,
     filled,
     kinds_of,
     parts_of,
@@ -21,8 +20,8 @@ from app.lessons.catalogue import (
     settings_of,
     without_controls,
 )
+from app.lessons.guide import WITHOUT, Guide
 from app.lessons.handout import handout
-from app.lessons.panel import WITHOUT, LessonPanel
 from app.messages import Needs
 from app.state import PageState, Poll, default_settings
 from app.worker.sampling import Sampler
@@ -47,14 +46,14 @@ class Player:
         self.until = 0.0
 
 
-def panel_of(state: PageState) -> tuple[LessonPanel, Player]:
+def panel_of(state: PageState) -> tuple[Guide, Player]:
     player: Any = Player()
-    panel = LessonPanel(state, player, lambda: None, lambda: None)
+    panel = Guide(state, player, lambda: None, lambda: None)
     panel.show()
     return panel, player
 
 
-def words_of(panel: LessonPanel) -> str:
+def words_of(panel: Guide) -> str:
     panes = [*panel.view.select(pn.pane.Markdown)]
     return " ".join(pane.object for pane in panes)
 
@@ -98,11 +97,11 @@ def test_the_answer_comes_after_the_choice(lesson: Lesson) -> None:
 def test_a_lesson_brings_its_scene_and_asks_anew_each_time() -> None:
     state = PageState(default_settings("bar"))
     panel, _ = panel_of(state)
-    panel.open("shakedown")
+    panel.open("lesson", "shakedown")
     assert (state.settings.scene, state.is_asked) == ("block", True)
     panel.predict(WITHOUT)
     assert not state.is_asked
-    panel.open("leaf-spring")
+    panel.open("lesson", "leaf-spring")
     assert (state.settings.scene, state.is_asked) == ("layers", True)
 
 
@@ -156,7 +155,7 @@ def test_what_may_still_come_is_not_called_never(frame: Frame) -> None:
 def test_a_control_stands_in_its_sentence_and_not_on_paper() -> None:
     text = "Move k: {control:k_scale}. It takes {value:iterations} iterations."
     before, control, after = parts_of(text)
-    assert (before, control) == ("Move k: ", Control("k_scale"))
+    assert (before, control) == ("Move k: ", "k_scale")
     assert after == "It takes {value:iterations} iterations."
     assert without_controls(text) == "It takes {value:iterations} iterations."
 

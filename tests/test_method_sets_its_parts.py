@@ -82,7 +82,7 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
     place, complaint = read("?" + "&".join(words))
     # A page shows the search.
     shown = expected | ({"finish": SEARCH["finish"]} if method == "fast" else {})
-    assert (parts(place.settings), complaint) == (shown, "")
+    assert (parts(place["settings"]), complaint) == (shown, "")
     saved = tmp_path / "few.toml"
     saved.write_text(f'scene = "bar"\nmethod = "{method}"\n', encoding="utf-8")
     assert parts(settings_from_command(str(saved), words)[0]) == expected

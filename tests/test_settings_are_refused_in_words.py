@@ -129,4 +129,4 @@ def test_text_that_is_no_number_is_refused_by_every_front(text):
 def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(query, words, scene):
     place, complaint = read(query)
     assert words in complaint
-    assert place.settings.values() == default_settings(scene).values()
+    assert place["settings"].values() == default_settings(scene).values()

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from app.files.link import Place, query_of, read
+from app.files.link import query_of, read
 from solver.checked import dump
 from solver.definitions import allowed, parse
 from solver.files import settings_from_command, settings_from_toml
@@ -21,8 +21,8 @@ def test_files_addresses_commands_and_results_give_the_same_settings_again(scene
         again = settings_from_toml(dump(chosen))
         assert type(again) is type(chosen)
         assert again.values() == values
-        place, complaint = read(query_of(Place(chosen)))
-        assert (place.settings.values(), complaint) == (values, "")
+        place, complaint = read(query_of({"settings": chosen}))
+        assert (place["settings"].values(), complaint) == (values, "")
         texts = [f"{name}={json.dumps(value)}" for name, value in values.items()]
         assert settings_from_command(scene, texts)[0].values() == values
         assert type(chosen).checked(json.loads(json.dumps(values))).values() == values

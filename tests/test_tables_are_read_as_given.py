@@ -247,7 +247,7 @@ def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
     monkeypatch.setattr(Path, "read_text", lambda self, *rest, **more: opened.append(self))
     for text in (path, f'"{path}"'):
         place, complaint = read_address(f"?load={text}")
-        assert place.settings.load == "sine"
+        assert place["settings"].load == "sine"
         assert "choose a preset" in complaint
     assert not opened
 

@@ -10,14 +10,12 @@ import re
 import runpy
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.browser import Display
-from app.files.export import TakeAway, history_table, offline_page, plot_table, program
+from app.files.export import history_table, offers, offline_page, plot_table, program
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
@@ -25,6 +23,7 @@ from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.scene import Scene
 from app.views.timeline import Timeline
+from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.checked import dump
@@ -49,18 +48,17 @@ def ended(scene: str) -> tuple[Runner, Frame]:
     return runner, runner.frame(Needs(extras=NEEDS))
 
 
-def page(scene: str) -> TakeAway:
-    """A page that shows that run, with every view that applies in sight."""
+def page(scene: str) -> tuple[PageState, list[View]]:
+    """The state of a page that shows that run, and every view that applies."""
     _, frame = ended(scene)
     state = PageState(frame.run.settings)
     state.newest = state.frame = frame
-    at_once = SimpleNamespace(add_next_tick_callback=lambda act: act())
-    display = Display(state, at_once, lambda: None)
     kinds = [kind for card in CARDS for kind in card if kind.applies(state.settings)]
     views = [kind(state) for kind in (Scene, Timeline, *kinds)]
-    assert all(view.figure is not None for view in views)
-    display.look_at(views)
-    return TakeAway(state, display)
+    for view in views:
+        assert view.figure is not None
+        view.update(frame, state.selection, None)
+    return state, views
 
 
 def rows_of(table: str) -> list[dict[str, str]]:
@@ -87,7 +85,7 @@ def test_the_program_gives_the_records_of_the_run_again(
 
 def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
     _, frame = ended("bar")
-    view = next(view for view in page("bar").display.views if isinstance(view, ContactForce))
+    view = next(view for view in page("bar")[1] if isinstance(view, ContactForce))
     table = plot_table(view, frame)
     drawn = {float(row["latin"]) for row in rows_of(table) if row["latin"]}
     assert drawn >= {float(value) for value in view.sources["friction"].data["latin"]}
@@ -101,36 +99,34 @@ def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
 
 @pytest.mark.parametrize("scene", SMALL)
 def test_every_plot_of_every_kind_of_scene_is_a_table(scene: str) -> None:
-    for view in page(scene).display.views:
+    for view in page(scene)[1]:
         assert rows_of(plot_table(view, ended(scene)[1])), view.name
 
 
 def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     _, frame = ended("bar")
-    away = page("bar")
     # As many plots as a page has in sight.
-    away.display.look_at(away.display.views[:6])
-    text = offline_page(frame, away.display.views, Selection(), None, "svg")
+    views = page("bar")[1][:6]
+    text = offline_page(frame, views, Selection(), None, "svg")
     assert "<script src" not in text
     assert "<link" not in text
     match = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
     assert match is not None
     kept = json.dumps(json.loads(match[1]))
-    assert kept.count('"svg"') >= len(away.display.views)
+    assert kept.count('"svg"') >= len(views)
     captions = set(re.findall(r" At ([\d.]+) s of 1 s\.", kept))
     assert captions == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
     # The page's own figures are as they were.
-    assert {view.figure.output_backend for view in away.display.views} == {"canvas"}
+    assert {view.figure.output_backend for view in views} == {"canvas"}
 
 
 def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
-    away = page("bar")
-    away.open()
-    assert away.view.open
-    names = [getattr(offer, "filename", "") for offer in away.view]
+    state, views = page("bar")
+    offered = offers(state, views)
+    names = [getattr(offer, "filename", "") for offer in offered]
     assert {"slipfront-bar.html", "slipfront-bar.py", "slipfront-bar-all-iterations.csv"} <= {
         *names
     }
-    assert sum(name.endswith(".csv") for name in names) == 1 + len(away.display.views)
-    for offer in away.view[2:5]:
+    assert sum(name.endswith(".csv") for name in names) == 1 + len(views)
+    for offer in offered[2:5]:
         assert offer.callback().getvalue()

@@ -45,7 +45,7 @@ def wrong(case: KnownCase) -> KnownCase:
 @pytest.mark.parametrize("case", CASES, ids=lambda one: one.title)
 def test_an_address_opens_the_run_of_its_row(case: KnownCase) -> None:
     place, complaint = read_address(case.address)
-    settings = place.settings
+    settings = place["settings"]
     assert not complaint
     given = dict(parse_qsl(case.address.removeprefix("?")))
     assert settings.scene == given.pop("scene")
@@ -99,7 +99,7 @@ PRESSED = 0.1
 def settings_of(title: str) -> Any:
     (case,) = [case for case in CASES if case.title == title]
     assert dict(parse_qsl(case.address.removeprefix("?")))["scene"] in CATALOGUE
-    return read_address(case.address)[0].settings
+    return read_address(case.address)[0]["settings"]
 
 
 @pytest.mark.parametrize(("title", "known"), KNOWN.items())

@@ -68,22 +68,19 @@ class FitTab(CommandTab):
         return brought if brought.units == units else None
 
     @property
-    def command(self) -> Command:
-        """The fit of the settings that are ticked to the loop."""
+    def command(self) -> Command | None:
+        """The fit of the settings that are ticked to the loop, if there are some, and one."""
         names, loop = ",".join(self.chosen.value), self.measured
+        if loop is None or not names:
+            return None
         arguments = ("fit", SETTINGS, "--with", MEASURED, "--vary", names, "--out", OUT)
-        settings = dump(self.state.settings)
-        return arguments, ((SETTINGS, settings), (MEASURED, loop.csv() if loop else ""))
-
-    @property
-    def refusal(self) -> str:
-        """What is missing, or nothing."""
-        return NO_LOOP if self.measured is None else "" if self.chosen.value else NO_SETTING
+        return arguments, ((SETTINGS, dump(self.state.settings)), (MEASURED, loop.csv()))
 
     @property
     def words(self) -> str:
-        """What it does."""
-        return "Settings with which the run is as near to a measured loop as can be."
+        """What it does, and what is missing."""
+        missing = NO_LOOP if self.measured is None else "" if self.chosen.value else NO_SETTING
+        return f"Settings with which the run is as near to a measured loop as can be. {missing}"
 
     @property
     def written(self) -> Files:

@@ -19,8 +19,8 @@ from typing import ClassVar
 import panel as pn
 
 from app.worker.commands import LOG, command
-from solver.definitions import SettingError
 from solver.executors import opened, processors
+from solver.refusal import RefusedError
 from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.run import patience, sweep
 
@@ -180,7 +180,7 @@ class Sweep:
                 self.rows.extend(
                     sweep(self.plan, where, limit=LIMIT, cancelled=self._is_cancelled.is_set)
                 )
-        except SettingError as refusal:
+        except RefusedError as refusal:
             self.message = str(refusal)
         except Exception as trouble:
             log.exception("A sweep broke.")

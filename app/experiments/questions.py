@@ -18,7 +18,8 @@ from app.refusals import message_of
 from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
-from solver.definitions import CurveParameter, Parameter, SettingError, about, is_logarithmic
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
+from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
@@ -59,14 +60,14 @@ class Question:
 
         Raises
         ------
-        SettingError
+        RefusedError
             For whatever of it cannot be run.
         """
         beside = [name for name in BESIDE if QUANTITIES[name].applies(settings)]
         plan = plan_of(self.asked(settings), self.vary, [self.of, *beside])
         for name in plan.idle():
             can = "settings that do something here"
-            raise SettingError(name, "varied", can, "vary another setting")
+            raise RefusedError(name, "varied", can, "vary another setting")
         return plan
 
     def asked(self, settings: Settings) -> Settings:
@@ -79,7 +80,7 @@ class Question:
             return settings
         if not self.of.startswith("iterations"):
             return answer(settings)
-        with contextlib.suppress(SettingError):
+        with contextlib.suppress(RefusedError):
             nearer = min(reading(self.of).at or settings.accuracy, settings.accuracy)
             return settings.replace(finish=SEARCH["finish"], accuracy=nearer)
         return settings
@@ -88,22 +89,21 @@ class Question:
         """What of it cannot be run and why, or nothing."""
         try:
             self.plan(settings)
-        except SettingError as refusal:
+        except RefusedError as refusal:
             return message_of(refusal, settings)
         return ""
 
 
 def question_of(text: str, settings: Settings) -> Question:
-    """The question that a text asks; where settings do not have it, energy, or else k's."""
+    """The question that a text asks; where settings do not have it, the first that is ready."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     names = {setting.partition("=")[0] for setting in vary}
     is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
     if is_known and not question.refusal(settings):
         return question
-    energy = _energy(settings)
-    is_posed = energy is not None and not energy.refusal(settings)
-    return energy if energy is not None and is_posed else iterations_over_k(settings)
+    ready = filter(None, (make(settings) for make in READY.values()))
+    return next((each for each in ready if not each.refusal(settings)), iterations_over_k(settings))
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -143,25 +143,16 @@ def proposed(settings: Settings, name: str) -> str:
     return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_logarithmic(definition)}"
 
 
-def iterations_over_k(settings: Settings, name: str = "acceleration") -> Question:
-    """Iterations over the search direction, for the values of another setting."""
-    vary = [proposed(settings, "k_scale")]
-    if name == "substructures":
-        cuts = []
-        for cut in CUTS:
-            with contextlib.suppress(SettingError):
-                settings.replace(substructures=cut)
-                cuts.append(str(cut))
-        vary.append(f"{name}={','.join(cuts)}")
-    elif name in variable(settings):
-        vary.append(proposed(settings, name))
-    of = f"iterations_to_force@{TENTH}" if has_reference(settings) else "iterations"
-    return Question(tuple(vary), of)
+def iterations_over_k(settings: Settings) -> Question:
+    """Iterations over the search direction, with and without acceleration."""
+    names = "k_scale", *["acceleration"] * ("acceleration" in variable(settings))
+    return _iterations(settings, TENTH, *(proposed(settings, name) for name in names))
 
 
-def _energy(settings: Settings) -> Question | None:
-    """Over the load's amplitude: small ones take its third power along rods (Masing)."""
-    return _over(settings, "dissipation", VALUES, _load(settings))
+def _iterations(settings: Settings, within: float, *vary: str) -> Question:
+    """Iterations until the force is within a share, or else all, over settings."""
+    of = f"iterations_to_force@{within}" if has_reference(settings) else "iterations"
+    return Question(vary, of)
 
 
 def _bricks(settings: Settings) -> Question | None:
@@ -169,8 +160,7 @@ def _bricks(settings: Settings) -> Question | None:
     if "courses" not in variable(settings):
         return None
     courses = ",".join(map(str, COURSES))
-    of = f"iterations_to_force@{HUNDREDTH}" if has_reference(settings) else "iterations"
-    return Question((f"courses={courses}", "multiscale=true,false"), of)
+    return _iterations(settings, HUNDREDTH, f"courses={courses}", "multiscale=true,false")
 
 
 def _fretting(settings: Settings) -> Question | None:
@@ -210,22 +200,28 @@ def _over(settings: Settings, of: str, count: int, *names: str | None) -> Questi
 
 
 def _cuts(settings: Settings) -> Question | None:
-    has_cuts = "substructures" in variable(settings)
-    return iterations_over_k(settings, "substructures") if has_cuts else None
-
-
-def _energies(settings: Settings) -> Question | None:
-    return _over(settings, "dissipation", COARSE, "friction", _load(settings))
+    if "substructures" not in variable(settings):
+        return None
+    allowed = []
+    for cut in CUTS:
+        with contextlib.suppress(RefusedError):
+            settings.replace(substructures=cut)
+            allowed.append(str(cut))
+    cuts = ",".join(allowed)
+    return _iterations(settings, TENTH, proposed(settings, "k_scale"), f"substructures={cuts}")
 
 
 TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))
 """A word on each question and report, by what its button says."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
-    "Energy over amplitude": _energy,
+    # Small ones take its third power along rods (Masing).
+    "Energy over amplitude": lambda given: _over(given, "dissipation", VALUES, _load(given)),
     "Iterations over k": iterations_over_k,
     "Iterations over k and substructures": _cuts,
     "Iterations over bricks": _bricks,
-    "Energy over friction and load": _energies,
+    "Energy over friction and load": lambda given: _over(
+        given, "dissipation", COARSE, "friction", _load(given)
+    ),
     "Fretting map": _fretting,
     "Shakedown limit": _shakedown,
 }

@@ -70,18 +70,13 @@ class CommandTab(ABC):
 
     @property
     @abstractmethod
-    def command(self) -> Command:
-        """The command of the fields as they are."""
-
-    @property
-    @abstractmethod
-    def refusal(self) -> str:
-        """Why it cannot be started, or nothing."""
+    def command(self) -> Command | None:
+        """The command of the fields as they are, if it can be started."""
 
     @property
     @abstractmethod
     def words(self) -> str:
-        """What it does."""
+        """What it does, or what it cannot be started without."""
 
     @property
     def written(self) -> Files:
@@ -130,9 +125,9 @@ class CommandTab(ABC):
         if self.state.tab != self._tab:
             return
         is_busy, files = self.job is not None, self.written
-        self._words.object = f"{self.words} {self.refusal}"
+        self._words.object = self.words
         label = "Do it again" if files else "Start"
-        self.start_button.param.update(disabled=is_busy or bool(self.refusal), label=label)
+        self.start_button.param.update(disabled=is_busy or self.command is None, label=label)
         self.cancel_button.visible = is_busy
         self.page.object = shown(files)
         self.files[:] = [
@@ -160,8 +155,10 @@ class Reports(CommandTab):
             self.start()
 
     @property
-    def command(self) -> Command:
-        """The command of the report that is chosen."""
+    def command(self) -> Command | None:
+        """The command of the report that is chosen, if it can be made."""
+        if self._has_no_reference:
+            return None
         arguments = {
             FIGURES: ["figures"],
             STUDY: ["study", SETTINGS],
@@ -172,15 +169,13 @@ class Reports(CommandTab):
         return (*arguments, "--out", OUT), texts
 
     @property
-    def refusal(self) -> str:
-        """Why it cannot be made, or nothing."""
-        is_refused = self.kind.value == STUDY and not has_reference(self.state.settings)
-        return NO_REFERENCE if is_refused else ""
+    def words(self) -> str:
+        """What it is of, and why it cannot be made."""
+        return WORDS[self.kind.value] + self._has_no_reference * f" {NO_REFERENCE}"
 
     @property
-    def words(self) -> str:
-        """What it is of."""
-        return WORDS[self.kind.value]
+    def _has_no_reference(self) -> bool:
+        return self.kind.value == STUDY and not has_reference(self.state.settings)
 
     def start(self) -> None:
         """Have the chosen report made; the page's run waits while methods are timed."""

@@ -29,7 +29,7 @@ from app.state import ANSWER, PageState, answer
 from app.units import sizes_of, unit_for
 from app.widgets import button, changing_text, download
 from solver.checked import dump
-from solver.definitions import SettingError
+from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart, Map
@@ -253,7 +253,7 @@ class WhatIf:
         plan = self.sweep.plan
         try:
             settings = plan.settings_at(int(chart.runs.numbers[place]))
-        except SettingError as refusal:
+        except RefusedError as refusal:
             self.state.refusal = message_of(refusal, page)
             return
         ends = {"accuracy", *(ANSWER if settings.finish != "none" else ())}

@@ -23,13 +23,12 @@ from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider
 from bokeh.resources import INLINE
 from jinja2 import Template
 
-from app.browser import Display
 from app.charts import library
 from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import unit_for
 from app.views.view import View
-from app.widgets import dialog, download
+from app.widgets import download
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
 from solver.checked import dump
@@ -211,34 +210,23 @@ def _below(frame: Frame, views: Sequence[View]) -> str:
     return f"<p>Numbers: {links}.</p>{below}"
 
 
-class TakeAway:
-    """A dialog with what can be saved of what is seen."""
-
-    def __init__(self, state: PageState, display: Display) -> None:
-        self._state, self.display = state, display
-        self.view = dialog("Take away")
-
-    def open(self) -> None:
-        """Offer what there is of what is seen."""
-        frame = self._state.frame
-        nothing = [pmui.Typography("There is no run yet.")]
-        self.view[:] = nothing if frame is None else self._offers(frame)
-        self.view.open = True
-
-    def _offers(self, frame: Frame) -> list[Any]:
-        state, settings, views = self._state, frame.run.settings, list(self.display.views)
-        page = partial(offline_page, frame, views, state.selection, state.ghost)
-        offers = {
-            "The run as one page (.html)": (".html", partial(page, "canvas")),
-            "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
-            "The run as a program (.py)": (".py", partial(program, settings)),
-        }
-        offers |= {
-            f"{title} (.csv)": (f"-{slug(title)}.csv", make)
-            for title, make in _tables(frame, views).items()
-        }
-        name = f"slipfront-{settings.scene}"
-        return [download(label, name + end, make, **LOOK) for label, (end, make) in offers.items()]
+def offers(state: PageState, views: Sequence[View]) -> list[Any]:
+    """Buttons that save what there is of what is seen: the run, and what the views show."""
+    frame = state.frame
+    if frame is None:
+        return [pmui.Typography("There is no run yet.")]
+    page = partial(offline_page, frame, views, state.selection, state.ghost)
+    files = {
+        "The run as one page (.html)": (".html", partial(page, "canvas")),
+        "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
+        "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
+    }
+    files |= {
+        f"{title} (.csv)": (f"-{slug(title)}.csv", make)
+        for title, make in _tables(frame, views).items()
+    }
+    name = f"slipfront-{frame.run.settings.scene}"
+    return [download(label, name + end, make, **LOOK) for label, (end, make) in files.items()]
 
 
 def slug(title: str) -> str:

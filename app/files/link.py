@@ -5,85 +5,41 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
 import panel as pn
 import param
-from bokeh.core.properties import String
-from bokeh.model import DataModel
-from bokeh.models import CustomJS
 
+from app.browser import Browser
 from app.frame import Selection
-from app.lessons.catalogue import CASES, LESSONS, plots_of, settings_of
+from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
-from app.state import PACES, TABS, VIEWS, PageState, default_settings
-from app.views.catalogue import CARDS
+from app.state import PageState, default_settings
 from solver.checked import dump
-from solver.definitions import SettingError, about, checked_value, choice, count, parse, quantity
+from solver.definitions import about, checked_value, count, parse, quantity
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""
+DEFAULTS = {name: PageState.param[name].default for name in SHARED}
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
 MOST_TOLD = 3
 """Refusals that are told of one address."""
-COPY = """
-if (page.copied) {
-  navigator.clipboard?.writeText(page.copied).catch(() => prompt("The link", page.copied))
-}
-"""
-BACK = """
-addEventListener("popstate", () => { page.search = ""; page.search = location.search || "?" })
-"""
-"""One may come back to the same address again, and to that which says nothing."""
 
-
-@dataclass(frozen=True)
-class Place:
-    """What an address says, as `PageState` has it; the room is "class" there.
-
-    The instant is a share of the interval, and None leaves it; the run waits at the iteration, and
-    goes on at 0; without a theme the page begins in light colours.
-    """
-
-    settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))
-    lesson: str = ""
-    case: str = ""
-    tab: str = TABS[0]
-    question: str = ""
-    instant: float | None = None
-    iteration: int = 0
-    pace: str = next(iter(PACES))
-    plots: str = ""
-    view: str = VIEWS[0]
-    room: str = ""
-    theme: str = ""
-
-
-_PLOTS = [view.name for card in CARDS for view in card]
-_NUMBERS = {
+Place = dict[str, Any]
+"""What an address says, by the names of `PageState`: `settings` in any case; the room is "class" in
+the address. Beside that the `instant` as a share of the interval, and the `iteration` at which the
+run waits."""
+_CHECKED: dict[str, Any] = {
     "instant": quantity(0.0, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
     "iteration": count(0, (0, 100_000), (0, 100_000), "", group="", title=""),
+    **{name: PageState.param[name] for name in ("tab", "pace", "view")},
 }
-_CHOICES = {"tab": TABS, "pace": list(PACES), "view": VIEWS, "theme": ["light", "dark"]}
-_PLACE: dict[str, Any] = _NUMBERS | {
-    name: choice(options[0], options, "", group="", title="") for name, options in _CHOICES.items()
-}
-"""What an address may say beside settings, scene, lesson, case, class, plots and question."""
-_OPENED: dict[str, Mapping[str, Any]] = {"lesson": LESSONS, "case": CASES}
-"""What has settings from which an address says what differs, as a scene has."""
-
-
-class Browser(DataModel):
-    """The address that the browser has gone back, or on, to; and the link that it copies."""
-
-    search: str = String(default="")  # type: ignore[assignment]
-    copied: str = String(default="")  # type: ignore[assignment]
+"""Definitions of what may be refused beside settings, scene, lesson, case and plots."""
 
 
 class Link:
@@ -93,16 +49,10 @@ class Link:
     dragged, and instants and iterations. `query` is the address from the question mark on.
     """
 
-    def __init__(self, state: PageState) -> None:
-        self._state, self._location = state, pn.state.location
+    def __init__(self, state: PageState, browser: Browser) -> None:
+        self._state, self._browser, self._location = state, browser, pn.state.location
         self.query = query_of(place_of(state))
-        self.browser = Browser(name="browser")
-        self.browser.on_change("search", lambda name, old, new: new and self.go(new))
-        args = {"page": self.browser}
-        self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
-        if pn.state.curdoc is not None:
-            pn.state.curdoc.add_root(self.browser)
-            pn.state.curdoc.js_on_event("document_ready", CustomJS(args=args, code=BACK))
+        browser.on_change("search", lambda name, old, new: new and self.go(new))
         state.param.watch(lambda *events: self._write(), ["settings", "is_dragged", *SHARED])
 
     def _write(self) -> None:
@@ -118,8 +68,8 @@ class Link:
 
     def copy(self) -> str:
         """Have the browser copy the whole link; what it had to leave out."""
-        self.browser.copied = ""
-        self.browser.copied, message = link_of(self._state)
+        self._browser.copied = ""
+        self._browser.copied, message = link_of(self._state)
         return message
 
     def go(self, query: str) -> None:
@@ -134,31 +84,30 @@ def show(state: PageState, place: Place) -> None:
     """Show what an address says."""
     # At once: what is between two addresses has none.
     with param.parameterized.batch_call_watchers(state):
-        state.param.update(**{name: getattr(place, name) for name in SHARED})
-        if place.instant is not None:
-            state.select(phase=place.instant)
-        if dump(place.settings) != dump(state.settings):
-            state.adopt(place.settings)
-    if place.iteration:
-        state.reset(place.iteration)
+        state.param.update(**{name: place.get(name, DEFAULTS[name]) for name in SHARED})
+        if "instant" in place:
+            state.select(phase=place["instant"])
+        if dump(place["settings"]) != dump(state.settings):
+            state.adopt(place["settings"])
+    if place.get("iteration"):
+        state.reset(place["iteration"])
 
 
 def place_of(state: PageState) -> Place:
     """What is shown, without the instant and the iteration."""
-    return Place(state.settings, **{name: getattr(state, name) for name in SHARED})
+    return {name: getattr(state, name) for name in ("settings", *SHARED)}
 
 
 def link_of(state: PageState) -> tuple[str, str]:
     """The whole link to what is shown, instant and iteration too, and what it had to leave out."""
     frame, is_held = state.frame, not state.running or state.frame is not state.newest
     is_waiting = frame is not None and not frame.is_answer and is_held
-    place = replace(
-        place_of(state),
+    place = place_of(state) | {
         # Who leads a class has its key there, too.
-        room=state.room.partition(".")[0],
-        instant=round(state.selection.phase, 4),
-        iteration=frame.iteration if is_waiting else 0,
-    )
+        "room": state.room.partition(".")[0],
+        "instant": round(state.selection.phase, 4),
+        "iteration": frame.iteration if is_waiting else 0,
+    }
     root = pn.state.location.href.partition("?")[0] if pn.state.location is not None else ""
     long = too_long(state.settings)
     titles = ", ".join(about(state.settings.definitions()[name]).title for name in long)
@@ -168,28 +117,26 @@ def link_of(state: PageState) -> tuple[str, str]:
 
 def query_of(place: Place) -> str:
     """The address that says what differs from the defaults, or from those of a lesson or a case."""
-    if place.room:
-        return f"?class={quote(place.room)}"
-    lesson, scene = LESSONS.get(place.lesson), place.settings.scene
-    base, pairs = default_settings(scene), {"scene": scene}
-    for kind, known in _OPENED.items():
-        if (name := getattr(place, kind)) in known:
+    if place.get("room"):
+        return f"?class={quote(place['room'])}"
+    settings, lesson = place["settings"], LESSONS.get(place.get("lesson", ""))
+    base, pairs = default_settings(settings.scene), {"scene": settings.scene}
+    for kind, known in KNOWN.items():
+        if (name := place.get(kind)) in known:
             base, pairs = settings_of(known[name]), {kind: name}
-    changed = place.settings.changed(base)
-    long = too_long(place.settings)
+    long = too_long(settings)
     pairs |= {
         name: json.dumps(value, separators=(",", ":"))
-        for name, value in changed.items()
+        for name, value in settings.changed(base).items()
         if name not in long
     }
     if long:
         pairs["file"] = ",".join(long)
-    instant = lesson.instant if lesson else Selection().phase
-    first = Place(place.settings, instant=instant, plots=plots_of(place.case))
-    for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view", "theme"):
-        value = getattr(place, name)
-        if value != getattr(first, name) and value is not None:
-            pairs[name] = str(value)
+    first = DEFAULTS | {"plots": plots_of(place.get("case", "")), "iteration": 0}
+    first["instant"] = lesson.instant if lesson else Selection().phase
+    for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view"):
+        if place.get(name, first[name]) != first[name]:
+            pairs[name] = ",".join(place[name]) if name == "plots" else str(place[name])
     return "?" + "&".join(f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items())
 
 
@@ -199,41 +146,45 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     The settings that hold at present have what is too long for an address.
     """
     pairs = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
+    # Panel begins a page in the theme.
+    pairs.pop("theme", "")
     refused: list[str] = []
-    given: dict[str, Any] = {"room": pairs.pop("class", "")}
+    place: Place = {"room": pairs.pop("class", ""), "question": pairs.pop("question", "")}
     base, opened = _base(pairs, refused)
-    given |= opened
+    place |= opened
     if "lesson" in opened:
-        given["instant"] = LESSONS[opened["lesson"]].instant
-    given["question"] = pairs.pop("question", "")
-    plots = pairs.pop("plots", plots_of(opened.get("case", ""))).split(",")
-    plots = [name.strip() for name in plots if name.strip()]
-    given["plots"] = ",".join(name for name in plots if name in _PLOTS)
-    refused += [f"there is no plot {name[:40]}" for name in plots if name not in _PLOTS]
-    for name in [name for name in _PLACE if name in pairs]:
-        text = pairs.pop(name)
+        place["instant"] = LESSONS[opened["lesson"]].instant
+    plots = plots_of(opened.get("case", ""))
+    if "plots" in pairs:
+        plots = list(filter(None, map(str.strip, pairs.pop("plots").split(","))))
+    place["plots"] = [name for name in plots if name in KINDS]
+    refused += [f"there is no plot {name[:40]}" for name in plots if name not in KINDS]
+    for name in [name for name in _CHECKED if name in pairs]:
+        text, definition = pairs.pop(name), _CHECKED[name]
         try:
-            value = parse(text) if name in _NUMBERS else text
-            given[name] = checked_value(_PLACE[name], name, value)
-        except SettingError as refusal:
+            value = text if isinstance(definition, param.Selector) else parse(text)
+            place[name] = checked_value(definition, name, value)
+        except RefusedError as refusal:
             refused.append(str(refusal))
     for name in filter(None, pairs.pop("file", "").split(",")):
         if present is not None and present.scene == base.scene and name in base.definitions():
             base = base.replace(**{name: getattr(present, name)})
         else:
             refused.append(f"{name[:40]} is too long for it: open its file")
-    settings = _together(base, {name: parse(text) for name, text in pairs.items()}, refused)
+    place["settings"] = _together(
+        base, {name: parse(text) for name, text in pairs.items()}, refused
+    )
     told = "; ".join(text.rstrip(".") for text in refused[:MOST_TOLD])
     if len(refused) > MOST_TOLD:
         told += f"; and {len(refused) - MOST_TOLD} more"
-    return Place(settings, **given), f"From the address: {told}." if refused else ""
+    return place, f"From the address: {told}." if refused else ""
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
     """Settings from which an address says what differs, and the lesson or case that has them."""
-    scene, names = pairs.pop("scene", ""), {kind: pairs.pop(kind, "") for kind in _OPENED}
+    scene, names = pairs.pop("scene", ""), {kind: pairs.pop(kind, "") for kind in KNOWN}
     for kind, name in names.items():
-        found = _OPENED[kind].get(name)
+        found = KNOWN[kind].get(name)
         if found is not None:
             if scene not in ("", found.settings.scene):
                 refused.append(f"the {kind} has a scene of its own, {found.settings.scene}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -15,7 +16,6 @@ from app.files.tables import (
     TABLES,
     Content,
     axes_on,
-    opened,
     paths_of,
     read_as,
     renamed,
@@ -27,9 +27,11 @@ from app.state import PageState, default_settings
 from app.widgets import button, changing_text, dialog, download
 from solver.checked import dump
 from solver.definitions import about
+from solver.files import settings_from_toml
 from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.measured_loop import MeasuredLoop
+from solver.study.comparison import read_results
+from solver.study.measured_loop import MeasuredLoop, is_a_loop
 from solver.tables import Table
 
 HELP = (
@@ -45,33 +47,27 @@ SHOWN = 5
 """Lines of a table that are shown."""
 
 
-class FilesPanel:
-    """Buttons that save settings and open files, and what was understood of these.
+def files_panel(state: PageState, copy: Callable[[], str], width: int) -> pn.Column:
+    """Buttons that copy the link, save and reset settings and open files.
 
     `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
     """
+    look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
+    opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
 
-    def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
-        self._state, self._copy = state, copy
-        look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
-        outlined = {**look, "variant": "outlined"}
-        self._opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
-        self.file, self.message = self._opener.file, self._opener.message
-        self.view = pn.Column(
-            button("Copy link", self._copy_link, icon="link", **outlined),
-            download(
-                "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
-            ),
-            self._opener.view,
-            button("All settings to default", self._reset, icon="restart_alt", **outlined),
-            margin=0,
-        )
+    def copy_link() -> None:
+        opener.message.object = f"The link to what is shown is copied. {copy()}"
 
-    def _copy_link(self) -> None:
-        self.message.object = f"The link to what is shown is copied. {self._copy()}"
+    def reset() -> None:
+        state.adopt(default_settings(state.settings.scene))
 
-    def _reset(self) -> None:
-        self._state.adopt(default_settings(self._state.settings.scene))
+    return pn.Column(
+        button("Copy link", copy_link, icon="link", variant="outlined", **look),
+        download("Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look),
+        opener.view,
+        button("All settings to default", reset, icon="restart_alt", variant="outlined", **look),
+        margin=0,
+    )
 
 
 class TableOpener:
@@ -121,34 +117,32 @@ class TableOpener:
         """Take a file as what it seems to be; of a loop the columns are shown."""
         if not self.file.value:
             return
-        source, data, settings = self.file.filename, self.file.value, self._state.settings
         self._table = None
-        try:
-            contents, message = self._read(source, data)
-        except RefusedError as refused:
-            self._state.refusal = message = message_of(refused, settings)
-            contents = []
-        self.message.object = message
+        contents = self._take(partial(self._read, self.file.filename, self.file.value))
         self.columns_button.visible = self._table is not None
-        self._take(contents)
         if any(isinstance(content, MeasuredLoop) for content in contents):
             self.show()
 
     def _read(self, source: str, data: bytes) -> tuple[list[Content], str]:
         state, axes = self._state, axes_on(self._state)
-        if (content := opened(source, data, state.settings)) is not None:
-            return content
-        self._table, self._source = table_of(data, source), source
-        names = [name.replace(",", " ") for name in names_of(self._table)]
-        cells = [cells + [""] * len(names) for _, cells in self._table.rows[:SHOWN]]
+        if source.lower().endswith(".toml"):
+            settings = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
+            return [settings], f"{source}: settings of the scene {settings.scene}."
+        table = table_of(data, source)
+        if not is_a_loop(data, source):
+            results = read_results(data, source, state.settings)
+            return [results], f"{source}: {results.message}."
+        self._table, self._source = table, source
+        names = [name.replace(",", " ") for name in names_of(table)]
+        cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
         self._rows.object = pd.DataFrame([row[: len(names)] for row in cells], columns=names)
         self._is_updating = True
         self.heads.value = ", ".join(names)
         self._is_updating = False
         self._offer(LOOP)
-        use = use_of(self._table, state.settings, axes)
+        use = use_of(table, state.settings, axes)
         self._offer(use)
-        return read_as(use, self._table, source, state.settings, axes)
+        return read_as(use, table, source, state.settings, axes)
 
     def _offer(self, use: str) -> None:
         """Offer what a table may be used as in this scene."""
@@ -166,26 +160,27 @@ class TableOpener:
 
     def _reread(self) -> None:
         """Use the table as the dialog says."""
-        if self._is_updating or self._table is None:
-            return
-        settings, contents = self._state.settings, list[Content]()
-        try:
-            table = renamed(self._table, self.heads.value)
-            axes = axes_on(self._state)
-            contents, message = read_as(self.use.value, table, self._source, settings, axes)
-            self.message.object = message
-        except RefusedError as refused:
-            message = message_of(refused, settings)
-        self._understood.object = message
-        self._take(contents)
+        if not self._is_updating and self._table is not None:
+            self._take(self._read_as)
 
-    def _take(self, contents: list[Content]) -> None:
-        """Have the page show what was brought, or take settings over."""
+    def _read_as(self) -> tuple[list[Content], str]:
+        table, settings = renamed(self._table, self.heads.value), self._state.settings
+        return read_as(self.use.value, table, self._source, settings, axes_on(self._state))
+
+    def _take(self, read: Callable[[], tuple[list[Content], str]]) -> list[Content]:
+        """What is read, which the page shows or runs; nothing where it is refused, as is said."""
+        contents = list[Content]()
+        try:
+            contents, message = read()
+        except RefusedError as refused:
+            self._state.refusal = message = message_of(refused, self._state.settings)
+        self.message.object = self._understood.object = message
         for content in contents:
             if isinstance(content, Settings):
                 self._state.adopt(content)
             else:
                 self._state.brought = content
+        return contents
 
     def _forget(self) -> None:
         self.message.object = ""

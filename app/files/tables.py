@@ -9,11 +9,11 @@ from app.state import PageState
 from solver.columns import column_of
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
-from solver.files import settings_from_toml
+from solver.refusal import RefusedError
 from solver.remarks import ends_of_tables
 from solver.scenes import discretise
 from solver.settings import Settings
-from solver.study.comparison import OtherResults, read_results
+from solver.study.comparison import OtherResults
 from solver.study.measured_loop import Axes, MeasuredLoop, columns_of, loop_in
 from solver.tables import Table, read_table
 
@@ -23,30 +23,9 @@ LOOP, BOTH = "loop", "loop and "
 Content = Settings | OtherResults | MeasuredLoop
 
 
-def opened(source: str, data: bytes, settings: Settings) -> tuple[list[Content], str] | None:
-    """What a file of settings (.toml) or of results over places has; None of other tables.
-
-    Returns
-    -------
-    What it was read as, and what was understood.
-
-    Raises
-    ------
-    SettingError
-        For what is none of these, or is refused.
-    """
-    if source.lower().endswith(".toml"):
-        read = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
-        return [read], f"{source}: settings of the scene {read.scene}."
-    if not any(column.quantities[0] & {"position"} for column in table_of(data, source).columns):
-        return None
-    brought = read_results(data, source, settings)
-    return [brought], f"{source}: {brought.message}."
-
-
 def use_of(table: Table, settings: Settings, axes: Axes) -> str:
     """What a table is used as by its head: a loop, or a path."""
-    with suppress(SettingError):
+    with suppress(RefusedError):
         columns_of(table, axes)
         return LOOP
     return path_of(table, settings)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
 from app.frame import Frame
@@ -25,18 +25,14 @@ LESSONS = {
 """By name, in order, those of one subject together."""
 CASES = {case.name: case for case in all_cases()}
 """By name, in order."""
+KNOWN: dict[str, Mapping[str, Lesson | Case]] = {"lesson": LESSONS, "case": CASES}
+"""Both, as addresses and states call them."""
 VALUE = re.compile(r"\{value:(.*?)\}")
 """A quantity in what a lesson says."""
 PENDING = "…"
 """What only the rest of the run will tell."""
-_KINDS = {kind.name: kind for card in CARDS for kind in card}
-
-
-@dataclass(frozen=True)
-class Control:
-    """A place in a sentence where the widget of a setting stands."""
-
-    setting: str
+KINDS = {kind.name: kind for card in CARDS for kind in card}
+"""The plots, by name."""
 
 
 def settings_of(lesson: Lesson | Case) -> Settings:
@@ -49,14 +45,14 @@ def settings_of(lesson: Lesson | Case) -> Settings:
     return settings.replace(**SEARCH) if settings.finish == "at-once" else settings
 
 
-def plots_of(case: str) -> str:
-    """Plots that come to the front with a case, as `PageState` has them; none without one."""
-    return ",".join(CASES[case].views) if case in CASES else ""
+def plots_of(case: str) -> list[str]:
+    """Names of the plots that come to the front with a case; none without one."""
+    return list(CASES[case].views) if case in CASES else []
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
     """The plots that stand beside a lesson; before the choice only those that leave it open."""
-    return tuple(_KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
+    return tuple(KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
 
 
 def place_of(lesson: Lesson) -> str:
@@ -69,11 +65,10 @@ def readings_of(lesson: Lesson) -> list[str]:
     return list(dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))))
 
 
-def parts_of(paragraph: str) -> list[str | Control]:
-    """A paragraph, split where a control stands; the rest is Markdown with `{value:NAME}` in it."""
+def parts_of(paragraph: str) -> list[str]:
+    """Markdown with `{value:NAME}` in it and, in turn, names of settings whose control follows."""
     # A sentence ends with its control: its full stop would stand alone.
-    parts = re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
-    return [Control(part) if place % 2 else part for place, part in enumerate(parts)]
+    return re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
 
 
 def without_controls(paragraph: str) -> str:
