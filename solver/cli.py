@@ -13,17 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from solver.console import (
-    add_command,
-    announce,
-    given,
-    refusing,
-    warn,
-)
+from solver.console import add_command, announce, given, print_json, refusing, warn
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
@@ -176,8 +169,8 @@ def _print_figures(
     if as_json:
         more = {figure.name: figure.value for figure in of_loop}
         of = {"quantities": {name: value for name, (value, _) in values.items()}} if asked else {}
-        found = {**figures, **more, **of, "tables": tables, "settings": run.settings.values()}
-        print(json.dumps(_finite(found)))
+        settings = run.settings.values()
+        print_json({**figures, **more, **of, "tables": tables, "settings": settings})
         return
     for name, value in figures.items():
         for line in value if isinstance(value, list) else [value]:
@@ -189,13 +182,6 @@ def _print_figures(
     for name, (value, unit) in values.items():
         number = "none" if math.isnan(value) else f"{value:.6g} {unit}".strip()
         print(f"{name:<20} {number}")
-
-
-def _finite(value: Any) -> Any:
-    """The same with None for what is no finite number, as JSON has no such numbers."""
-    if isinstance(value, dict):
-        return {name: _finite(entry) for name, entry in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _distance(problem: Problem, limit: float) -> Distance | None:

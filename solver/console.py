@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -69,6 +70,19 @@ def warn(*messages: str) -> None:
 def print_tables(tables: Mapping[str, str]) -> None:
     """Print to stderr what was understood of tables, by what they were given for."""
     warn(*(f"{name}: {message}" for name, message in tables.items()))
+
+
+def print_json(values: Mapping[str, Any]) -> None:
+    """Print values as JSON, with null for what is no finite number."""
+    print(json.dumps(_finite(values)), flush=True)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _finite(entry) for name, entry in value.items()}
+    if isinstance(value, list):
+        return list(map(_finite, value))
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def announce(

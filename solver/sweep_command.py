@@ -16,15 +16,7 @@ from solver.executors import FORMS, opened
 from solver.files import settings_from_command
 from solver.study.page import write_page
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, Row, plan_of
-from solver.study.sweep.report import (
-    counts,
-    csv_of,
-    growth,
-    lines_of,
-    rows_in,
-    sections,
-    title_of,
-)
+from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
 from solver.study.sweep.run import field_file, patience, sweep
 
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"

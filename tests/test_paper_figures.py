@@ -186,4 +186,4 @@ def test_fig_8_pgd_modes_orthonormalised_in_their_order_are_the_svd_modes(runs):
     assert max(kept[1:]) < 0.9 < 0.99 < kept[0]
     last = runs.five_reduced.records[-1]
     assert last.error_displacement < 0.01 < last.error_force < 0.2
-    assert max(basis.n_modes for basis in runs.five_reduced.last.bases) <= 11
+    assert max(basis.n_modes for basis in runs.five_reduced.iterate.bases) <= 11

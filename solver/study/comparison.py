@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
@@ -192,6 +193,16 @@ class Comparison:
         own = _interpolated(field[self._order], self._at)
         size = self._norm(self._values) or self._norm(own) or 1.0
         return self._norm(own - self._values) / size
+
+    def figures(self, fields: Fields) -> dict[str, Any]:
+        """What is compared, the distance, and numbers of rows, by the names of scripts."""
+        return {
+            "quantity": self.results.quantity,
+            "interface": None if self._places is None else self.interface,
+            "distance": self.of(fields),
+            "rows": len(self.results.times),
+            "rows_compared": self.counted,
+        }
 
     def _norm(self, values: Array) -> float:
         return float(np.sqrt(self._weights @ values**2))

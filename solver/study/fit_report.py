@@ -14,7 +14,7 @@ from solver.definitions import about
 from solver.disk import write
 from solver.scenes.words import listed
 from solver.study.fit import Fit
-from solver.study.measured_loop import ALIKE, MeasuredLoop, csv_of, rms
+from solver.study.measured_loop import MeasuredLoop, csv_of, rms
 from solver.study.page import (
     Panel,
     PanelAxis,
@@ -61,8 +61,8 @@ def messages(fit: Fit) -> list[str]:
             f"The loop says nothing of {listed(lost)}: what is given here is where it began."
         )
     nearest = fit.nearest
-    if rms(nearest.drive) > ALIKE:
-        sentences.append(f"{nearest.beside.drive_message(nearest.drive)}.")
+    drive = nearest.beside.drive_messages(rms(nearest.drive))
+    sentences += [f"{message}." for message in drive]
     if not nearest.run.solution.is_certified:
         sentences.append("The nearest run is not certified, so that values may be less exact.")
     return sentences
@@ -96,7 +96,7 @@ def _entries(fit: Fit) -> list[list[Any]]:
 
 
 def as_json(fit: Fit, measured: MeasuredLoop) -> dict[str, Any]:
-    """The same for scripts; None where there is no number."""
+    """The same for scripts."""
     return {
         "quantity": fit.nearest.beside.quantity,
         "distance": fit.nearest.distance,
@@ -105,17 +105,13 @@ def as_json(fit: Fit, measured: MeasuredLoop) -> dict[str, Any]:
         "rows": len(measured.force),
         "rows_compared": len(fit.nearest.differences),
         "parameters": {
-            name: {"start": float(start), "value": float(value), "standard_error": _finite(error)}
+            name: {"start": float(start), "value": float(value), "standard_error": float(error)}
             for name, _, start, value, error, *_ in _entries(fit)
         },
-        "correlation": [[_finite(value) for value in row] for row in fit.correlation],
+        "correlation": fit.correlation.tolist(),
         "messages": messages(fit),
         "settings": {"scene": fit.settings.scene, **fit.settings.values()},
     }
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def write_loop(run: FinishedRun, folder: Path) -> None:

@@ -149,7 +149,7 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
 
 def figure_8(runs: PaperRuns) -> PaperFigure:
     """The first three displacement modes of the PGD in substructure 5."""
-    exact, last = runs.displacements[-1], runs.five_reduced.last
+    exact, last = runs.displacements[-1], runs.five_reduced.iterate
     kept = _displacement_modes(last)[:, :3]
     root = np.sqrt(exact.space_weights)[:, None]
     sorted_ = np.linalg.qr(kept * root)[0] / root
@@ -198,7 +198,7 @@ def _correlation(exact: Decomposition, modes: Array, words: str) -> Finding:
 def _reduced_errors(runs: PaperRuns) -> Finding:
     """Size of the bases, and what they miss, at the end of the run with PGD."""
     last = runs.five_reduced.records[-1]
-    modes = [basis.n_modes for basis in runs.five_reduced.last.bases]
+    modes = [basis.n_modes for basis in runs.five_reduced.iterate.bases]
     best, best_force = (
         "/".join(str(part.modes_for(share)) for share in SHARES)
         for part in (runs.displacements[-1], runs.friction_forces[-1])

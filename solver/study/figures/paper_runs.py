@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solver.latin import Iterate, Record, solve
+from solver.latin import Iterate, Solution, solve
 from solver.reduction.svd import Decomposition, decompositions
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
@@ -24,15 +24,6 @@ REDUCED = 100
 
 
 @dataclass(frozen=True, eq=False)
-class PaperRun:
-    """Records of a run, one per iteration, its iterate number `EARLY`, and the last one."""
-
-    records: list[Record]
-    early: Iterate
-    last: Iterate
-
-
-@dataclass(frozen=True, eq=False)
 class PaperRuns:
     """The friction bar of Table 1 under a sine, decomposed and solved in several ways.
 
@@ -40,8 +31,8 @@ class PaperRuns:
     ----------
     reference
         The incremental solution; how the bar is decomposed makes no difference to it.
-    multiscale, monoscale
-        Ten substructures with the coarse problem and without.
+    multiscale, monoscale, early
+        Ten substructures with the coarse problem and without, and iterate `EARLY` of both.
     five, five_reduced
         Five substructures, converged, and with the PGD at its default settings.
     friction_forces, displacements
@@ -49,17 +40,13 @@ class PaperRuns:
     """
 
     reference: Reference
-    multiscale: PaperRun
-    monoscale: PaperRun
-    five: PaperRun
-    five_reduced: PaperRun
+    multiscale: Solution
+    monoscale: Solution
+    early: list[Iterate]
+    five: Solution
+    five_reduced: Solution
     friction_forces: list[Decomposition]
     displacements: list[Decomposition]
-
-    @property
-    def versions(self) -> tuple[PaperRun, PaperRun]:
-        """Multiscale and monoscale."""
-        return self.multiscale, self.monoscale
 
 
 def paper_runs() -> PaperRuns:
@@ -67,24 +54,22 @@ def paper_runs() -> PaperRuns:
     settings = BarSettings.checked({"method": "paper", "load": "sine", "peak": 900.0})
     reference = reference_of(discretise(settings))
 
-    def run(**changes: object) -> PaperRun:
+    def run(**changes: object) -> Solution:
         changed = settings.replace(**changes)
         problem = discretise(changed)
-        distance = distance_to(reference, problem)
-        method = method_of(changed.replace(max_iterations=EARLY))
-        early = solve(problem, method, distance=distance)
-        start = early.iterate.checkpoint
-        late = solve(problem, method_of(changed), distance=distance, start=start)
-        return PaperRun([*early.records, *late.records], early.iterate, late.iterate)
+        return solve(problem, method_of(changed), distance=distance_to(reference, problem))
 
-    ten = {"substructures": 10, "tolerance": 1e-30, "max_iterations": LONG}
+    def ten(iterations: int, multiscale: bool) -> Solution:
+        return run(tolerance=1e-30, max_iterations=iterations, multiscale=multiscale)
+
     five = run(substructures=5, tolerance=CONVERGED, max_iterations=10 * LONG)
     return PaperRuns(
         reference,
-        run(multiscale=True, **ten),
-        run(multiscale=False, **ten),
+        ten(LONG, True),
+        ten(LONG, False),
+        [ten(EARLY, multiscale).iterate for multiscale in (True, False)],
         five,
         run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
-        decompositions(five.last, "friction_force"),
-        decompositions(five.last, "displacement"),
+        decompositions(five.iterate, "friction_force"),
+        decompositions(five.iterate, "displacement"),
     )

@@ -29,13 +29,7 @@ from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.study.quantities.finished import (
-    BROKEN,
-    REFUSED,
-    FinishedRun,
-    finished_run,
-    settle,
-)
+from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run, settle
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
