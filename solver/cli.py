@@ -14,8 +14,6 @@ from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
 
-import numpy as np
-
 from solver.console import add_command, announce, given, print_json, refusing, warn
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
@@ -25,8 +23,6 @@ from solver.files import save_result, scene_settings, summary
 from solver.latin import Ending, solve, solve_in_slabs
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
-from solver.reference.incremental import reference_of
-from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
 from solver.report_commands import add_reports
 from solver.run_commands import add_checks
@@ -34,7 +30,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.key_figures import figures_of
 from solver.study.quantities import reading
-from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.finished import FinishedRun, known_reference
 from solver.study.quantities.quantity import Quantity
 from solver.sweep_command import add_sweep
 
@@ -187,25 +183,12 @@ def _print_figures(
 def _distance(problem: Problem, limit: float) -> Distance | None:
     """Distance to the reference, or None where there is none in time."""
     end = time.perf_counter() + limit
-    try:
-        reference = reference_of(problem, lambda: time.perf_counter() > end)
-    except Interrupted:
-        warn("no errors are known: the reference takes longer")
+    reference, doubt = known_reference(problem, lambda: time.perf_counter() > end)
+    if reference is None:
+        warn(f"no errors are known: {doubt}")
         return None
-    except NoReferenceError as refusal:
-        warn(f"no errors are known: {refusal}")
-        return None
-    lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
-    if lost:
-        message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-        if reference.collapse is not None:
-            message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
-        elif reference.jumps_at is not None:
-            message += ": friction softens until the structure jumps"
-        warn(f"no errors are known: {message}")
-        return None
-    if several:
-        warn(f"there are several solutions at {several} instants; errors are to one of them")
+    if doubt:
+        warn(f"{doubt}; errors are to one of them")
     return distance_to(reference, problem)
 
 

@@ -20,6 +20,7 @@ from solver.latin.run_cost import run_cost
 from solver.remarks import remarks_before
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.page import NO_CHARTS, renderer
 
 
 def add_command(
@@ -70,6 +71,11 @@ def warn(*messages: str) -> None:
 def print_tables(tables: Mapping[str, str]) -> None:
     """Print to stderr what was understood of tables, by what they were given for."""
     warn(*(f"{name}: {message}" for name, message in tables.items()))
+
+
+def print_files(names: str, folder: Path) -> None:
+    """Print where files are, and whether their page has charts."""
+    print(*([] if renderer() else [NO_CHARTS]), f"{names} in {folder}", sep="\n")
 
 
 def print_json(values: Mapping[str, Any]) -> None:

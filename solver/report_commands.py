@@ -7,7 +7,7 @@ import contextlib
 from pathlib import Path
 from typing import Any
 
-from solver.console import add_command, given, writing
+from solver.console import add_command, given, print_files, writing
 from solver.definitions import SettingError
 from solver.files import scene_settings
 from solver.study.cases.case import case_from_file
@@ -47,12 +47,12 @@ def add_reports(commands: Any) -> None:
 def _figures(chosen: argparse.Namespace) -> int:
     with writing(chosen.out, FILE):
         figures = paper_figures(paper_runs())
-        note = write_figures(figures, chosen.out)
+        write_figures(figures, chosen.out)
     for figure in figures:
         print(f"{figure.heading} ({figure.verdict})")
         for finding in figure.findings:
             print(f"  {'+' if finding.holds else '-'} {finding.text}")
-    print(*filter(None, [note]), f"{FILE} in {chosen.out}", sep="\n")
+    print_files(FILE, chosen.out)
     return 0
 
 
@@ -65,11 +65,11 @@ def _study(chosen: argparse.Namespace) -> int:
         curves = error_against_time(settings, chosen.repeats)
         study.write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        note = study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
+        study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
     print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(study.table(curves)))
     print("", aligned(study.sizes_table(settings, sizes)), *study.notes(settings, sizes), sep="\n")
-    print(*filter(None, [note]), f"{len(study.FILES)} files in {chosen.out}", sep="\n")
+    print_files(f"{len(study.FILES)} files", chosen.out)
     return 0
 
 

@@ -12,6 +12,7 @@ from solver.console import (
     add_command,
     announce,
     given,
+    print_files,
     print_json,
     print_tables,
     read_brought,
@@ -158,9 +159,9 @@ def _fit(chosen: argparse.Namespace) -> int:
             print_json({**as_json(found, measured), "tables": tables})
         else:
             print("\n".join(lines(found, measured)), flush=True)
-        note = write_fit(found, measured, chosen.out)
+        write_fit(found, measured, chosen.out)
     if not chosen.json:
-        print(*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}", sep="\n")
+        print_files(", ".join(FILES), chosen.out)
     return 0 if found.nearest.run.solution.is_certified else 1
 
 

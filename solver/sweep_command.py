@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from concurrent.futures import BrokenExecutor
 from typing import Any
 
-from solver.console import add_command, print_tables, warn, writing
+from solver.console import add_command, print_files, print_tables, warn, writing
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
@@ -60,9 +60,9 @@ def _sweep(chosen: argparse.Namespace) -> int:
             print(f"{why}; the same command goes on from here.", file=sys.stderr)
         by_number = [rows[number] for number in sorted(rows)]
         write(chosen.out / TABLE, csv_of(plan, by_number))
-        note = write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
-    print("\n".join([*filter(None, [note]), counts(plan, by_number), *growth(plan, by_number)]))
-    print(f"{TABLE} and {PAGE} in {chosen.out}")
+        write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
+    print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
+    print_files(f"{TABLE} and {PAGE}", chosen.out)
     return 0 if len(rows) >= size and all(row.holds for row in by_number) else 1
 
 

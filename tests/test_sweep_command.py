@@ -35,7 +35,7 @@ SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={va
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     """Run sweeps of the command in this process, and draw no page."""
-    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
+    monkeypatch.setattr(sweep_command, "write_page", lambda *given: None)
     executor = Here()
     monkeypatch.setattr(sweep_command, "opened", lambda *given: nullcontext(executor))
     return executor

@@ -121,8 +121,8 @@ def write_loop(run: FinishedRun, folder: Path) -> None:
     write(folder / LOOP, csv_of(columns))
 
 
-def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
-    """Write all files; what is to be told of them."""
+def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
+    """Write all files."""
     head = ["setting", "unit", "start", "value", "standard_error"]
     write_csv(folder / PARAMETERS, [*head, *(f"correlation_{n}" for n in fit.names)], _entries(fit))
     write_loop(fit.nearest.run, folder)
@@ -138,9 +138,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
         PlotSection("Loop and differences", _panels(fit, measured)),
         f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
     ]
-    return write_page(
-        folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections
-    )
+    write_page(folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections)
 
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:

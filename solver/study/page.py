@@ -166,27 +166,15 @@ VERDICTS = "right", "holds", "unsolved", "refused", "unclear", "wrong", "FAILS"
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
-def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
-    """Write a report as a page that needs nothing beside it.
-
-    Returns
-    -------
-    What whoever asked for it is to be told; nothing where it has all of its charts.
-
-    Raises
-    ------
-    OSError
-        When the file cannot be written.
-    """
+def write_page(file: Path, title: str, report: Sequence[Section]) -> None:
+    """Write a report as a page that needs nothing beside it."""
     plots = [part for part in report if isinstance(part, PlotSection)]
     render = renderer() if plots else None
-    head, drawn = render(plots) if render else ("", [""] * len(plots))
-    note = NO_CHARTS if plots and render is None else ""
+    missing = f"<p>{escape(NO_CHARTS)}</p>"
+    head, drawn = render(plots) if render else ("", [missing] * len(plots))
     places = iter(drawn)
-    parts = [part if isinstance(part, str) else next(places) for part in report]
-    body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
+    body = "\n".join(part if isinstance(part, str) else next(places) for part in report)
     write(file, PAGE.substitute(title=escape(title), head=head, body=body))
-    return note
 
 
 def renderer() -> Renderer | None:

@@ -61,8 +61,8 @@ def paper_figure(
     return PaperFigure(number, panels=panels, findings=findings, caption=caption, **texts)
 
 
-def write_figures(figures: Sequence[PaperFigure], folder: Path) -> str:
-    """Write `FILE` into a folder; what is to be told of it, if anything."""
+def write_figures(figures: Sequence[PaperFigure], folder: Path) -> None:
+    """Write `FILE` into a folder."""
     report: list[Section] = [INTRODUCTION]
     for figure in figures:
         findings = bullets([f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings])
@@ -72,4 +72,4 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> str:
             PlotSection(figure.heading, figure.panels),
             f'<p>{claim}</p>\n{findings}\n<p class="caption">{escape(figure.caption)}</p>',
         ]
-    return write_page(folder / FILE, "The paper's figures, drawn again", report)
+    write_page(folder / FILE, "The paper's figures, drawn again", report)

@@ -93,9 +93,8 @@ def _force_at(side: str) -> Quantity:
         moved = run.iterate.displacement
         return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
 
-    force.__name__ = f"{side}_force"
-    title = f"Largest force at the {side}"
-    return quantity(title, "N", applies=lambda settings: side in holding_sides(settings))(force)
+    title, applies = f"Largest force at the {side}", lambda own: side in holding_sides(own)
+    return Quantity(f"{side}_force", title, "N", force, applies=applies)
 
 
 def holding_sides(settings: Settings) -> Collection[str]:

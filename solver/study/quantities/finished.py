@@ -21,6 +21,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.rules import States
+from solver.reference.solution import Interrupted, Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -120,14 +121,8 @@ def finished_run(
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
-    distance = None
-    if errors:
-        try:
-            reference = reference_of(problem)
-        except NoReferenceError:
-            reference = None
-        if reference is not None and reference.converged.all():
-            distance = distance_to(reference, problem)
+    reference, _ = known_reference(problem) if errors else (None, "")
+    distance = None if reference is None else distance_to(reference, problem)
     if before is not None and (near := neighbour(problem, settings, before)) is not None:
         return FinishedRun(settings, near, was_warm=True)
     solution = solve(
@@ -139,6 +134,32 @@ def finished_run(
         cancelled=cancelled,
     )
     return FinishedRun(settings, solution)
+
+
+def known_reference(
+    problem: Problem, stop: Callable[[], bool] | None = None
+) -> tuple[Reference | None, str]:
+    """The reference, if there is one, and why it is not the one solution, if it is not.
+
+    `stop` is asked once per instant whether to give it up.
+    """
+    try:
+        reference = reference_of(problem, stop)
+    except Interrupted:
+        return None, "the reference takes longer"
+    except NoReferenceError as refusal:
+        return None, str(refusal)
+    if lost := np.count_nonzero(~reference.converged):
+        message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+        if reference.collapse is not None:
+            message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
+        elif reference.jumps_at is not None:
+            message += ": friction softens until the structure jumps"
+        return None, message
+    if reference.jumps_at is not None:
+        return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
+    several = np.count_nonzero(reference.ambiguous)
+    return reference, f"there are several solutions at {several} instants" if several else ""
 
 
 def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
