@@ -28,11 +28,9 @@ from solver.report_commands import add_reports
 from solver.run_commands import add_checks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.key_figures import figures_of
 from solver.study.quantities import reading
-from solver.study.quantities.finished import FinishedRun, known_reference
+from solver.study.quantities.finished import FinishedRun, figures_of, known_reference
 from solver.study.quantities.quantity import Quantity
-from solver.sweep_command import add_sweep
 
 REFUSED, OUT_OF_MEMORY, INTERRUPTED = 2, 3, 130
 """Exit codes; the last is what shells have for a program that is ended by Ctrl-C."""
@@ -110,7 +108,6 @@ def _parser() -> argparse.ArgumentParser:
     settings = add_command(commands, "settings", "list the settings of a scene", _settings)
     settings.add_argument("scene")
     add_reports(commands)
-    add_sweep(commands)
     add_checks(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone

@@ -15,7 +15,15 @@ from typing import Any
 
 from solver.checked import dump
 from solver.definitions import SettingError, is_number
-from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
+from solver.files import (
+    check_controls,
+    check_keys,
+    fields_in,
+    placed,
+    read_toml,
+    require,
+    scene_settings,
+)
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -43,16 +51,10 @@ class Claim:
 
     Attributes
     ----------
-    claim
-        One sentence.
-    settings
+    settings, quantity
         Of the run that it is about.
-    quantity
-        Of that run.
-    low, high
-        Both ends of what it may be; both infinite for what never comes.
-    expected
-        The same in words.
+    low, high, expected
+        Both ends of what it may be, infinite for what never comes, and the same in words.
     """
 
     claim: str
@@ -191,13 +193,7 @@ def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
 
 
 def lesson_from_file(path: Path) -> Lesson:
-    """Read a lesson.
-
-    Raises
-    ------
-    SettingError
-        For a file that cannot be read, or that is refused; the message begins with its name.
-    """
+    """Read a lesson; the message of a refusal begins with the name of its file."""
     with placed(path.name):
         return _lesson(path.stem, read_toml(path, "lesson"))
 
@@ -208,8 +204,10 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     kind = scene_settings(values.pop("scene"))
     with placed("settings"):
         settings = kind.checked(values["settings"])
-    controls = values["controls"]
-    _check_controls(controls, settings)
+    controls, most = values["controls"], f"at most {MOST_CONTROLS} settings"
+    is_few = len(controls) <= MOST_CONTROLS
+    require(is_few, "controls", controls, most, "a lesson is about one thing")
+    check_controls(controls, settings)
     for key in ("text", "explanation"):
         with placed(key):
             values[key] = _paragraphs(values[key], controls)
@@ -218,15 +216,6 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     lesson = Lesson(name=name, **(values | changed))
     _check(lesson)
     return lesson
-
-
-def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
-    can, is_few = f"at most {MOST_CONTROLS} settings", len(controls) <= MOST_CONTROLS
-    require(is_few, "controls", controls, can, "a lesson is about one thing")
-    working = [own for own in settings.definitions() if settings.applies(own)]
-    for control in controls:
-        remedy = "name a setting that does something with the lesson's settings"
-        require(control in working, "controls", control, ", ".join(working), remedy)
 
 
 def _check(lesson: Lesson) -> None:

@@ -156,7 +156,7 @@ def _fit(chosen: argparse.Namespace) -> int:
         write_loop(found.nearest.run, chosen.out)
         if chosen.json:
             tables = {**tables, measured.source: measured.message}
-            print_json({**as_json(found, measured), "tables": tables})
+            print_json({**as_json(found), "tables": tables})
         else:
             print("\n".join(lines(found, measured)), flush=True)
         write_fit(found, measured, chosen.out)

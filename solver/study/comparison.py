@@ -101,13 +101,7 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
 
 
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
-    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood.
-
-    Raises
-    ------
-    SettingError
-        For too many rows, another unit, and what is no finite number.
-    """
+    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood."""
     if len(table.rows) > MOST:
         raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
     columns, units = zip(*used.values(), strict=True)

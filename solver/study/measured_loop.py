@@ -140,11 +140,6 @@ class LoopComparison:
         Titles of what is compared, and of what is given.
     counted
         Which rows are compared, shape (n_rows,).
-
-    Raises
-    ------
-    SettingError
-        For a loop of other quantities, or times of which too few are in the run.
     """
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:

@@ -63,18 +63,10 @@ class PanelAxis:
 
 @dataclass(frozen=True, eq=False)
 class PanelCurve:
-    """One line of a panel.
+    """One line of a panel: points, shape (n,), in the units of the axes; none is drawn at NaN.
 
-    Attributes
-    ----------
-    label
-        Entry of the legend, if any.
-    x, y
-        Shape (n,), in the units of the axes; nothing is drawn through NaN.
-    hue
-        Curves of one hue belong together; 0 is the neutral one, of references.
-    line
-        How it is drawn; "points" are joined by a thin line.
+    Curves of one hue belong together; 0 is the neutral one, of references. A curve without a label
+    is not in the legend, and one of "points" has a thin line between them.
     """
 
     label: str
@@ -90,14 +82,10 @@ class Runs:
 
     Attributes
     ----------
-    numbers
-        Of the runs, shape (n,).
-    x, y
-        Where they stand, same shape; in a panel y is NaN where a run has no value.
-    hues
-        Of the curve to which they belong, same shape.
-    holds
-        Whether that is an answer, same shape.
+    numbers, x, y
+        Of the runs, and where they stand, shape (n,); in a panel y is NaN where a run has no value.
+    hues, holds
+        Of the curve to which each belongs, and whether it is an answer, same shape.
     said
         What each is and came to, in words, n of them.
     """

@@ -18,13 +18,11 @@ from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.settings import Settings
 from solver.study.quantities.cycles import instants_of
-from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.finished import FinishedRun, largest_load
 from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantity
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
-EQUAL = 1e-6
-"""Relative difference up to which two loads count as equally large."""
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
 _opens = attrgetter("features.opens")
@@ -39,12 +37,6 @@ def _rubs_by_mu(settings: Settings) -> bool:
 
 def _in_the_plane(settings: Settings) -> bool:
     return settings.kind == "plane"
-
-
-def largest_load(run: FinishedRun) -> int:
-    """Instant at which the loop's force first is largest."""
-    size = np.abs(run.force)
-    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
 
 @quantity("Largest displacement", "m")

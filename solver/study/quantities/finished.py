@@ -1,13 +1,15 @@
-"""A run that has ended, with what its quantities are taken from."""
+"""A run that has ended: what its quantities are taken from, and its key figures."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
@@ -17,6 +19,7 @@ from solver.latin.certified import finished
 from solver.latin.cost import costs_of
 from solver.latin.status import certified
 from solver.latin.status_step import states_of, status_step
+from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
@@ -38,6 +41,12 @@ ALONE = 60
 """Iterations that take as long as a run of its own, with all beside them. A status step from a
 neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
 takes 1 to 3 and 3 to 9 (measured)."""
+
+
+ZERO = 1e-9
+"""Share of the largest value in a run below which a key figure is zero."""
+EQUAL = 1e-6
+"""Relative difference up to which two loads count as equally large."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +105,58 @@ class FinishedRun:
         """Energy that friction takes between each instant and the one before, (n_instants,), J."""
         works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
         return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
+
+
+def largest_load(run: FinishedRun) -> int:
+    """Instant at which the loop's force first is largest."""
+    size = np.abs(run.force)
+    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
+
+
+@dataclass(frozen=True)
+class KeyFigure:
+    """A number of a run at an instant, in SI, by the names of scripts and of people.
+
+    The unit is empty for a share, and chosen by the size of the largest value in the run.
+    """
+
+    name: str
+    title: str
+    value: float
+    unit: str
+    largest: float
+
+
+def key_figures(
+    axes: tuple[tuple[str, str], tuple[str, str]],
+    loop: Iterable[NDArray[Any]],
+    status: NDArray[np.int8],
+    energy: float,
+    instant: int,
+) -> list[KeyFigure]:
+    """Key figures at an instant.
+
+    Of the axes of the loop and both of its sides, shape (2, n_instants), the status of all contact
+    points, shape (n_points, n_instants), and the energy that friction takes in the whole run, J.
+    """
+    figures = []
+    for name, (title, unit), values in zip(("displacement", "force"), axes, loop, strict=True):
+        largest, value = float(np.abs(values).max()), float(values[instant])
+        value = value if abs(value) > ZERO * largest else 0.0
+        figures.append(KeyFigure(name, title, value, unit, largest))
+    now = status[:, instant]
+    slipping = float(np.mean((now != 0) & (now != OPEN))) if len(now) else 0.0
+    figures.append(KeyFigure("slipping", "Slips", slipping, "", 1.0))
+    return [*figures, KeyFigure("energy", "Energy lost", energy, "J", abs(energy))]
+
+
+def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
+    """Key figures of a run where its force first is largest, and when that is, s."""
+    instant = largest_load(run)
+    loop = run.displacement, run.force
+    energy = float(run.dissipated.sum())
+    figures = key_figures(run.loop.axes, loop, run.iterate.status, energy, instant)
+    return figures, float(run.problem.instants[instant])
 
 
 @cache

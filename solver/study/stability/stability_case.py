@@ -116,20 +116,17 @@ def extreme_cases(scenes: Collection[str] = (), *, quick: bool = False) -> Itera
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run came to.
+    """What a run came to; NaN where something is not known.
 
     Attributes
     ----------
     ending, advice
         Its status; `REFUSED` or `BROKEN`, and why.
     error_displacement, error_force
-        Relative distance to the reference; absolute (m, N) where reference and load are zero; NaN
-        where there is none.
-    residual
-        Of a certified run by `kkt_residual`; NaN of others.
-    floor
-        Residual of the reference, below which rounding lets nobody come: layers of 5000 times their
-        thickness have one of 3e-7. Measured where that of a certified solution is above rounding.
+        Relative distance to the reference; absolute (m, N) where reference and load are zero.
+    residual, floor
+        Of a certified run by `kkt_residual`, and, where it is above rounding, of the reference,
+        below which rounding lets nobody come: layers of 5000 times their thickness have 3e-7.
     doubt
         Why the reference is not the one solution, or empty.
     """
