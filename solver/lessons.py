@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -176,18 +175,13 @@ class Lesson:
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
-    wanted: defaultdict[str, set[str | None]] = defaultdict(set)
-    for claim in lesson.checkpoints:
-        reads = claim.quantity.reads if isinstance(claim, Claim) else None
-        wanted[dump(claim.settings)].add(reads)
+    reads = {claim.quantity.reads for claim in lesson.checkpoints if isinstance(claim, Claim)}
+    errors, indicators = "errors" in reads, "indicators" in reads
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
         key = dump(claim.settings)
         if key not in runs:
-            kinds = wanted[key]
-            runs[key] = finished_run(
-                claim.settings, errors="errors" in kinds, indicators="indicators" in kinds
-            )
+            runs[key] = finished_run(claim.settings, errors=errors, indicators=indicators)
         holds, words = claim.tested(runs[key], lesson.instant)
         yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"
 

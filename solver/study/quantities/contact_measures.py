@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
-from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce, reaction
 from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
@@ -166,34 +165,19 @@ def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
 @quantity("Largest von Mises stress", "Pa", applies=_in_the_plane)
 def peak_stress(run: FinishedRun) -> float:
     """Largest von Mises stress at the centre of an element at any instant, Pa."""
-    return _peak_stress(run)[0]
+    return run.peak_stress[0]
 
 
 @quantity("x of the largest stress", "m", applies=_in_the_plane)
 def peak_stress_x(run: FinishedRun) -> float:
     """Place of the largest stress along the body, m; NaN without stress."""
-    return float(_peak_stress(run)[1][0])
+    return run.peak_stress[1]
 
 
 @quantity("y of the largest stress", "m", applies=_in_the_plane)
 def peak_stress_y(run: FinishedRun) -> float:
     """Height of the largest stress above the lowest side, m; NaN without stress."""
-    return float(_peak_stress(run)[1][1])
-
-
-def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
-    """Largest von Mises stress, Pa, and the centre of the element that has it first, m."""
-    inside, values = run.problem.inside, run.settings.values()
-    largest, place = 0.0, np.full(2, np.nan)
-    assert inside is not None  # these quantities are of the plane
-    for instant in range(run.problem.n_instants):
-        moved = inside.displacement(run.iterate.displacement, [instant])[:, :, 0]
-        stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
-        element = int(stress.argmax())
-        if stress[element] > largest:
-            largest = float(stress[element])
-            place = inside.nodes[inside.elements[element]].mean(axis=0)
-    return largest, place
+    return run.peak_stress[2]
 
 
 @quantity("Largest force in the spring", "N", applies=lambda settings: settings.features.has_spring)

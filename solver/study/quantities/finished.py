@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
+from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
@@ -28,7 +29,7 @@ from solver.reference.solution import Interrupted, Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.quantities.cycles import slips_of
+from solver.study.quantities.cycles import LoadCycles, cycles_of, slips_of
 
 REFUSED, BROKEN = "refused", "broken"
 """How a run ends that never was one: by refused settings, by a fault of the engine."""
@@ -105,6 +106,26 @@ class FinishedRun:
         """Energy that friction takes between each instant and the one before, (n_instants,), J."""
         works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
         return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
+
+    @cached_property
+    def cycles(self) -> LoadCycles:
+        """The run, cycle by cycle of its load."""
+        return cycles_of(self.settings, self.iterate)
+
+    @cached_property
+    def peak_stress(self) -> tuple[float, float, float]:
+        """Largest von Mises stress in the plane, Pa, and x and y of the element that has it, m."""
+        inside, values = self.problem.inside, self.settings.values()
+        assert inside is not None
+        largest, place = 0.0, np.full(2, np.nan)
+        for instant in range(self.problem.n_instants):
+            moved = inside.displacement(self.iterate.displacement, [instant])[:, :, 0]
+            stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
+            element = int(stress.argmax())
+            if stress[element] > largest:
+                largest = float(stress[element])
+                place = inside.nodes[inside.elements[element]].mean(axis=0)
+        return largest, float(place[0]), float(place[1])
 
 
 def largest_load(run: FinishedRun) -> int:
