@@ -15,9 +15,8 @@ from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import scene_settings, settings_from_command
 from solver.study.cases.case import case_from_file
-from solver.study.figures.figure import FILE, write_figures
 from solver.study.figures.modes import paper_figures
-from solver.study.figures.paper_runs import paper_runs
+from solver.study.figures.paper import FILE, paper_runs, write_figures
 from solver.study.page import aligned, head_of, line_of, write_page
 from solver.study.proof import report as proof
 from solver.study.speed import study_report as study

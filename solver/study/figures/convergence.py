@@ -6,8 +6,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.reference.distance import Fields
-from solver.study.figures.figure import Finding, PaperFigure, paper_figure
-from solver.study.figures.paper_runs import EARLY, LONG, PaperRuns
+from solver.study.figures.paper import EARLY, LONG, Finding, PaperFigure, PaperRuns, paper_figure
 from solver.study.page import Line, Panel, PanelAxis, PanelCurve
 
 SHOWN = 300
