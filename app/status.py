@@ -8,7 +8,7 @@ from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import number, percent, unit_for
 from solver.latin import Ending
-from solver.study.key_figures import key_figures
+from solver.study.quantities.finished import key_figures
 
 ENDINGS = {
     Ending.CONVERGED: "✓ solved",

@@ -13,17 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from solver.console import (
-    add_command,
-    announce,
-    given,
-    refusing,
-    warn,
-)
+from solver.console import add_command, announce, given, print_json, refusing, warn
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
@@ -32,18 +23,14 @@ from solver.files import save_result, scene_settings, summary
 from solver.latin import Ending, solve, solve_in_slabs
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
-from solver.reference.incremental import reference_of
-from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
 from solver.report_commands import add_reports
 from solver.run_commands import add_checks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.key_figures import figures_of
 from solver.study.quantities import reading
-from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.finished import FinishedRun, figures_of, known_reference
 from solver.study.quantities.quantity import Quantity
-from solver.sweep_command import add_sweep
 
 REFUSED, OUT_OF_MEMORY, INTERRUPTED = 2, 3, 130
 """Exit codes; the last is what shells have for a program that is ended by Ctrl-C."""
@@ -121,7 +108,6 @@ def _parser() -> argparse.ArgumentParser:
     settings = add_command(commands, "settings", "list the settings of a scene", _settings)
     settings.add_argument("scene")
     add_reports(commands)
-    add_sweep(commands)
     add_checks(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone
@@ -176,8 +162,8 @@ def _print_figures(
     if as_json:
         more = {figure.name: figure.value for figure in of_loop}
         of = {"quantities": {name: value for name, (value, _) in values.items()}} if asked else {}
-        found = {**figures, **more, **of, "tables": tables, "settings": run.settings.values()}
-        print(json.dumps(_finite(found)))
+        settings = run.settings.values()
+        print_json({**figures, **more, **of, "tables": tables, "settings": settings})
         return
     for name, value in figures.items():
         for line in value if isinstance(value, list) else [value]:
@@ -191,35 +177,15 @@ def _print_figures(
         print(f"{name:<20} {number}")
 
 
-def _finite(value: Any) -> Any:
-    """The same with None for what is no finite number, as JSON has no such numbers."""
-    if isinstance(value, dict):
-        return {name: _finite(entry) for name, entry in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def _distance(problem: Problem, limit: float) -> Distance | None:
     """Distance to the reference, or None where there is none in time."""
     end = time.perf_counter() + limit
-    try:
-        reference = reference_of(problem, lambda: time.perf_counter() > end)
-    except Interrupted:
-        warn("no errors are known: the reference takes longer")
+    reference, doubt = known_reference(problem, lambda: time.perf_counter() > end)
+    if reference is None:
+        warn(f"no errors are known: {doubt}")
         return None
-    except NoReferenceError as refusal:
-        warn(f"no errors are known: {refusal}")
-        return None
-    lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
-    if lost:
-        message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-        if reference.collapse is not None:
-            message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
-        elif reference.jumps_at is not None:
-            message += ": friction softens until the structure jumps"
-        warn(f"no errors are known: {message}")
-        return None
-    if several:
-        warn(f"there are several solutions at {several} instants; errors are to one of them")
+    if doubt:
+        warn(f"{doubt}; errors are to one of them")
     return distance_to(reference, problem)
 
 

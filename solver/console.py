@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -19,6 +20,7 @@ from solver.latin.run_cost import run_cost
 from solver.remarks import remarks_before
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.page import NO_CHARTS, renderer
 
 
 def add_command(
@@ -69,6 +71,24 @@ def warn(*messages: str) -> None:
 def print_tables(tables: Mapping[str, str]) -> None:
     """Print to stderr what was understood of tables, by what they were given for."""
     warn(*(f"{name}: {message}" for name, message in tables.items()))
+
+
+def print_files(names: str, folder: Path) -> None:
+    """Print where files are, and whether their page has charts."""
+    print(*([] if renderer() else [NO_CHARTS]), f"{names} in {folder}", sep="\n")
+
+
+def print_json(values: Mapping[str, Any]) -> None:
+    """Print values as JSON, with null for what is no finite number."""
+    print(json.dumps(_finite(values)), flush=True)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _finite(entry) for name, entry in value.items()}
+    if isinstance(value, list):
+        return list(map(_finite, value))
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def announce(

@@ -37,14 +37,7 @@ def curve_of(
 ) -> GivenCurve:
     """Points of a curve in a table, and what was understood.
 
-    Parameters
-    ----------
-    table
-        As `solver.tables.read_table` gives it.
-    definition, name
-        The setting.
-    units
-        Its units, as the other settings have them (`Settings.curve_units`).
+    The units are those of the setting beside the others (`Settings.curve_units`).
 
     Raises
     ------
@@ -108,10 +101,7 @@ def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -
 def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     """Describe what was understood of tables, by the name of their setting.
 
-    Raises
-    ------
-    SettingError
-        Where the other settings want another quantity than a table has.
+    A table of another quantity than the other settings want is refused.
     """
     definitions: Mapping[str, Any] = settings.definitions()
     return {

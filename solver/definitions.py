@@ -211,13 +211,7 @@ def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
 
 
 def checked_value(definition: Parameter, name: str, value: object) -> Any:
-    """Value of a setting in its own type.
-
-    Raises
-    ------
-    SettingError
-        For a wrong type, or a value out of range.
-    """
+    """Value of a setting in its own type; a wrong type, or one out of range, is refused."""
     refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(definition, CurveParameter):
         return _checked_curve(definition, name, value)

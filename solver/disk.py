@@ -69,13 +69,7 @@ def write(path: Path, content: str | bytes) -> None:
 
 
 def check_place(path: Path) -> None:
-    """Check, before long work, that a file can be written.
-
-    Raises
-    ------
-    OSError
-        As for `whole_file`.
-    """
+    """Raise, before long work, what `whole_file` would."""
     _, part = _place_and_part(path)
     part.touch(exist_ok=False)
     part.unlink()

@@ -127,12 +127,7 @@ def _end_with_parent() -> None:
 def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Executor]:
     """Open the executor that a text names, and close it in the end with all that still runs.
 
-    Parameters
-    ----------
-    on
-        `processes`, `processes:COUNT`, or `dask://HOST:PORT`.
-    limit, n_calls
-        As for `Processes`; a cluster does not take them.
+    `limit` and `n_calls` are those of `Processes`; a cluster does not take them.
 
     Raises
     ------

@@ -35,14 +35,9 @@ OF_BASES = "modes", "added", "updated", "enriched", "dropped"
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
-    """Settings of a saved file, whose curves name no other files.
+    """Settings of a saved file in TOML, whose curves name no other files.
 
-    Parameters
-    ----------
-    text
-        TOML: a scene's name under `scene`, and settings by name.
-    source
-        Where the text comes from, used in messages.
+    It has a scene's name under `scene`, and settings by name; messages begin with its source.
 
     Raises
     ------
@@ -116,19 +111,9 @@ def check_keys(
 def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, Any]:
     """Values of the fields of a dataclass that a table has as its keys, with lists as tuples.
 
-    Parameters
-    ----------
-    kind
-        The dataclass. What has a default may be left out; its name is not in the table.
-    values
-        The table.
-    others
-        Types of keys that are no fields, or are kept otherwise.
-
-    Raises
-    ------
-    SettingError
-        As `check_keys`, and for a list of anything but texts.
+    What has a default may be left out; its name is not in the table. `others` are the types of keys
+    that are no fields, or are kept otherwise. Keys are refused as by `check_keys`, and lists of
+    anything but texts.
     """
     own = {field.name: field for field in fields(kind) if field.name != "name"}
     keys = {name: IN_FILES[field.type] for name, field in own.items() if field.type in IN_FILES}
@@ -148,6 +133,14 @@ def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -
     """Refuse a value that does not meet what is required of it."""
     if not is_met:
         raise SettingError(name, value, allowed, remedy)
+
+
+def check_controls(names: Sequence[str], settings: Settings) -> None:
+    """Refuse controls that are no settings, or do nothing beside the others."""
+    working = [name for name in settings.definitions() if settings.applies(name)]
+    for name in names:
+        remedy = "name a setting that does something here"
+        require(name in working, "controls", name, ", ".join(working), remedy)
 
 
 @contextlib.contextmanager

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,15 @@ from typing import Any
 
 from solver.checked import dump
 from solver.definitions import SettingError, is_number
-from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
+from solver.files import (
+    check_controls,
+    check_keys,
+    fields_in,
+    placed,
+    read_toml,
+    require,
+    scene_settings,
+)
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -43,16 +50,10 @@ class Claim:
 
     Attributes
     ----------
-    claim
-        One sentence.
-    settings
+    settings, quantity
         Of the run that it is about.
-    quantity
-        Of that run.
-    low, high
-        Both ends of what it may be; both infinite for what never comes.
-    expected
-        The same in words.
+    low, high, expected
+        Both ends of what it may be, infinite for what never comes, and the same in words.
     """
 
     claim: str
@@ -174,30 +175,19 @@ class Lesson:
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
-    wanted: defaultdict[str, set[str | None]] = defaultdict(set)
-    for claim in lesson.checkpoints:
-        reads = claim.quantity.reads if isinstance(claim, Claim) else None
-        wanted[dump(claim.settings)].add(reads)
+    reads = {claim.quantity.reads for claim in lesson.checkpoints if isinstance(claim, Claim)}
+    errors, indicators = "errors" in reads, "indicators" in reads
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
         key = dump(claim.settings)
         if key not in runs:
-            kinds = wanted[key]
-            runs[key] = finished_run(
-                claim.settings, errors="errors" in kinds, indicators="indicators" in kinds
-            )
+            runs[key] = finished_run(claim.settings, errors=errors, indicators=indicators)
         holds, words = claim.tested(runs[key], lesson.instant)
         yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"
 
 
 def lesson_from_file(path: Path) -> Lesson:
-    """Read a lesson.
-
-    Raises
-    ------
-    SettingError
-        For a file that cannot be read, or that is refused; the message begins with its name.
-    """
+    """Read a lesson; the message of a refusal begins with the name of its file."""
     with placed(path.name):
         return _lesson(path.stem, read_toml(path, "lesson"))
 
@@ -208,8 +198,10 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     kind = scene_settings(values.pop("scene"))
     with placed("settings"):
         settings = kind.checked(values["settings"])
-    controls = values["controls"]
-    _check_controls(controls, settings)
+    controls, most = values["controls"], f"at most {MOST_CONTROLS} settings"
+    is_few = len(controls) <= MOST_CONTROLS
+    require(is_few, "controls", controls, most, "a lesson is about one thing")
+    check_controls(controls, settings)
     for key in ("text", "explanation"):
         with placed(key):
             values[key] = _paragraphs(values[key], controls)
@@ -218,15 +210,6 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     lesson = Lesson(name=name, **(values | changed))
     _check(lesson)
     return lesson
-
-
-def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
-    can, is_few = f"at most {MOST_CONTROLS} settings", len(controls) <= MOST_CONTROLS
-    require(is_few, "controls", controls, can, "a lesson is about one thing")
-    working = [own for own in settings.definitions() if settings.applies(own)]
-    for control in controls:
-        remedy = "name a setting that does something with the lesson's settings"
-        require(control in working, "controls", control, ", ".join(working), remedy)
 
 
 def _check(lesson: Lesson) -> None:

@@ -32,19 +32,7 @@ def plain(value: float) -> str:
 def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:
     """Refuse a number of a part of the method that is no number, or out of range.
 
-    Parameters
-    ----------
-    part, name
-        The part, and which of its numbers.
-    low, high
-        The range.
-    above
-        Whether `low` itself is refused.
-
-    Raises
-    ------
-    RefusedError
-        It names the part and the number.
+    With `above` the lower end itself is refused, too.
     """
     value = getattr(part, name)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,26 +1,39 @@
-"""The commands of `python -m solver` that measure and write reports."""
+"""The commands that write reports: `figures`, `study`, `stability`, `proof` and `sweep`."""
 
 from __future__ import annotations
 
 import argparse
-import contextlib
+import sys
+import time
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
-from solver.console import add_command, given, writing
+from solver.console import add_command, given, print_files, print_tables, warn, writing
 from solver.definitions import SettingError
-from solver.files import scene_settings
+from solver.disk import write
+from solver.executors import FORMS, opened
+from solver.files import scene_settings, settings_from_command
 from solver.study.cases.case import case_from_file
-from solver.study.figures.figure import FILE, write_figures
 from solver.study.figures.modes import paper_figures
-from solver.study.figures.paper_runs import paper_runs
-from solver.study.page import aligned, head_of, line_of
+from solver.study.figures.paper import FILE, paper_runs, write_figures
+from solver.study.page import aligned, head_of, line_of, write_page
 from solver.study.proof import report as proof
 from solver.study.speed import study_report as study
 from solver.study.speed.measured_times import error_against_time, times_at_sizes
 from solver.study.stability import report as stability
 from solver.study.stability.draws import random_cases
 from solver.study.stability.stability_case import Row, extreme_cases, judged_runs, passed
+from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
+from solver.study.sweep.plan import Row as SweepRow
+from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
+from solver.study.sweep.run import field_file, patience, sweep
+
+TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
+LIMIT = 600.0
+"""Seconds that a run may take, unless somebody says otherwise."""
+OFTEN = 3.0
+"""Seconds between two lines of progress."""
 
 
 def add_reports(commands: Any) -> None:
@@ -42,17 +55,28 @@ def add_reports(commands: Any) -> None:
     parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
     own = "cases of one's own (.toml)"
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
+    purpose = "quantities of a run over up to two settings"
+    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True, to_folder=True)
+    parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
+    parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
+    parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
+    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
+    parser.add_argument("--fields", action="store_true", help="keep the fields of every run")
+    parser.add_argument(
+        "--adaptive", type=int, metavar="N", help="no more than N runs, where the answer bends"
+    )
+    parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
 
 
 def _figures(chosen: argparse.Namespace) -> int:
     with writing(chosen.out, FILE):
         figures = paper_figures(paper_runs())
-        note = write_figures(figures, chosen.out)
+        write_figures(figures, chosen.out)
     for figure in figures:
         print(f"{figure.heading} ({figure.verdict})")
         for finding in figure.findings:
             print(f"  {'+' if finding.holds else '-'} {finding.text}")
-    print(*filter(None, [note]), f"{FILE} in {chosen.out}", sep="\n")
+    print_files(FILE, chosen.out)
     return 0
 
 
@@ -65,11 +89,11 @@ def _study(chosen: argparse.Namespace) -> int:
         curves = error_against_time(settings, chosen.repeats)
         study.write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
-        note = study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
+        study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
     print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(study.table(curves)))
     print("", aligned(study.sizes_table(settings, sizes)), *study.notes(settings, sizes), sep="\n")
-    print(*filter(None, [note]), f"{len(study.FILES)} files in {chosen.out}", sep="\n")
+    print_files(f"{len(study.FILES)} files", chosen.out)
     return 0
 
 
@@ -87,20 +111,14 @@ def _stability(chosen: argparse.Namespace) -> int:
     runs: list[Row] = []
     with writing(chosen.out, *stability.FILES):
         print(head_of(stability.SHOWN))
-        is_whole = False
-        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is written
+        try:
             for run in judged_runs(cases):
                 print(line_of(run, stability.SHOWN), flush=True)
                 runs.append(run)
-            is_whole = True
-        stability.write_stability(runs, title, notes, chosen.out)
-    print(
-        "\n".join(
-            [*stability.last_lines(runs, notes), f"{len(stability.FILES)} files in {chosen.out}"]
-        )
-    )
-    if not is_whole:
-        raise KeyboardInterrupt
+        finally:  # what is done by then is written
+            stability.write_stability(runs, title, notes, chosen.out)
+            print("\n".join(stability.last_lines(runs, notes)))
+            print(f"{len(stability.FILES)} files in {chosen.out}")
     return 0 if all(map(passed, runs)) else 1
 
 
@@ -116,3 +134,62 @@ def _proof(chosen: argparse.Namespace) -> int:
         proof.write_proof(rows, chosen.out)
     print(f"{proof.summary(rows)}\n{len(proof.FILES)} files in {chosen.out}")
     return 0 if all(map(proof.holds, rows)) else 1
+
+
+def _sweep(chosen: argparse.Namespace) -> int:
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    # Without a range it is a run, which has one row.
+    vary = chosen.vary or [f"friction={settings.friction!r}"]
+    plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
+    if not chosen.limit > 0.0:
+        raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
+    size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
+    print_tables(tables)
+    warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
+    with writing(chosen.out):
+        rows = rows_in(chosen.out / TABLE, plan)
+        try:
+            _run(plan, rows, size, chosen)
+        except (KeyboardInterrupt, BrokenExecutor) as end:
+            why = f"slipfront: {end}" if str(end) else "Stopped"
+            print(f"{why}; the same command goes on from here.", file=sys.stderr)
+        by_number = [rows[number] for number in sorted(rows)]
+        write(chosen.out / TABLE, csv_of(plan, by_number))
+        write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
+    print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
+    print_files(f"{TABLE} and {PAGE}", chosen.out)
+    return 0 if len(rows) >= size and all(row.holds for row in by_number) else 1
+
+
+def _run(plan: Plan, rows: dict[int, SweepRow], size: int, chosen: argparse.Namespace) -> None:
+    """Run what of a plan has no row yet, append its rows to the table, and print how far it is."""
+    fields = None
+    known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
+    if chosen.fields:
+        folder = (chosen.out / FIELDS).resolve()
+        folder.mkdir(exist_ok=True)
+        fields = str(folder)
+        known = {n: row for n, row in known.items() if (folder / field_file(n)).exists()}
+    options: dict[str, Any] = {"limit": chosen.limit, "fields": fields, "warm": not chosen.cold}
+    if chosen.adaptive is not None:
+        # Here and not above: it takes a sixth of a second, for which other commands need not wait.
+        from solver.study.sweep.adaptive import Chooser
+
+        options |= {"following": Chooser(plan, chosen.adaptive, known), "warm": False}
+    table = chosen.out / TABLE
+    with opened(chosen.on, patience(chosen.limit)) as executor:
+        # As a whole, in case that its last line was cut off
+        write(table, csv_of(plan, list(rows.values())))
+        with table.open("a", encoding="utf-8", newline="") as lines:
+            before, began = len(known), time.monotonic()
+            printed = began
+            for row in sweep(plan, executor, done=set(known), **options):
+                rows[row.number] = known[row.number] = row
+                lines.write(lines_of(plan, [row]))
+                lines.flush()
+                now, done = time.monotonic(), len(known)
+                if now - printed > OFTEN:
+                    left = (now - began) / (done - before) * (size - done)
+                    line = f"{done} of {size} runs, {left:.0f} s left"
+                    print(line, file=sys.stderr, flush=True)
+                    printed = now

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from pathlib import Path
@@ -13,24 +12,24 @@ from solver.console import (
     add_command,
     announce,
     given,
+    print_files,
+    print_json,
     print_tables,
     read_brought,
     warn,
     writing,
 )
 from solver.definitions import SettingError, about
-from solver.discrete.problem import Problem
-from solver.latin import Ending, Solution, solve
+from solver.latin import Ending, solve
 from solver.lessons import check, lesson_from_file
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
 from solver.study.compared_runs import ComparedRun
-from solver.study.comparison import CAN, FEWEST, FRICTION, Comparison, read_results
+from solver.study.comparison import CAN, FEWEST, Comparison, read_results
 from solver.study.fit import MOST, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
-from solver.study.measured_loop import ALIKE, LoopComparison, is_a_loop, read_loop, rms
 from solver.study.measured_loop import CAN as LOOP
+from solver.study.measured_loop import LoopComparison, is_a_loop, read_loop
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,
@@ -97,68 +96,36 @@ def _mesh(chosen: argparse.Namespace) -> int:
 def _compare(chosen: argparse.Namespace) -> int:
     settings, tables = given(chosen)
     data, problem = read_brought(chosen, CAN), discretise(settings)
-    beside = _beside_loop if is_a_loop(data, chosen.file.name) else _beside_results
-    source, message, figures, solution = beside(chosen, data, settings, problem)
+    name, interface = chosen.file.name, chosen.interface
+    beside: LoopComparison | Comparison
+    if is_a_loop(data, name):
+        loop = settings.structure().loop(problem)
+        measured = read_loop(data, name, loop.axes)
+        message = measured.message
+        beside = LoopComparison(measured, loop, problem)
+    else:
+        if interface and interface not in problem.rubbing:
+            can = ", ".join(problem.rubbing)
+            raise SettingError("--interface", interface, can, "choose one of these")
+        results = read_results(data, name, settings)
+        message = results.message
+        beside = Comparison(results, problem, interface)
+        if beside.counted < FEWEST:
+            can = f"at least {FEWEST} rows that both cover"
+            raise SettingError("--with", str(chosen.file), can, "give points along this interface")
+    print_tables({name: message})
+    announce(settings, problem)
+    solution = solve(problem, method_of(settings))
+    figures = beside.figures(solution.iterate)
+    if isinstance(beside, LoopComparison):
+        warn(*beside.drive_messages(figures["distance_given"]))
     status = solution.status
     if chosen.json:
-        tables = {**tables, source: message}
-        print(json.dumps({**figures, "tables": tables, "status": str(status.ending)}))
+        print_json({**figures, "tables": {**tables, name: message}, "status": str(status.ending)})
     else:
-        far = f"{figures['quantity']}: {100.0 * figures['distance']:.4g} % from {source}"
+        far = f"{figures['quantity']}: {100.0 * figures['distance']:.4g} % from {name}"
         print(f"{far}, at {figures['rows_compared']} of {figures['rows']} rows")
     return 0 if status.ending is Ending.CONVERGED else 1
-
-
-Found = tuple[str, str, dict[str, Any], Solution]
-"""Name of a table, what was understood of it, how far a run is from it, and the run."""
-
-
-def _beside_results(
-    chosen: argparse.Namespace, data: bytes, settings: Settings, problem: Problem
-) -> Found:
-    results = read_results(data, chosen.file.name, settings)
-    print_tables({results.source: results.message})
-    if chosen.interface and chosen.interface not in problem.rubbing:
-        known = ", ".join(problem.rubbing)
-        raise SettingError("--interface", chosen.interface, known, "choose one of these")
-    comparison = Comparison(results, problem, chosen.interface)
-    if comparison.counted < FEWEST:
-        can = f"at least {FEWEST} rows that both cover"
-        raise SettingError("--with", str(chosen.file), can, "give points along this interface")
-    announce(settings, problem)
-    solution = solve(problem, method_of(settings))
-    figures = {
-        "quantity": results.quantity,
-        "interface": comparison.interface if results.quantity == FRICTION else None,
-        "distance": comparison.of(solution.iterate),
-        "rows": len(results.times),
-        "rows_compared": comparison.counted,
-    }
-    return results.source, results.message, figures, solution
-
-
-def _beside_loop(
-    chosen: argparse.Namespace, data: bytes, settings: Settings, problem: Problem
-) -> Found:
-    loop = settings.structure().loop(problem)
-    measured = read_loop(data, chosen.file.name, loop.axes)
-    print_tables({measured.source: measured.message})
-    beside = LoopComparison(measured, loop, problem)
-    announce(settings, problem)
-    solution = solve(problem, method_of(settings))
-    differences, drive = beside.differences(*loop.along(solution.iterate))
-    if rms(drive) > ALIKE:
-        warn(beside.drive_message(drive))
-    figures = {
-        "quantity": beside.quantity,
-        "interface": None,
-        "distance": rms(differences),
-        "given": beside.given,
-        "distance_given": rms(drive),
-        "rows": len(measured.force),
-        "rows_compared": len(differences),
-    }
-    return measured.source, measured.message, figures, solution
 
 
 def _fit(chosen: argparse.Namespace) -> int:
@@ -189,12 +156,12 @@ def _fit(chosen: argparse.Namespace) -> int:
         write_loop(found.nearest.run, chosen.out)
         if chosen.json:
             tables = {**tables, measured.source: measured.message}
-            print(json.dumps({**as_json(found, measured), "tables": tables}), flush=True)
+            print_json({**as_json(found), "tables": tables})
         else:
             print("\n".join(lines(found, measured)), flush=True)
-        note = write_fit(found, measured, chosen.out)
+        write_fit(found, measured, chosen.out)
     if not chosen.json:
-        print(*filter(None, [note]), f"{', '.join(FILES)} in {chosen.out}", sep="\n")
+        print_files(", ".join(FILES), chosen.out)
     return 0 if found.nearest.run.solution.is_certified else 1
 
 

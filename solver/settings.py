@@ -118,12 +118,7 @@ class Settings(LoadSettings):
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
         """What is known of the scene without a mesh; often that is nothing.
 
-        Parameters
-        ----------
-        problem
-            Its discrete problem.
-        solution
-            What an incremental solver found, if it did: closed forms of contact are for its forces.
+        The solution is that of an incremental solver: closed forms of contact are for its forces.
         """
         return ()
 

@@ -169,13 +169,6 @@ class Table:
 def read_table(data: bytes | str, refuse: Refuse) -> Table:
     """Table as it is read, as described above.
 
-    Parameters
-    ----------
-    data
-        A file's bytes, or its text.
-    refuse
-        Makes the refusal out of what is to be done.
-
     Raises
     ------
     SettingError

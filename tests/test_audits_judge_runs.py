@@ -75,10 +75,10 @@ def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
 
 
 def test_a_warning_breaks_a_run(monkeypatch):
-    def warns(problem):
+    def warns(problem, stop):
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
 
-    monkeypatch.setattr("solver.study.stability.stability_case.reference_of", warns)
+    monkeypatch.setattr("solver.study.quantities.finished.reference_of", warns)
     (row,) = judged_runs([StabilityCase("zero", "bar", {"peak": 0.0})])
     assert row["ending"] == BROKEN
     assert "overflow" in row["advice"]

@@ -40,7 +40,7 @@ LAYERS = [
     ["study"],
     ["lessons"],
     ["console"],
-    ["run_commands", "report_commands", "sweep_command"],
+    ["run_commands", "report_commands"],
     ["cli"],
     ["__main__"],
 ]

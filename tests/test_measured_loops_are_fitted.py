@@ -157,8 +157,8 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
 def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> None:
     settings = scene_settings("bar").checked({**law, **start})
     found = fit(settings, made(true, settings), list(true))
-    assert found.values == pytest.approx(list(true.values()), rel=1e-6)
-    assert found.settings.friction == found.values[0]
+    assert found.nearest.values == pytest.approx(list(true.values()), rel=1e-6)
+    assert found.settings.friction == found.nearest.values[0]
     assert found.settings.finish == settings.finish
     assert messages(found) == []
 
@@ -172,9 +172,9 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
     within = []
     for seed in range(4):
         found = fit(settings, made(true, settings, 0.01, seed), list(true))
-        off = np.abs(found.values - list(true.values())) / found.errors
+        off = np.abs(found.nearest.values - list(true.values())) / found.errors
         within.extend(off < 2.0)
-        assert (found.errors / found.values < 0.05).all()
+        assert (found.errors / found.nearest.values < 0.05).all()
         assert np.abs(found.correlation[0, 1]) < 0.9
     assert np.mean(within) >= 0.75
 
@@ -190,9 +190,9 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start(
     settings = scene_settings("bar").checked({**BAR, "friction": 0.3, name: 0.8 * value})
     found = fit(settings, made(true, settings, noise), list(true))
     assert np.isinf(found.errors).all()
-    assert np.prod(found.values) == pytest.approx(0.37 * value, rel=0.02)
+    assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.
-    assert np.divide(*(found.values / found.start)) == pytest.approx(1.0, rel=0.05)
+    assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(1.0, rel=0.05)
     only, apart = messages(found)
     assert only.startswith(f"Only friction * {name} is known: ")
     assert "does not tell friction and" in apart
@@ -201,7 +201,7 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start(
 def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
     stuck = scene_settings("bar").checked({**SPRUNG, "friction": 1e5, "contact_stiffness": 20.0})
     found = fit(stuck, made({"contact_stiffness": 8.0}, stuck), ["friction", "contact_stiffness"])
-    assert found.values == pytest.approx([1e5, 8.0], rel=1e-6)
+    assert found.nearest.values == pytest.approx([1e5, 8.0], rel=1e-6)
     assert np.isinf(found.errors).tolist() == [True, False]
     assert messages(found)[0].startswith("The loop says nothing of friction")
 
@@ -211,7 +211,7 @@ def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     settings = scene_settings("bar").checked({**BAR, **law, "elements": 12, "instants": 21})
     found = fit(settings, made({"friction": 0.37}, settings), ["friction", "cohesion"])
     assert np.isinf(found.errors).all()
-    assert found.values @ [5000.0, 1.0] == pytest.approx(0.37 * 5000.0 + 600.0, rel=1e-6)
+    assert found.nearest.values @ [5000.0, 1.0] == pytest.approx(0.37 * 5000.0 + 600.0, rel=1e-6)
     assert messages(found)[0].startswith("Only friction * cohesion^0.")
 
 

@@ -23,7 +23,7 @@ from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.study.figures.modes import figure_5, figure_6, figure_8, paper_figures
-from solver.study.figures.paper_runs import PaperRuns, paper_runs
+from solver.study.figures.paper import PaperRuns, paper_runs
 
 NUMBERS = (3, 4, 5, 6, 7, 8)
 
@@ -186,4 +186,4 @@ def test_fig_8_pgd_modes_orthonormalised_in_their_order_are_the_svd_modes(runs):
     assert max(kept[1:]) < 0.9 < 0.99 < kept[0]
     last = runs.five_reduced.records[-1]
     assert last.error_displacement < 0.01 < last.error_force < 0.2
-    assert max(basis.n_modes for basis in runs.five_reduced.last.bases) <= 11
+    assert max(basis.n_modes for basis in runs.five_reduced.iterate.bases) <= 11

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import LinearNDInterpolator
 from sweeps import TINY, Here, rows_of, tiny
 
-from solver import sweep_command
+from solver import report_commands
 from solver.arrays import Array
 from solver.cli import main
 from solver.definitions import SettingError
@@ -35,9 +35,9 @@ SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={va
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     """Run sweeps of the command in this process, and draw no page."""
-    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
+    monkeypatch.setattr(report_commands, "write_page", lambda *given: None)
     executor = Here()
-    monkeypatch.setattr(sweep_command, "opened", lambda *given: nullcontext(executor))
+    monkeypatch.setattr(report_commands, "opened", lambda *given: nullcontext(executor))
     return executor
 
 
@@ -69,7 +69,7 @@ def test_the_table_holds_what_varies_what_is_asked_and_what_is_fixed(
 
 @pytest.mark.usefixtures("here")
 def test_the_page_needs_nothing_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep_command, "write_page", write_page)
+    monkeypatch.setattr(report_commands, "write_page", write_page)
     assert command(tmp_path, "--vary", "friction=0.2,0.3,0.4") == 0
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 2

@@ -18,7 +18,7 @@ from pebble import ProcessExpired
 from processes import is_alive, started, wait_for
 from sweeps import Here, rows_in_table, rows_of, tiny
 
-from solver import sweep_command
+from solver import report_commands
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.executors import opened
@@ -219,7 +219,7 @@ def test_a_sweep_that_is_killed_goes_on(tmp_path: Path, monkeypatch: pytest.Monk
     with started([sys.executable, "-m", "solver", *asked]):
         wait_for(lambda: rows_in_table(table) > 3)
     rows = table.read_text(encoding="utf-8").splitlines()
-    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
+    monkeypatch.setattr(report_commands, "write_page", lambda *given: None)
     assert main(asked) == 0
     assert rows_in_table(table) == 24
     assert {*rows[:-1]} <= {*table.read_text(encoding="utf-8").splitlines()}

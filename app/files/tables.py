@@ -43,7 +43,7 @@ def read_as(
     """
     contents, messages = list[Content](), list[str]()
     if use.startswith(LOOP):
-        loop = loop_in(table, columns_of(table, axes), source, axes)
+        loop = loop_in(table, source, axes)
         contents, messages = [loop], [f"{source}: {loop.message}."]
     if use != LOOP:
         changed, message = with_path(settings, use.removeprefix(BOTH), table)

@@ -59,10 +59,7 @@ def _why_not(settings: Settings, name: str) -> str:
 def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]:
     """Start and size of the scale on which a setting is fitted, and its bounds; size 0 of decades.
 
-    Raises
-    ------
-    SettingError
-        For a setting that there is not, or is no number, or does nothing to the answer.
+    What is no number, or does nothing to the answer, is refused.
     """
     if reason := _why_not(settings, name):
         can = ", ".join(fittable(settings))
@@ -85,15 +82,14 @@ class ComparedRun:
     ----------
     values
         Of the settings that are fitted, shape (p,), in SI.
-    differences, drive
-        Of what it finds, and of what is given, to every row; shares of the measured range.
+    differences
+        Of what it finds to every row; shares of the measured range.
     """
 
     values: Array
     run: FinishedRun
     beside: LoopComparison
     differences: Array
-    drive: Array
 
     @property
     def distance(self) -> float:
@@ -165,8 +161,8 @@ class ComparedRuns:
             raise RefusedError("the run", values, "one that converges", status.advice)
         self._before = finished.states
         beside = LoopComparison(self._measured, finished.loop, finished.problem)
-        both = beside.differences(finished.displacement, finished.force)
-        return ComparedRun(np.array(list(changes.values())), finished, beside, *both)
+        differences, _ = beside.differences(finished.displacement, finished.force)
+        return ComparedRun(np.array(list(changes.values())), finished, beside, differences)
 
     def differences(self, z: Array) -> Array:
         """Of a run, shape (n_rows,); NaN where there is none, so that no step goes there."""

@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
@@ -100,13 +101,7 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
 
 
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
-    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood.
-
-    Raises
-    ------
-    SettingError
-        For too many rows, another unit, and what is no finite number.
-    """
+    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood."""
     if len(table.rows) > MOST:
         raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
     columns, units = zip(*used.values(), strict=True)
@@ -192,6 +187,16 @@ class Comparison:
         own = _interpolated(field[self._order], self._at)
         size = self._norm(self._values) or self._norm(own) or 1.0
         return self._norm(own - self._values) / size
+
+    def figures(self, fields: Fields) -> dict[str, Any]:
+        """What is compared, the distance, and numbers of rows, by the names of scripts."""
+        return {
+            "quantity": self.results.quantity,
+            "interface": None if self._places is None else self.interface,
+            "distance": self.of(fields),
+            "rows": len(self.results.times),
+            "rows_compared": self.counted,
+        }
 
     def _norm(self, values: Array) -> float:
         return float(np.sqrt(self._weights @ values**2))

@@ -59,11 +59,9 @@ class Fit:
     settings
         Of the nearest run, with all that was not fitted as it was.
     names
-        Settings that were fitted, p of them.
-    start, values
-        Of them, shape (p,), in SI.
+        Settings that were fitted, p of them; the runs have their values.
     errors
-        Standard errors, same shape; infinite where the loop does not tell a value alone.
+        Standard errors, shape (p,); infinite where the loop does not tell a value alone.
     correlation
         Of the values, shape (p, p); NaN where there is none.
     together
@@ -75,8 +73,6 @@ class Fit:
 
     settings: Settings
     names: tuple[str, ...]
-    start: Array
-    values: Array
     errors: Array
     correlation: Array
     together: list[tuple[dict[str, float], float]]
@@ -142,8 +138,6 @@ def _fitted(
     return Fit(
         settings=settings.replace(**runs.changes(z)),
         names=runs.names,
-        start=runs.first.values,
-        values=nearest.values,
         errors=np.where(is_alone, np.abs(slopes) * deviations, np.inf),
         correlation=correlation,
         together=_known_together(runs, covariance, blind[:, ~is_alone], is_alone),

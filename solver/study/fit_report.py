@@ -14,7 +14,7 @@ from solver.definitions import about
 from solver.disk import write
 from solver.scenes.words import listed
 from solver.study.fit import Fit
-from solver.study.measured_loop import ALIKE, MeasuredLoop, csv_of, rms
+from solver.study.measured_loop import MeasuredLoop, csv_of
 from solver.study.page import (
     Panel,
     PanelAxis,
@@ -41,7 +41,7 @@ def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
 def messages(fit: Fit) -> list[str]:
     """What the loop cannot tell, and what else there is to know, in sentences."""
     lost = [name for name, error in zip(fit.names, fit.errors, strict=True) if math.isinf(error)]
-    values = dict(zip(fit.names, fit.values, strict=True))
+    values = dict(zip(fit.names, fit.nearest.values, strict=True))
     sentences = []
     for powers, margin in fit.together:
         if math.isnan(margin):
@@ -61,8 +61,8 @@ def messages(fit: Fit) -> list[str]:
             f"The loop says nothing of {listed(lost)}: what is given here is where it began."
         )
     nearest = fit.nearest
-    if rms(nearest.drive) > ALIKE:
-        sentences.append(f"{nearest.beside.drive_message(nearest.drive)}.")
+    given = nearest.beside.figures(nearest.run.iterate)["distance_given"]
+    sentences += [f"{message}." for message in nearest.beside.drive_messages(given)]
     if not nearest.run.solution.is_certified:
         sentences.append("The nearest run is not certified, so that values may be less exact.")
     return sentences
@@ -90,32 +90,26 @@ def _rows(fit: Fit) -> list[list[str]]:
 def _entries(fit: Fit) -> list[list[Any]]:
     """Setting, unit, start, value, standard error and correlations, a row for each."""
     units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
-    columns = fit.names, units, fit.start, fit.values, fit.errors
+    columns = fit.names, units, fit.first.values, fit.nearest.values, fit.errors
     rows = zip(*columns, strict=True)
     return [[*row, *more] for row, more in zip(rows, fit.correlation, strict=True)]
 
 
-def as_json(fit: Fit, measured: MeasuredLoop) -> dict[str, Any]:
-    """The same for scripts; None where there is no number."""
+def as_json(fit: Fit) -> dict[str, Any]:
+    """The same for scripts."""
+    figures = fit.nearest.beside.figures(fit.nearest.run.iterate)
     return {
-        "quantity": fit.nearest.beside.quantity,
-        "distance": fit.nearest.distance,
+        **{name: figures[name] for name in ("quantity", "distance", "rows", "rows_compared")},
         "distance_before": fit.first.distance,
         "runs": fit.runs,
-        "rows": len(measured.force),
-        "rows_compared": len(fit.nearest.differences),
         "parameters": {
-            name: {"start": float(start), "value": float(value), "standard_error": _finite(error)}
+            name: {"start": float(start), "value": float(value), "standard_error": float(error)}
             for name, _, start, value, error, *_ in _entries(fit)
         },
-        "correlation": [[_finite(value) for value in row] for row in fit.correlation],
+        "correlation": fit.correlation.tolist(),
         "messages": messages(fit),
         "settings": {"scene": fit.settings.scene, **fit.settings.values()},
     }
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def write_loop(run: FinishedRun, folder: Path) -> None:
@@ -125,8 +119,8 @@ def write_loop(run: FinishedRun, folder: Path) -> None:
     write(folder / LOOP, csv_of(columns))
 
 
-def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
-    """Write all files; what is to be told of them."""
+def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
+    """Write all files."""
     head = ["setting", "unit", "start", "value", "standard_error"]
     write_csv(folder / PARAMETERS, [*head, *(f"correlation_{n}" for n in fit.names)], _entries(fit))
     write_loop(fit.nearest.run, folder)
@@ -142,9 +136,7 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> str:
         PlotSection("Loop and differences", _panels(fit, measured)),
         f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
     ]
-    return write_page(
-        folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections
-    )
+    write_page(folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections)
 
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:

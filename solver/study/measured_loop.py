@@ -21,6 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -38,8 +39,6 @@ ALIKE = 0.02
 """Share of the range by which the ends of branches may differ, each, that fit equally well."""
 Axes = tuple[tuple[str, str], tuple[str, str]]
 """Titles and units of a loop's displacement and force."""
-LoopColumns = tuple[TableColumn | None, TableColumn, TableColumn]
-"""Columns of time, where there is one, displacement and force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,20 +91,15 @@ def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
     Raises
     ------
     SettingError
-        For a table without these columns, too large or too small, or with what is no finite number.
+        For a table without these columns or in another unit, too large or too small, with what is
+        no finite number, or values that are all the same.
     """
     table = read_table(data, partial(SettingError, "the measured loop", source, CAN))
-    return loop_in(table, columns_of(table, axes), source, axes)
+    return loop_in(table, source, axes)
 
 
-def columns_of(table: Table, axes: Axes) -> LoopColumns:
-    """Columns of time, where there is one, displacement and force that the head names.
-
-    Raises
-    ------
-    SettingError
-        If it names no displacement or no force, or several.
-    """
+def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColumn, TableColumn]:
+    """Columns of time, where there is one, displacement and force that the head has to name."""
     columns = table.columns
     if not any(column.is_known for column in columns):
         raise table.refuse("name its columns in the first line, as in displacement,force")
@@ -119,16 +113,9 @@ def columns_of(table: Table, axes: Axes) -> LoopColumns:
     return time, both[0], both[1]
 
 
-def loop_in(table: Table, columns: LoopColumns, source: str, axes: Axes) -> MeasuredLoop:
-    """The loop in the columns of time, displacement and force of a table.
-
-    Raises
-    ------
-    SettingError
-        For another unit, what is no finite number, too many or too few rows, or values that are
-        all the same.
-    """
-    roles = zip(columns, (("time", "s"), *axes), strict=True)
+def loop_in(table: Table, source: str, axes: Axes) -> MeasuredLoop:
+    """The loop in a table, which is refused as by `read_loop`."""
+    roles = zip(columns_of(table, axes), (("time", "s"), *axes), strict=True)
     used = {name: (column, unit) for column, (name, unit) in roles if column is not None}
     (*times, displacement, force), message = in_si(table, used)
     if len(force) < FEWEST:
@@ -153,11 +140,6 @@ class LoopComparison:
         Titles of what is compared, and of what is given.
     counted
         Which rows are compared, shape (n_rows,).
-
-    Raises
-    ------
-    SettingError
-        For a loop of other quantities, or times of which too few are in the run.
     """
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:
@@ -184,14 +166,28 @@ class LoopComparison:
     def _refusal(self, can: str, remedy: str) -> SettingError:
         return SettingError("the measured loop", self.measured.source, can, remedy)
 
-    def drive_message(self, drive: Array) -> str:
-        """Sentence for differences of what is given."""
-        far = f"{100.0 * rms(drive):.2g} % of its range from the measured"
-        return f"{self.given} of the run is {far}: give the run the measured path"
+    def drive_messages(self, distance: float) -> list[str]:
+        """A sentence where what is given is farther from the measured than branches that fit."""
+        far = f"{100.0 * distance:.2g} % of its range from the measured"
+        message = f"{self.given} of the run is {far}: give the run the measured path"
+        return [message] if distance > ALIKE else []
 
     def of(self, fields: LoopFields) -> float:
         """Distance to an iterate, or to a reference."""
-        return rms(self.differences(*self.loop.along(fields))[0])
+        return float(self.figures(fields)["distance"])
+
+    def figures(self, fields: LoopFields) -> dict[str, Any]:
+        """What is compared and given, their distances, and numbers of rows, for scripts."""
+        differences, drive = self.differences(*self.loop.along(fields))
+        return {
+            "quantity": self.quantity,
+            "interface": None,
+            "distance": rms(differences),
+            "given": self.given,
+            "distance_given": rms(drive),
+            "rows": len(self.measured.force),
+            "rows_compared": len(differences),
+        }
 
     def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
         """What is found, and what is given, of a run less the rows that are compared.

@@ -63,18 +63,10 @@ class PanelAxis:
 
 @dataclass(frozen=True, eq=False)
 class PanelCurve:
-    """One line of a panel.
+    """One line of a panel: points, shape (n,), in the units of the axes; none is drawn at NaN.
 
-    Attributes
-    ----------
-    label
-        Entry of the legend, if any.
-    x, y
-        Shape (n,), in the units of the axes; nothing is drawn through NaN.
-    hue
-        Curves of one hue belong together; 0 is the neutral one, of references.
-    line
-        How it is drawn; "points" are joined by a thin line.
+    Curves of one hue belong together; 0 is the neutral one, of references. A curve without a label
+    is not in the legend, and one of "points" has a thin line between them.
     """
 
     label: str
@@ -90,14 +82,10 @@ class Runs:
 
     Attributes
     ----------
-    numbers
-        Of the runs, shape (n,).
-    x, y
-        Where they stand, same shape; in a panel y is NaN where a run has no value.
-    hues
-        Of the curve to which they belong, same shape.
-    holds
-        Whether that is an answer, same shape.
+    numbers, x, y
+        Of the runs, and where they stand, shape (n,); in a panel y is NaN where a run has no value.
+    hues, holds
+        Of the curve to which each belongs, and whether it is an answer, same shape.
     said
         What each is and came to, in words, n of them.
     """
@@ -166,27 +154,15 @@ VERDICTS = "right", "holds", "unsolved", "refused", "unclear", "wrong", "FAILS"
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
-def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
-    """Write a report as a page that needs nothing beside it.
-
-    Returns
-    -------
-    What whoever asked for it is to be told; nothing where it has all of its charts.
-
-    Raises
-    ------
-    OSError
-        When the file cannot be written.
-    """
+def write_page(file: Path, title: str, report: Sequence[Section]) -> None:
+    """Write a report as a page that needs nothing beside it."""
     plots = [part for part in report if isinstance(part, PlotSection)]
     render = renderer() if plots else None
-    head, drawn = render(plots) if render else ("", [""] * len(plots))
-    note = NO_CHARTS if plots and render is None else ""
+    missing = f"<p>{escape(NO_CHARTS)}</p>"
+    head, drawn = render(plots) if render else ("", [missing] * len(plots))
     places = iter(drawn)
-    parts = [part if isinstance(part, str) else next(places) for part in report]
-    body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
+    body = "\n".join(part if isinstance(part, str) else next(places) for part in report)
     write(file, PAGE.substitute(title=escape(title), head=head, body=body))
-    return note
 
 
 def renderer() -> Renderer | None:

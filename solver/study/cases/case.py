@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.files import check_keys, fields_in, placed, read_toml, require, scene_settings
+from solver.files import (
+    check_controls,
+    check_keys,
+    fields_in,
+    placed,
+    read_toml,
+    require,
+    scene_settings,
+)
 from solver.settings import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
@@ -52,10 +60,7 @@ class Case:
 def case_from_file(path: Path) -> Case:
     """Read a case: a file of settings with a table `case`.
 
-    Raises
-    ------
-    SettingError
-        For a file that cannot be read, or that is refused; the message begins with its name.
+    The message of a refusal begins with the name of the file.
     """
     with placed(path.name):
         values = read_toml(path, "case")
@@ -79,10 +84,7 @@ def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
     values = fields_in(Case, {**entries, "picture": picture}, quantity=str, picture=dict)
     tolerance, can = values["tolerance"], "a share above 0 and below 1"
     require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
-    working = [own for own in settings.definitions() if settings.applies(own)]
-    for control in values["controls"]:
-        remedy = "name a setting that does something here"
-        require(control in working, "controls", control, ", ".join(working), remedy)
+    check_controls(values["controls"], settings)
     check_keys(picture, dict.fromkeys(Icon._fields, str))
     values |= {"quantity": reading(values["quantity"]), "picture": Icon(**picture)}
     return Case(name=name, settings=settings, **values)

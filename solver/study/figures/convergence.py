@@ -6,8 +6,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.reference.distance import Fields
-from solver.study.figures.figure import Finding, PaperFigure, paper_figure
-from solver.study.figures.paper_runs import EARLY, LONG, PaperRuns
+from solver.study.figures.paper import EARLY, LONG, Finding, PaperFigure, PaperRuns, paper_figure
 from solver.study.page import Line, Panel, PanelAxis, PanelCurve
 
 SHOWN = 300
@@ -59,7 +58,8 @@ def figure_3(runs: PaperRuns) -> PaperFigure:
 
 def _both(runs: PaperRuns, name: str) -> Array:
     """One scalar of all records of both versions, shape (2, n_iterations)."""
-    return np.array([[getattr(each, name) for each in run.records] for run in runs.versions])
+    both = runs.multiscale.records, runs.monoscale.records
+    return np.array([[getattr(record, name) for record in records] for records in both])
 
 
 def _gain(runs: PaperRuns, name: str, level: float) -> Finding:
@@ -90,8 +90,8 @@ def _rates(runs: PaperRuns, window: tuple[int, int]) -> Finding:
 
 def figure_4(runs: PaperRuns) -> PaperFigure:
     """The friction force after ten iterations at two instants, against the reference."""
-    problem = runs.multiscale.early.problem
-    solutions: list[Fields] = [runs.reference, *(run.early for run in runs.versions)]
+    problem = runs.early[0].problem
+    solutions: list[Fields] = [runs.reference, *runs.early]
     law = problem.friction
     lengths = law.by_point(law.weights)[1:]
     force = np.array([fields.contact_force[1:] for fields in solutions])

@@ -7,11 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array
-from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, against_front, front_decay
 from solver.study.figures.convergence import figure_3, figure_4
-from solver.study.figures.figure import Finding, PaperFigure, paper_figure
-from solver.study.figures.paper_runs import PaperRuns
+from solver.study.figures.paper import Finding, PaperFigure, PaperRuns, paper_figure
 from solver.study.page import Panel, PanelAxis, PanelCurve
 
 ALIKE = 0.9
@@ -149,8 +147,9 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
 
 def figure_8(runs: PaperRuns) -> PaperFigure:
     """The first three displacement modes of the PGD in substructure 5."""
-    exact, last = runs.displacements[-1], runs.five_reduced.last
-    kept = _displacement_modes(last)[:, :3]
+    exact, last = runs.displacements[-1], runs.five_reduced.iterate
+    rubs = np.isin(last.problem.substructures[-1].rows, last.problem.friction.tangent.above)
+    kept = last.bases[-1].displacement_modes[rubs, :3]
     root = np.sqrt(exact.space_weights)[:, None]
     sorted_ = np.linalg.qr(kept * root)[0] / root
     panels = tuple(
@@ -165,12 +164,6 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
         _correlation(exact, kept, "as the iteration keeps them"),
     )
     return paper_figure(8, panels, *likeness, _reduced_errors(runs), last=last.number)
-
-
-def _displacement_modes(iterate: Iterate) -> Array:
-    """The PGD's displacement modes of the last substructure on its friction rows."""
-    rubs = np.isin(iterate.problem.substructures[-1].rows, iterate.problem.friction.tangent.above)
-    return np.asarray(iterate.bases[-1].displacement_modes[rubs])
 
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
@@ -198,7 +191,7 @@ def _correlation(exact: Decomposition, modes: Array, words: str) -> Finding:
 def _reduced_errors(runs: PaperRuns) -> Finding:
     """Size of the bases, and what they miss, at the end of the run with PGD."""
     last = runs.five_reduced.records[-1]
-    modes = [basis.n_modes for basis in runs.five_reduced.last.bases]
+    modes = [basis.n_modes for basis in runs.five_reduced.iterate.bases]
     best, best_force = (
         "/".join(str(part.modes_for(share)) for share in SHARES)
         for part in (runs.displacements[-1], runs.friction_forces[-1])

@@ -25,13 +25,7 @@ QUANTITIES = {
 
 
 def reading(text: object) -> Quantity:
-    """Quantity that is asked for, as `NAME` or `NAME@PARAMETER`.
-
-    Raises
-    ------
-    SettingError
-        For a quantity that there is not, or a parameter that it does not take.
-    """
+    """Quantity that is asked for, as `NAME` or `NAME@PARAMETER`; others are refused."""
     name, at_sign, number = text.partition("@") if isinstance(text, str) else ("", "", "")
     quantity = QUANTITIES.get(name)
     if quantity is None:

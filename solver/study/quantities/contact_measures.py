@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
-from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce, reaction
 from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack
@@ -18,13 +17,11 @@ from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.settings import Settings
 from solver.study.quantities.cycles import instants_of
-from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.finished import FinishedRun, largest_load
 from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantity
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
-EQUAL = 1e-6
-"""Relative difference up to which two loads count as equally large."""
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
 _opens = attrgetter("features.opens")
@@ -39,12 +36,6 @@ def _rubs_by_mu(settings: Settings) -> bool:
 
 def _in_the_plane(settings: Settings) -> bool:
     return settings.kind == "plane"
-
-
-def largest_load(run: FinishedRun) -> int:
-    """Instant at which the loop's force first is largest."""
-    size = np.abs(run.force)
-    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
 
 @quantity("Largest displacement", "m")
@@ -93,9 +84,8 @@ def _force_at(side: str) -> Quantity:
         moved = run.iterate.displacement
         return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
 
-    force.__name__ = f"{side}_force"
-    title = f"Largest force at the {side}"
-    return quantity(title, "N", applies=lambda settings: side in holding_sides(settings))(force)
+    title, applies = f"Largest force at the {side}", lambda own: side in holding_sides(own)
+    return Quantity(f"{side}_force", title, "N", force, applies=applies)
 
 
 def holding_sides(settings: Settings) -> Collection[str]:
@@ -175,34 +165,19 @@ def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
 @quantity("Largest von Mises stress", "Pa", applies=_in_the_plane)
 def peak_stress(run: FinishedRun) -> float:
     """Largest von Mises stress at the centre of an element at any instant, Pa."""
-    return _peak_stress(run)[0]
+    return run.peak_stress[0]
 
 
 @quantity("x of the largest stress", "m", applies=_in_the_plane)
 def peak_stress_x(run: FinishedRun) -> float:
     """Place of the largest stress along the body, m; NaN without stress."""
-    return float(_peak_stress(run)[1][0])
+    return run.peak_stress[1]
 
 
 @quantity("y of the largest stress", "m", applies=_in_the_plane)
 def peak_stress_y(run: FinishedRun) -> float:
     """Height of the largest stress above the lowest side, m; NaN without stress."""
-    return float(_peak_stress(run)[1][1])
-
-
-def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
-    """Largest von Mises stress, Pa, and the centre of the element that has it first, m."""
-    inside, values = run.problem.inside, run.settings.values()
-    largest, place = 0.0, np.full(2, np.nan)
-    assert inside is not None  # these quantities are of the plane
-    for instant in range(run.problem.n_instants):
-        moved = inside.displacement(run.iterate.displacement, [instant])[:, :, 0]
-        stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
-        element = int(stress.argmax())
-        if stress[element] > largest:
-            largest = float(stress[element])
-            place = inside.nodes[inside.elements[element]].mean(axis=0)
-    return largest, place
+    return run.peak_stress[2]
 
 
 @quantity("Largest force in the spring", "N", applies=lambda settings: settings.features.has_spring)

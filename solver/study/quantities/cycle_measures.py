@@ -14,7 +14,7 @@ from solver.laws import OPEN, FrictionLaw
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings import Settings
-from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of, instants_of, slips_of
+from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import CYCLE, quantity
 
@@ -52,7 +52,7 @@ def has_a_limit(settings: Settings) -> bool:
 )
 def cycle_energy_ratio(run: FinishedRun) -> float:
     """Energy of the last cycle over that of the second; NaN where that took none."""
-    energy = cycles_of(run.settings, run.iterate).energy
+    energy = run.cycles.energy
     is_any = energy[1] > NO_ENERGY * np.abs(run.dissipated).sum()
     return float(energy[-1] / energy[1]) if is_any else math.nan
 
@@ -60,9 +60,8 @@ def cycle_energy_ratio(run: FinishedRun) -> float:
 @quantity("Slip that the last cycle leaves", "m", applies=has_cycles)
 def ratchet(run: FinishedRun) -> float:
     """Slip that the last cycle leaves, at the point where it leaves most, m."""
-    cycles = cycles_of(run.settings, run.iterate)
-    left = np.abs(cycles.net[:, -1]).max()
-    return float(left) if left > RESIDUE * cycles.slip.max() else 0.0
+    left = np.abs(run.cycles.net[:, -1]).max()
+    return float(left) if left > RESIDUE * run.cycles.slip.max() else 0.0
 
 
 @quantity(

@@ -41,12 +41,8 @@ class Quantity:
 
     Attributes
     ----------
-    name
-        By which it is asked for.
-    title
-        What it is called, in words.
-    unit
-        SI unit, empty for a pure number.
+    name, title, unit
+        By which it is asked for, what it is called, and its SI unit, empty for a pure number.
     of
         Takes it of a run, and of the instant if there is a `when`, or else of the parameter or None
         if there is one: NaN where the run has none, infinity where what is waited for never comes.

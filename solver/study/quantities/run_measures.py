@@ -80,16 +80,16 @@ def seconds_per_iteration(run: FinishedRun) -> float:
 
 @quantity("Memory at its peak", "B", is_of_course=True)
 def memory(run: FinishedRun) -> float:
-    """Memory that the run takes, B; NaN where the operating system tells none (not Linux).
-
-    That is by how much the resident memory of a process of its own grows at most in one run more:
-    what Python counts would leave out what sparse factorisations take.
-    """
+    """Memory that the run takes, B."""
     return memory_of(run.settings)
 
 
 def memory_of(settings: Settings) -> float:
-    """Memory that a run takes, B, as above."""
+    """Memory that a run takes, B; NaN where the operating system tells none (not Linux).
+
+    That is by how much the resident memory of a process of its own grows at most in one run more:
+    what Python counts would leave out what sparse factorisations take.
+    """
     if not STATUS.exists():
         return math.nan
     done = subprocess.run(

@@ -69,8 +69,6 @@ class ErrorCurve:
 
     Attributes
     ----------
-    method
-        What it is called.
     steps, seconds
         Iterations done, or Newton steps of the incremental solver, and the time from settings to
         there, medians of the passes, s; shape (n,).

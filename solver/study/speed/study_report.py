@@ -181,8 +181,8 @@ def write_study(
     curves: Sequence[ErrorCurve],
     measured: Sequence[TimesAtSize],
     folder: Path,
-) -> str:
-    """Write `map.csv` and `study.html`; what whoever asked for them is to be told, if anything."""
+) -> None:
+    """Write `map.csv` and `study.html`."""
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
     rows = ((settings.GROWS[0], *astuple(times)) for times in measured)
     write_csv(folder / "map.csv", head, rows)
@@ -195,4 +195,4 @@ def write_study(
         f"{html_table(sizes_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
     ]
-    return write_page(folder / FILES[-1], "Error against run time", sections)
+    write_page(folder / FILES[-1], "Error against run time", sections)

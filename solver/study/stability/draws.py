@@ -72,13 +72,7 @@ def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
 
 
 def draw(scene: str, seed: int, row: int) -> Settings:
-    """Settings of one random run; the same numbers give the same settings.
-
-    Raises
-    ------
-    SettingError
-        If the settings refused every draw.
-    """
+    """Settings of one random run; the same numbers give the same settings."""
     generator = np.random.default_rng([seed, row, *scene.encode()])
     kind = CATALOGUE[scene]
     last = SettingError(scene, row, f"up to {LARGEST_FIELD} nodes times instants", "draw smaller")

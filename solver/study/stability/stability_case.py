@@ -15,15 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from solver.discrete import Problem
 from solver.latin import Ending, Solution
-from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to, kkt_residual
-from solver.reference.incremental import reference_of
-from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run, known_reference
 
 CASES = Path(__file__).with_name("cases.toml")
 
@@ -120,20 +116,17 @@ def extreme_cases(scenes: Collection[str] = (), *, quick: bool = False) -> Itera
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run came to.
+    """What a run came to; NaN where something is not known.
 
     Attributes
     ----------
     ending, advice
         Its status; `REFUSED` or `BROKEN`, and why.
     error_displacement, error_force
-        Relative distance to the reference; absolute (m, N) where reference and load are zero; NaN
-        where there is none.
-    residual
-        Of a certified run by `kkt_residual`; NaN of others.
-    floor
-        Residual of the reference, below which rounding lets nobody come: layers of 5000 times their
-        thickness have one of 3e-7. Measured where that of a certified solution is above rounding.
+        Relative distance to the reference; absolute (m, N) where reference and load are zero.
+    residual, floor
+        Of a certified run by `kkt_residual`, and, where it is above rounding, of the reference,
+        below which rounding lets nobody come: layers of 5000 times their thickness have 3e-7.
     doubt
         Why the reference is not the one solution, or empty.
     """
@@ -174,7 +167,7 @@ def _measured(solution: Solution) -> Outcome:
     iterate, status, problem = solution.iterate, solution.status, solution.iterate.problem
     if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
         return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
-    reference, doubt = _reference(problem)
+    reference, doubt = known_reference(problem)
     distance = None if reference is None else distance_to(reference, problem)
     residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
     error = distance.of_friction_force(iterate) if distance else math.nan
@@ -199,20 +192,6 @@ def _measured(solution: Solution) -> Outcome:
         floor=floor,
         doubt=doubt,
     )
-
-
-def _reference(problem: Problem) -> tuple[Reference | None, str]:
-    """The reference, if there is one, and why it is not the one solution."""
-    try:
-        reference = reference_of(problem)
-    except NoReferenceError as refusal:
-        return None, str(refusal)
-    if lost := np.count_nonzero(~reference.converged):
-        return None, f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-    if reference.jumps_at is not None:
-        return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
-    several = np.count_nonzero(reference.ambiguous)
-    return reference, f"there are several solutions at {several} instants" if several else ""
 
 
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:

@@ -105,13 +105,7 @@ class Plan:
         }
 
     def settings_at(self, number: int) -> Settings:
-        """Settings of a point, all of them.
-
-        Raises
-        ------
-        SettingError
-            Where they do not fit together.
-        """
+        """Settings of a point; they are refused where they do not fit together."""
         return self.settings.checked({**self.fixed, **self.point(number)})
 
     def idle(self) -> list[str]:
@@ -132,11 +126,10 @@ class Row:
 
     Attributes
     ----------
-    ending
-        `converged` and the other ways in which a run ends; `refused` where its settings do not fit
-        together, `broken` where the engine failed, `stuck` and `lost` where its process was ended.
-    reason
-        Of any ending but convergence, and what to try.
+    ending, reason
+        `converged` and the other ways in which a run ends, why, and what to try; `refused` where
+        its settings do not fit together, `broken` where the engine failed, `stuck` and `lost` where
+        its process was ended.
     values
         Of the readings of the plan, in their units: NaN where the run has none, infinity for
         never. Those of a run that has not converged are what it had come to.
@@ -184,13 +177,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
 
 
 def axis_of(settings: Settings, text: str) -> Varied:
-    """One setting and its values, of a text as `--vary` takes it.
-
-    Raises
-    ------
-    SettingError
-        For a setting that there is not, or values that it cannot take.
-    """
+    """One setting and its values, of a text as `--vary` takes it."""
     name, equals, values = text.partition("=")
     definitions = settings.definitions()
     if not equals or not values:

@@ -144,12 +144,7 @@ def head(plan: Plan) -> list[str]:
 def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
     """Rows of a plan by their number, as a file holds them; a line without an end is left out.
 
-    Raises
-    ------
-    SettingError
-        If it is the table of another sweep.
-    OSError
-        If it cannot be read.
+    The table of another sweep is refused.
     """
     if not file.exists():
         return {}

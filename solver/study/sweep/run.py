@@ -29,13 +29,7 @@ from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.study.quantities.finished import (
-    BROKEN,
-    REFUSED,
-    FinishedRun,
-    finished_run,
-    settle,
-)
+from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run, settle
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
@@ -70,12 +64,8 @@ def run(
 ) -> Row:
     """Row of a point of a plan, with options of `sweep` and a name that no other sweep has.
 
-    `asked_by` are the versions of who asks, which have to be those of who answers.
-
-    Raises
-    ------
-    SettingError
-        Where the result would be that of other code.
+    `asked_by` are the versions of who asks; others are refused, as a result would be that of other
+    code.
     """
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
