@@ -138,11 +138,12 @@ class DrawnRods(Drawn):
             {*thinned(count, MOST_WIRES).tolist(), *([] if broken is None else [broken])}
         )
         names = [f"{n + 1}, broken" if n == broken else str(n + 1) for n in shown]
+        names[0] = f"wire {names[0]}" if count > 1 else "rod"
         forces = self._forces(iterate).reshape(count, -1, len(self._columns))
         return {
             "x": floats(self._force.positions[places]),
             "force": floats(forces[np.ix_(shown, places)]),
-            "names": names if count > 1 else ["rod"],
+            "names": names,
             "stuck": None,
         }
 
