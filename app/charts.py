@@ -145,18 +145,12 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
     )
 
 
-def _even(axis: PanelAxis) -> Any:
-    """Functions from the values of an axis to what is even on it, and back."""
-    return (np.log, np.exp) if axis.logarithmic else (np.asarray, np.asarray)
-
-
 def edges(values: Array, axis: PanelAxis) -> Array:
-    """Where cells about n ascending values end, shape (n + 1,)."""
-    to, back = _even(axis)
-    at = to(values)
+    """Where cells about n ascending values end, half way between them on their axis, (n + 1,)."""
+    at = np.log(values) if axis.logarithmic else values
     half = np.diff(at) / 2.0 if len(at) > 1 else np.array([0.5])
-    ends: Array = back(np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]]))
-    return ends
+    ends = np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]])
+    return np.exp(ends) if axis.logarithmic else ends
 
 
 def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:

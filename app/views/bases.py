@@ -68,13 +68,6 @@ class ModePlot(ExtraView):
             self.add(mode, color=color, width=2)
         self.legend(*MODES)
 
-    def _draw(self, x: Floats, values: Floats, titles: list[str]) -> None:
-        for number, mode in enumerate(MODES):
-            if number < len(values):
-                self.fill(mode, titles[number], x=self.x(x), y=values[number])
-            else:
-                self.fill(mode, x=[], y=[])
-
 
 class SpaceModes(ModePlot):
     """Displacement modes along the selected substructure."""
@@ -88,7 +81,7 @@ class SpaceModes(ModePlot):
         self.x.rename(f"x ({modes['text']})", "m")
         self.x.hold((frame.run.number, modes["substructure"]), modes["x"])
         titles = ["mode 1", *(str(n + 1) for n in range(1, len(modes["space"])))]
-        self._draw(modes["x"], modes["space"], titles)
+        self.draw_each(MODES, modes["x"], modes["space"], titles)
 
 
 class TimeFunctions(ModePlot):
@@ -106,7 +99,7 @@ class TimeFunctions(ModePlot):
         sizes = np.abs(modes["time"]).max(axis=1, initial=0.0)
         values = modes["time"] / np.where(sizes > 0.0, sizes, 1.0)[:, None]
         titles = [unit_for(float(size), "m")(float(size), 2) for size in sizes]
-        self._draw(run.instants, values, titles)
+        self.draw_each(MODES, run.instants, values, titles)
 
 
 class ClipErrors(ExtraView):

@@ -167,12 +167,7 @@ class AxialForces(ExtraView):
         self.draw("exact", *joined([(curve.across, curve.up[:, column]) for curve in known]))
         self.draw("stuck", *joined([(x, force[:, column]) for force in bent]))
         colors = iter(COLORS * 2)
-        for number, wire in enumerate(WIRES):
-            if number >= len(names):
-                self.draw(wire, [], [])
-                continue
-            is_broken = "broken" in names[number]
-            color, width = (ERROR, 3.5) if is_broken else (next(colors), 2.0)
-            self._lines[number].glyph.update(line_color=color, line_width=width)
-            title = names[number] if bent or number or len(names) == 1 else f"wire {names[0]}"
-            self.draw(wire, x, axial["force"][number, :, column], title)
+        for line, wire in zip(self._lines, names, strict=False):
+            color, width = (ERROR, 3.5) if "broken" in wire else (next(colors), 2.0)
+            line.glyph.update(line_color=color, line_width=width)
+        self.draw_each(WIRES, x, axial["force"][:, :, column], names)

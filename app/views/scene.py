@@ -47,7 +47,7 @@ class Scene(View):
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
-        self._held: tuple[Handle, Picture, float] | None = None
+        self._held: tuple[Handle, Picture] | None = None
         for event, react in (
             (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
         ):  # fmt: skip
@@ -128,8 +128,7 @@ class Scene(View):
         at = picture.to_local(event.x, event.y)
         nearest = min(picture.handles, key=lambda handle: float(np.hypot(*(handle.place - at))))
         if np.hypot(*(nearest.place - at)) <= NEAR:
-            present = getattr(picture.frame.run.settings, nearest.setting)
-            self._held = nearest, picture, float(present)
+            self._held = nearest, picture
             self.state.is_dragged = True
 
     def _drag(self, event: Any) -> None:
@@ -144,7 +143,8 @@ class Scene(View):
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
-        handle, picture, present = self._held
+        handle, picture = self._held
+        present = float(getattr(picture.frame.run.settings, handle.setting))
         dragged = handle.value(present, picture.to_local(event.x, event.y))
         low, high = self.state.settings.definitions()[handle.setting].softbounds
         return float(f"{np.clip(dragged, min(low, present), max(high, present)):.3g}")
@@ -165,27 +165,39 @@ class Scene(View):
         self.state.select(**chosen)
 
 
-class Stress(Scene):
+class ExtraScene(Scene):
+    """The scene without what acts and rubs, but with an extra, as far as the frame has it."""
+
+    shows_status = False
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the bodies at the selected instant, and the extra."""
+        super().update(frame, selection, ghost)
+        (name,) = self.needs
+        extra = frame.extras.get(name)
+        if extra is None:
+            self.fill(name, **{key: [] for key in self.sources[name].data})
+        else:
+            self._show(extra, self.picture)
+
+    def _show(self, extra: Any, picture: Picture) -> None:
+        raise NotImplementedError
+
+
+class Stress(ExtraScene):
     """A stress in every quadrilateral that is drawn, at the selected instant."""
 
     name = "Stress"
     needs = frozenset({"stress"})
-    shows_status = False
 
     def _draw(self, made: figure) -> None:
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         color = {"field": "value", "transform": self.colors}
-        self.add("quads", "Patches", "xs ys", also="value", fill_color=color, line_color=color)
+        self.add("stress", "Patches", "xs ys", also="value", fill_color=color, line_color=color)
         self.bar = color_bar(made, self.colors)
         super()._draw(made)
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the stress at the selected instant, as far as the frame has it."""
-        super().update(frame, selection, ghost)
-        extra, picture = frame.extras.get("stress"), self.picture
-        if extra is None or picture is None:
-            self.fill("quads", xs=[], ys=[], value=[])
-            return
+    def _show(self, extra: Any, picture: Picture) -> None:
         title, si, values = extra
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
@@ -196,11 +208,11 @@ class Stress(Scene):
             palette=RdBu11 if signed else Cividis256, low=-high if signed else 0.0, high=high
         )
         self.bar.title = f"{title}, {unit.name}"
-        corners = picture.many(picture.nodes[frame.run.geometry.quads])
-        self.fill("quads", **corners, value=values[:, picture.column] / unit.factor)
+        corners = picture.many(picture.nodes[picture.frame.run.geometry.quads])
+        self.fill("stress", **corners, value=values[:, picture.column] / unit.factor)
 
 
-class Thrust(Scene):
+class Thrust(ExtraScene):
     """How many bodies find their load its way: resultants of joints from middle to middle.
 
     Lines are as wide as forces are large; the largest of all instants is the widest line.
@@ -208,7 +220,6 @@ class Thrust(Scene):
 
     name = "Thrust"
     needs = frozenset({"thrust"})
-    shows_status = False
     applies = staticmethod(lambda settings: settings.features.bricks > 2)
 
     def _draw(self, made: figure) -> None:
@@ -216,13 +227,7 @@ class Thrust(Scene):
         look = {"line_color": LATIN, "line_alpha": 0.8, "line_cap": "round"}
         self.add("thrust", "MultiLine", "xs ys line_width", **look)
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the forces in all joints at the selected instant, as far as the frame has them."""
-        super().update(frame, selection, ghost)
-        extra, picture = frame.extras.get("thrust"), self.picture
-        if extra is None or picture is None:
-            self.fill("thrust", xs=[], ys=[], line_width=[])
-            return
+    def _show(self, extra: Any, picture: Picture) -> None:
         largest = float(extra["forces"].max())
         share = extra["forces"][:, picture.column] / (largest or 1.0)
         is_drawn = share > LEAST

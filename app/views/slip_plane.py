@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.frame import Floats, Frame, Selection
+from app.views.acts import gapped
 from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE, UNSEEN
 from app.views.view import View
 from solver.laws import FrictionLaw
@@ -67,5 +68,4 @@ def _lines(matrix: Floats, limit: Floats, far: float) -> Floats:
     sizes = np.linalg.norm(matrix, axis=1)
     feet = matrix * (limit / sizes**2)[:, None]
     along = far * np.stack([-matrix[:, 1], matrix[:, 0]], axis=1) / sizes[:, None]
-    ends = np.stack([feet - along, feet + along, np.full_like(feet, np.nan)], axis=1)
-    return np.asarray(ends.reshape(-1, 2).T)
+    return gapped(np.stack([feet - along, feet + along], axis=1)).T

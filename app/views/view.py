@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from itertools import zip_longest
 from typing import Any, ClassVar
 
 import numpy as np
@@ -244,6 +245,13 @@ class View:
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI."""
         self.fill(name, title, x=self.x(x), y=self.y(y))
+
+    def draw_each(
+        self, names: Sequence[str], x: ArrayLike, ys: Sequence[ArrayLike], titles: Sequence[str]
+    ) -> None:
+        """Draw curves over the same places; names that are left over are of none."""
+        for name, y, title in zip_longest(names, ys, titles):
+            self.draw(name, *([], []) if y is None else (x, y, title))
 
 
 class ExtraView(View):

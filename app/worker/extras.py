@@ -13,10 +13,9 @@ from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import MOST_POINTS, floats, thinned
+from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete import Problem
 from solver.latin import Iterate
-from solver.reduction.basis import Modes
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.condensation import NoReferenceError
@@ -129,39 +128,32 @@ def _fate_text(cycles: LoadCycles) -> str:
 def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The largest modes of the selected substructure's separated basis; None without bases.
 
-    "x", (n_places,), m; "space", (n_modes, n_places), over the largest entry of each; "time",
-    (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the basis.
+    "x" along rods, (n_places,), m; "space", (n_modes, n_places), over the largest entry of each;
+    "time", (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the
+    basis.
     """
     if not iterate.bases:
         return None
     last = len(iterate.bases) - 1
     place = last if needs.substructure is None else min(max(needs.substructure, 0), last)
     basis, problem = iterate.bases[place], sampler.problem
-    x, space = _along(basis, problem, place)
+    # Rows of two interfaces that meet at a point move together.
+    rows = problem.row_dofs[problem.substructures[place].rows]
+    dofs, first = np.unique(rows, return_index=True)
+    space = basis.displacement_modes[first, :MOST_MODES].T
     size = _signed_size(space)
     time = basis.time_functions[:MOST_MODES, sampler.columns] * problem.scales.displacement
+    kept = thinned(len(dofs), MOST_POINTS)
     return {
-        "x": floats(x),
-        "space": floats(space / size[:, None]),
+        "x": floats(problem.positions[dofs[kept]]),
+        "space": floats(space[:, kept] / size[:, None]),
         "time": floats(time * size[:, None]),
         "substructure": place,
         "text": f"substructure {place + 1}: {basis.n_modes} modes, {basis.record.added} added",
     }
 
 
-def _along(basis: Modes, problem: Problem, substructure: int) -> tuple[Floats, Floats]:
-    """Places along the bodies in their order, and the displacement of each mode there."""
-    rows = problem.substructures[substructure].rows
-    # Rows of two interfaces that meet at a point move together.
-    dofs, first = np.unique(problem.row_dofs[rows], return_index=True)
-    positions = problem.positions[dofs]
-    x = positions if positions.ndim == 1 else positions[:, 0]
-    order = np.argsort(x, kind="stable")
-    order = order[thinned(len(order), MOST_POINTS)]
-    return x[order], basis.displacement_modes[first[order], :MOST_MODES].T
-
-
-def _signed_size(space: Floats) -> Floats:
+def _signed_size(space: Array) -> Array:
     """Largest entry of every mode, with the sign of its last large lobe.
 
     The sign of the largest entry itself would flip whenever two lobes change places.

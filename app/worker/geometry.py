@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
-from solver.discrete.plane_parts import Inside
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate
@@ -50,8 +48,7 @@ def thinned(size: int, most: int) -> Indices:
 class Drawn:
     """Bodies as they are drawn at some instants, and the contact points of all interfaces.
 
-    The mesh is nodes, quadrilaterals and substructures of `Geometry`; heights are those of every
-    degree of freedom along rods, m, None in the plane.
+    The mesh is as of `mesh_of`; positions are those of all degrees of freedom, (n_dofs, 2), m.
     """
 
     def __init__(
@@ -59,8 +56,8 @@ class Drawn:
         problem: Problem,
         description: Description,
         columns: Indices,
-        mesh: tuple[Floats, NDArray[np.int32], Indices],
-        heights: Array | None,
+        mesh: dict[str, Any],
+        positions: Array,
     ) -> None:
         chosen, dofs, chains = [], [], []
         first = 0
@@ -78,11 +75,9 @@ class Drawn:
         self._problem, self._columns = problem, columns
         self._points = np.concatenate(chosen)
         self._dofs = np.concatenate(dofs)
-        places = problem.positions[self._dofs[:, 0]]
-        if heights is not None:
-            places = np.stack([places, heights[self._dofs[:, 0]]], axis=1)
+        points = floats(positions[self._dofs[:, 0]])
         self.geometry = Geometry(
-            description, *mesh, floats(places), np.concatenate(chains), *outlines_of(*mesh)
+            description=description, points=points, chains=np.concatenate(chains), **mesh
         )
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
@@ -104,23 +99,22 @@ class DrawnRods(Drawn):
         rods, length = problem.substructures, description.length
         per_rod = len(rods) // description.bodies
         lows = PITCH * length * (np.arange(len(rods)) // per_rod)
-        heights = np.zeros(problem.n_dofs)
+        positions = np.stack([problem.positions, np.zeros(problem.n_dofs)], axis=1)
         for rod, low in zip(rods, lows, strict=True):
-            heights[rod.dofs] = low - 0.5 * (PITCH - THICKNESS) * length
+            positions[rod.dofs, 1] = low - 0.5 * (PITCH - THICKNESS) * length
         kept = [thinned(len(rod.dofs), max(MOST_POINTS // per_rod, 2)) for rod in rods]
-        parts = np.repeat(np.arange(len(rods)), list(map(len, kept)))
-        dofs = np.concatenate([rod.dofs[own] for rod, own in zip(rods, kept, strict=True)])
-        first = np.flatnonzero(parts[1:] == parts[:-1])
-        quads = (2 * first[:, None] + [0, 2, 3, 1]).astype(np.int32)
-        y = lows[parts, None] + [0.0, THICKNESS * length]
-        self._along = np.repeat(dofs, 2)
-        nodes = np.stack([problem.positions[self._along], y.ravel()], axis=1)
+        dofs = [rod.dofs[own] for rod, own in zip(rods, kept, strict=True)]
+        self._along = np.concatenate([np.tile(own, 2) for own in dofs])
+        grids = [
+            np.stack(np.meshgrid(problem.positions[own], [low, low + THICKNESS * length]), axis=-1)
+            for own, low in zip(dofs, lows, strict=True)
+        ]
         elements = np.cumsum([0, *(len(rod.dofs) - 1 for rod in rods[:-1])])
         middles = [n + (own[:-1] + own[1:]) // 2 for n, own in zip(elements, kept, strict=True)]
         self._force, self._elements = AxialForce(problem, columns), np.concatenate(middles)
         self._broken = None if description.broken is None else description.broken[0]
-        mesh = floats(nodes), quads, parts[first]
-        super().__init__(problem, description, columns, mesh, heights)
+        mesh = mesh_of(grids, np.arange(len(rods)))
+        super().__init__(problem, description, columns, mesh, positions)
 
     @property
     def extras(self) -> Extras:
@@ -144,11 +138,12 @@ class DrawnRods(Drawn):
             {*thinned(count, MOST_WIRES).tolist(), *([] if broken is None else [broken])}
         )
         names = [f"{n + 1}, broken" if n == broken else str(n + 1) for n in shown]
+        names[0] = f"wire {names[0]}" if count > 1 else "rod"
         forces = self._forces(iterate).reshape(count, -1, len(self._columns))
         return {
             "x": floats(self._force.positions[places]),
             "force": floats(forces[np.ix_(shown, places)]),
-            "names": names if count > 1 else ["rod"],
+            "names": names,
             "stuck": None,
         }
 
@@ -164,18 +159,33 @@ class DrawnRods(Drawn):
 
 
 class DrawnMesh(Drawn):
-    """Plane bodies, each with its mesh thinned where that is a grid."""
+    """Plane bodies, with some lines of the mesh of each substructure."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
-        self._inside = problem.inside
+        self._inside = inside = problem.inside
         self._poisson, self._state = (settings.values()[name] for name in ("poisson", "plane"))
         self._has_bricks = bool(settings.features.bricks)
-        self._nodes, quads, self._quad = thinned_mesh(problem.inside)
-        self._counts = np.bincount(self._quad)
-        parts = np.zeros(len(self._counts), dtype=np.intp)
-        parts[self._quad] = problem.inside.parts
-        mesh = floats(problem.inside.nodes[self._nodes]), quads, parts
-        super().__init__(problem, settings.structure().described(), columns, mesh, None)
+        most = max(MOST_QUADS // len(inside.grids), 1)
+        shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
+        share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)
+        grids, quads, count = [], [], 0
+        for grid, (n_rows, n_columns) in zip(inside.grids, shapes, strict=True):
+            rows = max(int(share * n_rows), 1)
+            up = thinned(n_rows + 1, rows + 1)
+            across = thinned(n_columns + 1, max(min(int(share * n_columns), most // rows), 1) + 1)
+            grids.append(grid[np.ix_(up, across)])
+            row, column = (
+                np.searchsorted(kept, np.arange(n), side="right") - 1
+                for kept, n in ((up, n_rows), (across, n_columns))
+            )
+            quads.append(count + np.add.outer(row * (len(across) - 1), column).ravel())
+            count += (len(up) - 1) * (len(across) - 1)
+        self._nodes = np.concatenate([grid.ravel() for grid in grids])
+        # The quadrilateral that each element lies in.
+        self._quad = np.concatenate(quads)
+        mesh = mesh_of([inside.nodes[grid] for grid in grids], np.arange(len(grids)))
+        description = settings.structure().described()
+        super().__init__(problem, description, columns, mesh, problem.positions)
 
     @property
     def extras(self) -> Extras:
@@ -188,7 +198,7 @@ class DrawnMesh(Drawn):
         for moved in np.moveaxis(self._moved(iterate), -1, 0):
             stress = self._inside.stress(moved)
             shown = von_mises(stress, self._poisson, self._state)
-            means.append(np.bincount(self._quad, weights=shown) / self._counts)
+            means.append(np.bincount(self._quad, weights=shown) / np.bincount(self._quad))
         return "von Mises stress", "Pa", floats(np.stack(means, axis=1))
 
     def _thrust(self, iterate: Iterate, needs: Needs) -> dict[str, Floats]:
@@ -217,10 +227,9 @@ class DrawnMesh(Drawn):
     def _joints(self) -> dict[str, tuple[Array, Array, Array | None]]:
         """Points of each joint, (n_points, 2), and middles of its bricks, (2, 1), m."""
         problem, inside = self._problem, self._inside
-        centres = inside.nodes[inside.elements].mean(axis=1)
         middles = np.zeros((problem.n_dofs, 2))
-        for number, part in enumerate(problem.substructures):
-            middles[part.dofs] = centres[inside.parts == number].mean(axis=0)
+        for grid, part in zip(inside.grids, problem.substructures, strict=True):
+            middles[part.dofs] = inside.nodes[grid].mean(axis=(0, 1))
         joints = {}
         for name, law in problem.rubbing.items():
             _, pairs = np.unique(law.points, return_index=True)
@@ -243,75 +252,30 @@ class DrawnMesh(Drawn):
         return floats(self._moved(iterate)[self._nodes])
 
 
-def thinned_mesh(inside: Inside) -> tuple[Indices, NDArray[np.int32], Indices]:
-    """Nodes and quadrilaterals that are drawn of bodies, and in which each element lies.
+def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
+    """Nodes, quadrilaterals and outlines, as `Geometry` has them, of grids of nodes.
 
-    The mesh of each body is a grid, of which some lines are left out.
+    Each grid is of one of the parts, (n_rows, n_columns, 2), m, row by row from below.
     """
-    nodes, quads, quad_of = [], [], np.zeros(len(inside.elements), dtype=np.intp)
-    n_nodes = n_quads = 0
-    most = max(MOST_QUADS // len(np.unique(inside.bodies)), 1)
-    for body in np.unique(inside.bodies):
-        elements = np.flatnonzero(inside.bodies == body)
-        kept, corners = np.unique(inside.elements[elements], return_inverse=True)
-        (x, column), (y, row) = (
-            np.unique(values.round(9), return_inverse=True)
-            for values in inside.nodes[kept].T / np.ptp(inside.nodes)
-        )
-        grid = np.zeros((len(y), len(x)), dtype=np.intp)
-        grid[row, column] = kept
-        share = min(np.sqrt(most / len(elements)), 1.0)
-        rows = max(int(share * (len(y) - 1)), 1)
-        columns = max(min(int(share * (len(x) - 1)), most // rows), 1)
-        up, across = thinned(len(y), rows + 1), thinned(len(x), columns + 1)
-        drawn = n_nodes + np.arange(len(up) * len(across)).reshape(len(up), len(across))
-        around = drawn[:-1, :-1], drawn[:-1, 1:], drawn[1:, 1:], drawn[1:, :-1]
-        nodes.append(grid[np.ix_(up, across)].ravel())
-        quads.append(np.stack([corner.ravel() for corner in around], axis=1))
-        first_row, first_column = (
-            lines[corners.reshape(-1, 4)].min(axis=1) for lines in (row, column)
-        )
-        at = np.searchsorted(up, first_row, side="right") - 1
-        beside = np.searchsorted(across, first_column, side="right") - 1
-        quad_of[elements] = n_quads + at * (len(across) - 1) + beside
-        n_nodes, n_quads = n_nodes + len(nodes[-1]), n_quads + len(quads[-1])
-    return np.concatenate(nodes), np.concatenate(quads).astype(np.int32), quad_of
-
-
-def outlines_of(nodes: Array, quads: NDArray[np.int32], parts: Indices) -> tuple[Indices, Indices]:
-    """Closed lines round substructures, and sides of bodies that nothing touches."""
-    # Parts that meet at a node may share it, or have one each at the same place.
+    sizes = np.cumsum([grid[..., 0].size for grid in grids])
+    numbers = [
+        own.reshape(grid.shape[:2])
+        for own, grid in zip(np.split(np.arange(sizes[-1]), sizes[:-1]), grids, strict=True)
+    ]
+    corners = [(n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]) for n in numbers]
+    quads = [np.stack(four, axis=-1).reshape(-1, 4) for four in corners]
+    rings = [np.concatenate([n[0], n[1:, -1], n[-1, -2::-1], n[-2::-1, 0]]) for n in numbers]
+    nodes = np.concatenate([grid.reshape(-1, 2) for grid in grids])
+    # A side is free where no other one has it the other way round; grids share places, not nodes.
     places = np.round(nodes / np.ptp(nodes) * 1e5).astype(np.int64)
-    _, place = np.unique(places, axis=0, return_inverse=True)
-    own = [_boundary(quads[parts == part], np.arange(len(nodes))) for part in np.unique(parts)]
-    rims = _boundary(np.concatenate(own), place.ravel())
-    loops = [np.append(loop, NONE) for sides in own for loop in _loops(sides)]
-    return np.concatenate(loops), np.insert(rims, 2, NONE, axis=1).ravel()
-
-
-def _boundary(cells: Indices, place: Indices) -> Indices:
-    """Directed sides of cells, (n, 2), that no other one has the other way round.
-
-    Cells are quadrilaterals, or sides; `place` is that of each node.
-    """
-    sides = cells
-    if cells.shape[1] > 2:
-        sides = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-    ends, size = place[sides], int(place.max()) + 1
-    is_single = ~np.isin(ends @ [size, 1], ends @ [1, size]) & (ends[:, 0] != ends[:, 1])
-    return np.asarray(sides[is_single], dtype=np.intp)
-
-
-def _loops(sides: Indices) -> list[Indices]:
-    """Closed lines of directed sides."""
-    following = defaultdict(list)
-    for first, second in sides.tolist():
-        following[first].append(second)
-    loops = []
-    for start in list(following):
-        loop = [start]
-        while following[loop[-1]]:
-            loop.append(following[loop[-1]].pop())
-        if len(loop) > 1:
-            loops.append(np.array(loop, dtype=np.intp))
-    return loops
+    place = np.unique(places, axis=0, return_inverse=True)[1].ravel()
+    sides = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+    ends = place[sides]
+    is_free = ~np.isin(ends @ [len(nodes), 1], ends @ [1, len(nodes)]) & (ends[:, 0] != ends[:, 1])
+    return {
+        "nodes": floats(nodes),
+        "quads": np.concatenate(quads).astype(np.int32),
+        "parts": np.repeat(parts, list(map(len, quads))),
+        "outlines": np.concatenate([np.append(ring, NONE) for ring in rings]),
+        "rims": np.insert(sides[is_free], 2, NONE, axis=1).ravel(),
+    }

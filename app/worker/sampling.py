@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -112,9 +113,8 @@ class Sampler:
         )
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        names, drawn = needs.extras, self.drawn.extras
-        extras = {name: EXTRAS[name](self, iterate, needs) for name in names & EXTRAS.keys()}
-        return extras | {name: drawn[name](iterate, needs) for name in names & drawn.keys()}
+        known = {name: partial(extra, self) for name, extra in EXTRAS.items()} | self.drawn.extras
+        return {name: known[name](iterate, needs) for name in needs.extras & known.keys()}
 
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Interfaces whose contact a frame has."""

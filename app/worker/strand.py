@@ -7,23 +7,17 @@ at any place; the outermost fibre is below.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
-from scipy.interpolate import make_interp_spline
+from scipy.ndimage import binary_dilation
 
-from app.frame import Bytes, DeformedGeometry, Geometry
+from app.frame import Bytes, DeformedGeometry, Floats, Geometry
 from app.messages import Needs
-from app.worker.geometry import (
-    MOST_POINTS,
-    Extras,
-    StressField,
-    floats,
-    outlines_of,
-    thinned,
-)
+from app.worker.geometry import MOST_POINTS, Extras, StressField, floats, mesh_of, thinned
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.rope import Rope
@@ -62,25 +56,23 @@ class DrawnRope:
         self._helix, self._radius = wires[0].helix, 0.5 * description.height
         self._count = sum(wire.stands_for for wire in wires)
         turns = description.length * np.tan(abs(self._helix.lay)) / (2 * np.pi * self._helix.radius)
-        steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
-        self._z = np.linspace(0.0, description.length, steps + 1)
-        numbers, rows, corners = self._strips()
-        nodes, quads = self._mesh(rows, corners)
-        self._quad_wires, _, self._quad_points, _ = self._nearest(
-            numbers, 0.5 * (self._z[rows] + self._z[rows + 1])
-        )
-        points, chains, self._points, self._sides = self._lines()
-        mesh = floats(nodes), quads, numbers
-        self.geometry = Geometry(description, *mesh, floats(points), chains, *outlines_of(*mesh))
-        self._nodes_moved, self._points_moved = (
-            self._moved(np.asarray(places)) for places in (nodes, points)
-        )
+        n_steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
+        self._z = np.linspace(0.0, description.length, n_steps + 1)
+        numbers, steps, grids = zip(*self._strips(), strict=True)
+        mesh = mesh_of(grids, numbers)
+        middles = np.concatenate([0.5 * (self._z[own[1:]] + self._z[own[:-1]]) for own in steps])
+        self._quad_wires, _, self._quad_points, _ = self._nearest(mesh["parts"], middles)
+        rows = np.concatenate([np.tile(own, 2) for own in steps])
+        self._nodes_moved = self._moved(rows, mesh["nodes"][:, 1])
+        rows, heights, chains, self._points, self._sides = self._lines()
+        self._points_moved = self._moved(rows, np.nan_to_num(heights))
+        points = floats(np.stack([self._z[rows], heights], axis=1))
+        self.geometry = Geometry(description=description, points=points, chains=chains, **mesh)
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the strand is bent, which is given, and where its wires slip."""
         status = iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
-        moved = floats(self._nodes_moved), floats(self._points_moved)
-        return DeformedGeometry(*moved, status.astype(np.int8))
+        return DeformedGeometry(self._nodes_moved, self._points_moved, status.astype(np.int8))
 
     @property
     def extras(self) -> Extras:
@@ -107,25 +99,19 @@ class DrawnRope:
     def _height(self, angle: Array) -> Array:
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
-    def _strips(self) -> tuple[Indices, Indices, Array]:
-        """Wire, step, and angles of the corners of what is in front, (n,), (n,) and (n, 4)."""
+    def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
+        """Number, steps and grid of nodes of each stretch of a wire that is in front."""
         half = np.pi / self._count
-        middle = self._angle(np.arange(self._count)[:, None], self._z[None, :])
-        first = np.remainder(middle[:, :-1] + half, 2.0 * np.pi) - half
-        turn = np.diff(middle, axis=1)
-        low, high = first - half, first + half
-        corners = np.stack([low, low + turn, high + turn, high], axis=-1)
-        corners = np.clip(corners, 0.0, np.pi)
-        wires, steps = np.nonzero(np.ptp(corners, axis=-1) > 1e-9)
-        return wires, steps, corners[wires, steps]
-
-    def _mesh(self, steps: Indices, corners: Array) -> tuple[Array, NDArray[np.int32]]:
-        """Nodes and quadrilaterals of the strips, which share their corners."""
-        rows = (steps[:, None] + np.array([0, 1, 1, 0])).ravel()
-        keys = np.stack([rows, np.round(1e6 * corners.ravel()).astype(np.intp)], axis=1)
-        _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        nodes = np.stack([self._z[rows[first]], self._height(corners.ravel()[first])], axis=1)
-        return nodes, place.reshape(-1, 4).astype(np.int32)
+        for number in range(self._count):
+            middle = self._angle(number, self._z)
+            for turn in np.unique(np.floor((middle + half) / (2.0 * np.pi))):
+                edges = middle - 2.0 * np.pi * turn + np.array([[-half], [half]])
+                edges = np.clip(edges, 0.0, np.pi)
+                # It begins and ends a step behind what is seen.
+                steps = np.flatnonzero(binary_dilation(np.ptp(edges, axis=0) > 1e-9))
+                if len(steps):
+                    z = np.broadcast_to(self._z[steps], (2, len(steps)))
+                    yield number, steps, np.stack([z, self._height(edges[:, steps])], axis=-1)
 
     def _nearest(self, numbers: Array, place: Array) -> tuple[Indices, Indices, Indices, Bytes]:
         """Wire, contact point, node and sign of slip at places on outer wires."""
@@ -144,23 +130,26 @@ class DrawnRope:
         node = np.clip(np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1))
         return wires * (elements - 1) + node - 1, node
 
-    def _lines(self) -> tuple[Array, Indices, Indices, Bytes]:
-        """Contact points along the wires in front, broken by NaN, and what each belongs to."""
+    def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
+        """Contact points along the wires in front, broken by NaN: their steps, heights and wires.
+
+        And the point and the sign of slip that each has the status of.
+        """
         numbers = np.repeat(np.arange(self._count), len(self._z))
-        z = np.tile(self._z, self._count)
-        angle = np.remainder(self._angle(numbers, z), 2.0 * np.pi)
+        rows = np.tile(np.arange(len(self._z)), self._count)
+        angle = np.remainder(self._angle(numbers, self._z[rows]), 2.0 * np.pi)
         is_seen = (angle >= SHOWN_SHARE) & (angle <= np.pi - SHOWN_SHARE)
         heights = np.where(is_seen, self._height(angle), np.nan)
         kept = is_seen | np.append(False, is_seen[:-1])
-        wires, points, _, sides = self._nearest(numbers[kept], z[kept])
-        return np.stack([z, heights], axis=1)[kept], wires, points, sides
+        wires, points, _, sides = self._nearest(numbers[kept], self._z[rows[kept]])
+        return rows[kept], heights[kept], wires, points, sides
 
-    def _moved(self, places: Array) -> Array:
-        """Displacement of places, (n, 2, n_instants): sections stay plane and at right angles."""
-        up, slope = (make_interp_spline(self._z, each, k=1)(places[:, 0]) for each in self._bent())
-        across = np.nan_to_num(places[:, 1:]) - self._radius
-        return np.stack([-slope * across, up], axis=1)
+    def _moved(self, rows: Indices, heights: Array) -> Floats:
+        """Displacement of heights at steps, (n, 2, n_instants): sections stay plane and normal."""
+        up, slope = self._bent
+        return floats(np.stack([slope[rows] * (self._radius - heights)[:, None], up[rows]], axis=1))
 
+    @cached_property
     def _bent(self) -> tuple[Array, Array]:
         """Height and slope of the axis, (n_steps, n_instants), from the clamp or the middle."""
         rope, z = self._rope, self._z
@@ -184,9 +173,10 @@ class DrawnRope:
         names = [wire.name for wire in rope.wires]
         number = names.index(needs.interface) if needs.interface in names else 0
         wire, places = rope.wires[number], thinned(rope.elements, MOST_POINTS)
-        nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
-        stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
-        force = wire_forces(rope, iterate.displacement, columns)[number]
+        force, stuck = (
+            wire_forces(rope, moved, columns)[number]
+            for moved in (iterate.displacement, np.zeros_like(iterate.displacement))
+        )
         middles = 0.5 * (wire.along[1:] + wire.along[:-1])
         return {
             "x": floats(np.asarray(middles)[places]),

@@ -55,6 +55,8 @@ class Inside:
     elements
         Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
         as its four quarters.
+    grids
+        Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
     bodies, parts
         Body and substructure of every element, shape (n_elements,).
     components
@@ -75,6 +77,7 @@ class Inside:
         self._dofs = [np.searchsorted(skeleton, part.dofs) for part in parts]
         self.nodes: Array = positions * length
         self._places = positions[skeleton // 2]
+        self.grids: list[Indices] = [part.nodes for part in parts]
         corners = [part.nodes.ravel()[part.condensed.rectangle.cells] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(own) for own in corners]
