@@ -295,7 +295,7 @@ class BarSettings(Settings):
             return
         nodes = np.linspace(0.0, self.length, self.elements + 1)
         bound = self.law.without_slip(self._bound(nodes)) * self.law.strongest
-        shares = tributary(self.elements, self.length / self.elements)
+        shares = tributary(self.elements) * (self.length / self.elements)
         most = np.broadcast_to(shares @ bound, (self.n_instants,))
         total = np.abs(bar_ends.total_force(self))
         worst = int(np.argmax(total - most))
