@@ -12,8 +12,13 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import solve
 from solver.arrays import Array
-from solver.discrete.cross_section import CONSTRUCTIONS, CrossSection, WireLayer, seven_wire
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.cross_section import (
+    CONSTRUCTIONS,
+    CrossSection,
+    HelicalWire,
+    WireLayer,
+    seven_wire,
+)
 from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import CutWires, cut_at, stress_at, stress_ranges, wire_stresses
 from solver.files import result_arrays

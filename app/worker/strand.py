@@ -184,8 +184,7 @@ class DrawnRope:
         names = [wire.name for wire in rope.wires]
         number = names.index(needs.interface) if needs.interface in names else 0
         wire, places = rope.wires[number], thinned(rope.elements, MOST_POINTS)
-        nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
-        stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
+        stuck = wire.tension[columns] + wire.stuck_force(columns)
         force = wire_forces(rope, iterate.displacement, columns)[number]
         middles = 0.5 * (wire.along[1:] + wire.along[:-1])
         return {

@@ -14,7 +14,6 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.helical_wire import HelicalWire
 from solver.refusal import RefusedError
 
 STEEL, ALUMINIUM = 200e9, 69e9
@@ -73,6 +72,34 @@ class WireLayer:
         """Bending stiffness E I cos(alpha) of all wires, each about its own axis, N m^2."""
         own = self.young * np.pi * self.diameter**4 / 64.0
         return float(self.wires * own * np.cos(self.lay))
+
+
+@dataclass(frozen=True)
+class HelicalWire:
+    """A wire on the cylinder of a strand.
+
+    Attributes
+    ----------
+    stiffness
+        Axial stiffness E A of the wire, N.
+    radius
+        Of the helix of its centre line, R, m.
+    lay
+        Lay angle alpha between wire and strand, rad, above 0 in size and below pi / 2; negative if
+        theta falls along the wire.
+    start
+        Polar angle theta at the wire's beginning, from the outermost fibre, rad.
+    """
+
+    stiffness: float
+    radius: float
+    lay: float
+    start: float = 0.0
+
+    @property
+    def half_pitch(self) -> float:
+        """Length of wire over which it goes half round the strand, m."""
+        return float(np.pi * self.radius / abs(np.sin(self.lay)))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,11 @@
-"""A strand of helical wires that is bent: rods, each on a support of its own.
+"""A strand of helical wires that is bent: rods, each on a support that is stretched with it.
+
+Plane sections of the strand stay plane, so a curvature kappa stretches what a wire lies on by
+kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at which the wire stands.
+Of the wire's displacement only what it slips on its support is unknown, and that is a rod's on a
+rigid support under the body force that the support's stretch brings about (K.-O. Papailiou, On the
+bending stiffness of transmission line conductors, IEEE Trans. Power Delivery 12, 1997). Its growth
+of tension by friction (the capstan term) is left out, as are wires beside each other.
 
 Degrees of freedom run along wire after wire; each is what the wire slips on its support. Ends are
 held: neither an extreme fibre slips, nor what a clamp grips. So friction there could not be told
@@ -13,10 +20,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection, WireLayer
+from solver.arrays import Array, Indices
+from solver.discrete.cross_section import CrossSection, HelicalWire, WireLayer
 from solver.discrete.cut_rods import CutRods
-from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rods import End, Rods
@@ -72,6 +78,51 @@ class RopeWire:
     def along(self) -> Array:
         """Places of the nodes along the strand, z, shape (n_nodes,), m."""
         return np.asarray(np.cos(self.helix.lay) * self.arc)
+
+    @property
+    def angle(self) -> Array:
+        """Theta at the nodes, shape (n_nodes,), rad."""
+        return np.asarray(self.helix.start + self.arc * np.sin(self.helix.lay) / self.helix.radius)
+
+    def stuck_force(self, columns: slice | Indices = slice(None)) -> Array:
+        """Change of its force in the elements while all sticks, (n_elements, n_columns), N."""
+        stuck = self._stuck_force(columns)
+        return np.asarray(0.5 * (stuck[1:] + stuck[:-1]))
+
+    def _stuck_force(self, columns: slice | Indices) -> Array:
+        """The same at the nodes."""
+        helix = self.helix
+        stretch = helix.stiffness * helix.radius * np.cos(helix.lay) ** 2
+        return np.asarray((stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns])
+
+    def body_force(self) -> Array:
+        """Force per length that stands for the stretch of what it lies on.
+
+        It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the wire
+        included, in differences of the elements' forces: equilibrium holds exactly on the mesh.
+        Shape (n_nodes, n_instants), N/m.
+        """
+        stuck, arc = self._stuck_force(slice(None)), self.arc
+        force = np.concatenate([stuck[:1], 0.5 * (stuck[1:] + stuck[:-1]), stuck[-1:]])
+        length = np.concatenate([arc[:1], 0.5 * (arc[1:] + arc[:-1]), arc[-1:]])
+        return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
+
+    def levers(self, *, at_beginning: bool) -> Array:
+        """What a newton in each element adds to the moment of the strand, (n_elements,), N m.
+
+        Either to that at the wire's beginning, where the force follows from the first two elements,
+        in whose middles it is known; or to the mean, which as many wires, evenly laid, have
+        together at every section.
+        """
+        helix, arc = self.helix, self.arc
+        arm = helix.radius * np.cos(helix.lay)
+        if not at_beginning:
+            around = np.diff(np.sin(self.angle)) * helix.radius / np.sin(helix.lay)
+            return np.asarray(arm * around / (arc[-1] - arc[0]))
+        levers = np.zeros(len(arc) - 1)
+        shares = np.array([1.5, -0.5])[: len(levers)]
+        levers[:2] = arm * np.cos(helix.start) * shares / shares.sum()
+        return levers
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +208,7 @@ class Rope:
             right=held,
             instants=self.instants,
             duration=self.duration,
-            body_force=wire.helix.body_force(wire.arc, wire.curvature),
+            body_force=wire.body_force(),
             friction_law=self.friction_law,
         )
 
@@ -169,13 +220,10 @@ class Rope:
         """
         weights, stuck = [], self.section.slipping_bending * self.curvature
         for wire in self.wires:
-            helix, arc = wire.helix, wire.arc
-            find = helix.levers_at_beginning if self.is_clamped else helix.mean_levers
-            levers = wire.stands_for * find(arc)
-            spring = helix.stiffness * levers / np.diff(arc)
-            weights.append(np.concatenate([[0.0], spring]) - np.concatenate([spring, [0.0]]))
-            force = helix.stuck_force(arc, wire.curvature)
-            stuck = stuck + levers @ (0.5 * (force[1:] + force[:-1]))
+            levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
+            spring = wire.helix.stiffness * levers / np.diff(wire.arc)
+            weights.append(-np.diff(spring, prepend=0.0, append=0.0))
+            stuck = stuck + levers @ wire.stuck_force()
         together = np.concatenate(weights)
         dofs = np.flatnonzero(together)
         return Probe(dofs, together[dofs], stuck)

@@ -67,9 +67,8 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
     slips = np.split(displacement[:, columns], len(rope.wires))
     forces = []
     for wire, slip in zip(rope.wires, slips, strict=True):
-        stuck = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
         spring = wire.helix.stiffness / np.diff(wire.arc)
-        change = spring[:, None] * np.diff(slip, axis=0) + 0.5 * (stuck[1:] + stuck[:-1])
+        change = spring[:, None] * np.diff(slip, axis=0) + wire.stuck_force(columns)
         forces.append(wire.tension[columns] + change)
     return np.stack(forces)
 

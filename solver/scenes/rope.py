@@ -19,8 +19,13 @@ from solver.definitions import (
     quantity,
     redefined,
 )
-from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.cross_section import (
+    CONSTRUCTIONS,
+    MOST_LAYERS,
+    CrossSection,
+    HelicalWire,
+    laid,
+)
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields

@@ -17,8 +17,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.cross_section import CrossSection, HelicalWire
 from solver.reference.closed_forms.masing import energy_of_cycle, masing
 
 
