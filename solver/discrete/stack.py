@@ -13,7 +13,7 @@ from solver.arrays import Array, Indices, without_residue
 from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
-from solver.discrete.stack_problem import CutStack
+from solver.discrete.stack_problem import problem_of
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
 
@@ -226,7 +226,7 @@ class Stack:
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
-        return CutStack(self).problem()
+        return problem_of(self)
 
     def loop(self, problem: Problem) -> Loop:
         """Spring force on a slope, shear force on a support, or what bends the end."""

@@ -17,9 +17,9 @@ from solver.definitions import (
     redefined,
 )
 from solver.discrete.bricks import Brick
+from solver.discrete.cut_stack import ends_along
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
-from solver.discrete.stack_problem import ends_along
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import UNSEEN
