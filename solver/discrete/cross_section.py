@@ -218,17 +218,15 @@ class CrossSection:
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 
-    def friction_bounds(self, tension: Array, friction: float, factors: Array | None) -> Array:
+    def friction_bounds(self, tension: Array, friction: float, factors: Array) -> Array:
         """Friction that the wires of every layer can take, from below and from above, N/m.
 
         Shape (n_layers, n_instants), per metre of wire, under the tension of the strand,
         (n_instants,), N; `factors` are mu of every layer on what it lies on over `friction`.
         """
         below, above = self.line_pressures(tension)
-        if factors is not None:
-            below = factors[:, None] * below
-            above = np.append(factors[1:], 1.0)[:, None] * above
-        return friction * (below + above)
+        outer = np.append(factors[1:], 1.0)
+        return friction * (factors[:, None] * below + outer[:, None] * above)
 
 
 def laid(rows: Iterable[Sequence[float]]) -> CrossSection:

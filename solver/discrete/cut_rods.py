@@ -262,8 +262,7 @@ class CutRods:
         positions = np.zeros(points[-1] + 1)
         positions[points] = self._places[rod][nodes]
         known = rods.bounds[nodes] * weights[:, None] / units[1]
-        if rods.factors is not None:
-            known = known * rods.factors[rod - 1]
+        known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
         # Around a node are half an element on either side, in series.
         soft = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
         around = 2.0 / (soft[:-1] + soft[1:]) * (units[0] / rods.length)

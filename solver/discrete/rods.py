@@ -81,7 +81,7 @@ class Rods:
         Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or where it changes
         with time (n_nodes, n_instants).
     factors
-        On the bound of each interface between several rods, shape (wires - 1,); None is 1.
+        On the bound of each interface between several rods, shape (wires - 1,), or of all.
     left, right
         The ends of every rod.
     instants, duration
@@ -128,7 +128,7 @@ class Rods:
     body_force: Array | None = None
     strain: Array | None = None
     settlement: Array | None = None
-    factors: Array | None = None
+    factors: Array | float = 1.0
     section: Array | None = None
     pressure: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
@@ -204,7 +204,7 @@ class Rods:
     @property
     def rubbing_sides(self) -> int:
         """Neighbours of the broken rod."""
-        return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
+        return 0 if self.broken is None else 1 + (1 < self.broken[0] < self.wires)
 
     def discretise(self) -> Problem:
         """Make the discrete problem.
@@ -332,8 +332,3 @@ class Rods:
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements
                 yield Hold("support", "bottom", (float(first), float(last)))
-
-
-def neighbours(wire: int, wires: int) -> int:
-    """Number of neighbours that a rod of several has, numbered from 1."""
-    return (wire > 1) + (wire < wires)

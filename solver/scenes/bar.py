@@ -262,9 +262,10 @@ class BarSettings(Settings):
 
     def sentence(self) -> str:
         """The bar in a sentence."""
-        bound = self.law.without_slip(self.structure().bound)
+        rods = self.structure()
+        bound = self.law.without_slip(rods.bound)
         table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-        rests, moved = bar_ends.ends_in_words(self)
+        rests, moved = bar_ends.ends_in_words(rods)
         clauses = [moved] if moved else []
         for path, words in DONE.items():
             if self.acts(path):
@@ -293,11 +294,14 @@ class BarSettings(Settings):
         """Refuse more force than friction carries, where it alone holds the bar."""
         if {self.left_end, self.right_end} & set(bar_ends.HOLDING):
             return
-        nodes = np.linspace(0.0, self.length, self.elements + 1)
-        bound = self.law.without_slip(self._bound(nodes)) * self.law.strongest
+        rods = self.structure()
+        bound = self.law.without_slip(rods.bounds) * self.law.strongest
         shares = tributary(self.elements) * (self.length / self.elements)
         most = np.broadcast_to(shares @ bound, (self.n_instants,))
-        total = np.abs(bar_ends.total_force(self))
+        forces = [end.force for end in rods.ends.values() if end.force is not None]
+        if rods.body_force is not None:
+            forces.append(self.length * rods.body_force)
+        total = np.abs(sum(forces, np.zeros(self.n_instants)))
         worst = int(np.argmax(total - most))
         if total[worst] >= (1.0 - SLACK) * most[worst]:
             raise self.refusal(

@@ -229,7 +229,6 @@ class PlaneSettings(Settings):
         return Stack(
             length=self.length,
             height=getattr(self, self.across),
-            bodies=self.n_bodies,
             elements=(self.elements, self.elements_up),
             substructures=(self.substructures, self.substructures_up),
             order=self.order,

@@ -304,7 +304,7 @@ class RopeSettings(Settings):
         tension = self.path("tension_load")
         is_known = not self.is_clamped and self.law == FrictionLaw()
         factors = shared.factors_of(self)
-        rubs = self.friction and (factors is None or factors.all())
+        rubs = self.friction and factors.all()
         if not is_known or np.ptp(tension) or not tension[0] or not rubs:
             return None
         return BentStrand(self.section, self.friction, float(tension[0]), factors)

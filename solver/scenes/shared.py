@@ -166,8 +166,8 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
     )
 
 
-def factors_of(settings: Any) -> Array | None:
-    """Factor on mu of each interface, shape (n_interfaces,); None where mu is the same.
+def factors_of(settings: Any) -> Array:
+    """Factor on mu of each interface, shape (n_interfaces,).
 
     Raises
     ------
@@ -175,7 +175,7 @@ def factors_of(settings: Any) -> Array | None:
         For a table that lacks an interface, or has others.
     """
     if isinstance(settings.friction_factors, str):
-        return None
+        return np.ones(settings.n_interfaces)
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 

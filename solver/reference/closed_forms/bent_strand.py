@@ -85,14 +85,13 @@ class BentStrand:
     tension
         N, above 0.
     factors
-        On mu of every layer and what it lies on, shape (n_layers,), above 0; None where it is the
-        same.
+        On mu of every layer and what it lies on, shape (n_layers,), above 0.
     """
 
     section: CrossSection
     friction: float
     tension: float
-    factors: Array | None = None
+    factors: Array
 
     @cached_property
     def layers(self) -> tuple[BentWire, ...]:
