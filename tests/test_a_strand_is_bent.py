@@ -138,12 +138,12 @@ def test_what_is_no_strand_is_refused() -> None:
     section = seven_wire()
     with pytest.raises(RefusedError, match="lay angle"):
         CrossSection(section.core, (WireLayer(6, 5e-3, 2e11),))
-    with pytest.raises(RefusedError, match="one straight wire"):
+    with pytest.raises(RefusedError, match="row 1 is the core"):
         CrossSection(section.layers[0], section.layers)
-    with pytest.raises(RefusedError, match="pi / 2"):
-        WireLayer(6, 5e-3, 2e11, 1.6)
-    with pytest.raises(RefusedError, match="at least one wire"):
-        WireLayer(0, 5e-3, 2e11, 0.3)
+    with pytest.raises(RefusedError, match="less than 90°"):
+        CrossSection(section.core, (WireLayer(6, 5e-3, 2e11, 1.6),))
+    with pytest.raises(RefusedError, match="one wire or more"):
+        CrossSection(section.core, (WireLayer(0, 5e-3, 2e11, 0.3),))
     scene = settings_of(**CLAMPED).structure()
     short = replace(scene.wires[0], curvature=scene.wires[0].curvature[1:])
     with pytest.raises(RefusedError, match="body_force"):

@@ -16,7 +16,7 @@ from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
 from solver.friction_settings import STIFFNESSES
 from solver.loads import interpolate
-from solver.profiles import harmonic_means, means, shares_of
+from solver.profiles import harmonic_means, means
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
@@ -285,7 +285,9 @@ class BarSettings(Settings):
 
     def _bound(self, nodes: Array) -> Array:
         """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
-        density = self.friction * self._density(nodes)
+        density = self.friction * shared.at_nodes(
+            self, nodes, "friction_profile", "pressure_profile"
+        )
         if self.pressure_load == "steady":
             return density * self.pressure
         return np.outer(density, self.path("pressure_load"))
@@ -327,11 +329,3 @@ class BarSettings(Settings):
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))
         return mean, factors / mean
-
-    def _density(self, nodes: Array) -> Array:
-        """Factors on mu and p together: presets at the nodes, tables over their shares."""
-        names = "friction_profile", "pressure_profile"
-        mu, pressure = tables = [self.points(name) for name in names]
-        if all(isinstance(getattr(self, name), str) for name in names):
-            return interpolate(mu, nodes) * interpolate(pressure, nodes)
-        return means(tables, shares_of(nodes))

@@ -33,15 +33,10 @@ from solver.laws import FrictionLaw
 from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
-from solver.refusal import plain
+from solver.refusal import RefusedError
 from solver.scenes.words import acting, counted
 from solver.settings import Features, Icon, Settings
 
-TIGHT = 1.01
-"""Radius that wires beside each other need, over that of their helix, up to which they fit: those
-of real strands touch each other, and are pressed a little out of round."""
-LEAST_LAY = 0.1
-"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of diameters."""
 MOST_WIRES = 1000
 """Of a construction of one's own."""
 
@@ -318,35 +313,12 @@ class RopeSettings(Settings):
 
 
 def _section_of(rows: Rows) -> CrossSection:
-    """Cross-section of one's own.
-
-    Raises
-    ------
-    SettingError
-        For what is no core in a layer of wires or more, and wires that have no room.
-    """
-
-    def refuse(remedy: str) -> SettingError:
-        allowed = "rows (wires, diameter, lay angle, modulus) from the core outwards"
-        return SettingError("construction", rows, allowed, remedy)
-
-    if rows[0][0] != 1 or rows[0][2]:
-        raise refuse("row 1 is the core: give it 1 wire and a lay angle of 0°")
-    if len(rows) == 1:
-        raise refuse("it has a core alone: add a row for a layer of wires around it")
-    wires = sum(int(count) for count, *_ in rows)
-    if wires > MOST_WIRES:
-        raise refuse(f"it has {wires} wires: give at most {MOST_WIRES}")
-    for row, (_, _, lay, _) in enumerate(rows[1:], start=2):
-        if abs(lay) < LEAST_LAY:
-            raise refuse(f"row {row}: give a lay angle of {plain(LEAST_LAY)}° or more in size")
-    section = laid(rows)
-    for layer, radius in enumerate(section.radii):
-        needed, (count, diameter, lay, _) = section.least_radius(layer), rows[layer + 1]
-        if needed > TIGHT * radius:
-            raise refuse(
-                f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do not fit beside "
-                f"each other on a circle of {2.0 * np.pi * radius:.3g} m, they need "
-                f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more inside"
-            )
+    """Cross-section of one's own."""
+    try:
+        section = laid(rows)
+    except RefusedError as refused:
+        raise SettingError("construction", rows, refused.allowed, refused.remedy) from refused
+    if section.wires > MOST_WIRES:
+        remedy = f"it has {section.wires}: leave some out"
+        raise SettingError("construction", rows, f"at most {MOST_WIRES} wires", remedy)
     return section

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -11,7 +12,8 @@ import param
 
 from solver.arrays import Array
 from solver.definitions import POSITIVE, CurveParameter, Rows, curve, quantity
-from solver.loads import PRESETS, PRESSURES, Preset
+from solver.loads import PRESETS, PRESSURES, Preset, interpolate
+from solver.profiles import means, shares_of
 from solver.settings import Settings
 
 PROFILES = {
@@ -77,6 +79,22 @@ def profile(
 
 def _over_length(shares: Rows, settings: Settings) -> Rows:
     return tuple((share * settings.length, factor) for share, factor in shares)
+
+
+def at_nodes(settings: Settings, places: Array, *profiles: str, order: int = 1) -> Array:
+    """Product of the factors of profiles at nodes; of tables, its mean over their shares.
+
+    Parameters
+    ----------
+    settings, profiles
+        Whose, and the names of one or two of them.
+    places, order
+        Of the nodes, shape (n_nodes,), m; order of their elements.
+    """
+    tables = [settings.points(name) for name in profiles]
+    if all(isinstance(getattr(settings, name), str) for name in profiles):
+        return math.prod((interpolate(table, places) for table in tables), start=np.ones(1))
+    return means(tables, shares_of(places, order))
 
 
 def friction_factors(which: str) -> CurveParameter:
