@@ -73,6 +73,8 @@ def _pieces_of(rods: Rods) -> tuple[list[int], int]:
 class CutRods:
     """Parallel rods that are all cut alike.
 
+    Lengths are scaled by the longest rod, forces by ES of the stiffest (solver/README.md, 1).
+
     Each rod rubs on a support of its own, or on the rods before and behind it. Degrees of freedom
     run along rod after rod; a broken one has two at its break, and no boundary row there. Rows are
     ordered by law, so that those of one law follow each other: the lower sides of all contacts, if
@@ -96,8 +98,6 @@ class CutRods:
         Of the interfaces: on the support of each rod, or between each two.
     rub_at_ends
         Whether the first and the last node of a rod rub.
-    scales
-        As of `Problem`.
     """
 
     def __init__(
@@ -106,9 +106,10 @@ class CutRods:
         places: Sequence[Array],
         names: Sequence[str],
         rub_at_ends: tuple[bool, bool],
-        scales: Scales,
     ) -> None:
-        self._rods, self._places, self._names, self._scales = rods, places, names, scales
+        self._rods, self._places, self._names = rods, places, names
+        length, stiffness = max(one.length for one in rods), max(one.stiffness for one in rods)
+        self._scales = Scales(length, stiffness, rods[0].duration)
         self._sizes, before = _pieces_of(rods[0])
         # Nodes of piece after piece: a cut's are there twice.
         self._piece = np.repeat(np.arange(len(self._sizes)), np.add(self._sizes, 1))

@@ -11,7 +11,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.cut_rods import SIDES, CutRods
 from solver.discrete.probes import Probe, constant, reaction
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError, check_range
@@ -209,10 +209,9 @@ class Rods:
     def discretise(self) -> Problem:
         """Make the discrete problem.
 
-        Lengths are scaled by L, forces by ES of one rod (solver/README.md, 1). On the support the
-        interface is "friction"; "contact 1-2" lies between rods 1 and 2, the second being the body
-        above. Its points run along the rods; at the break of either there are two, one for each of
-        the parts that have come apart.
+        On the support the interface is "friction"; "contact 1-2" lies between rods 1 and 2, the
+        second being the body above. Its points run along the rods; at the break of either there are
+        two, one for each of the parts that have come apart.
 
         Between rods held ends do not rub: nothing slips there, and friction could not be told from
         the reactions.
@@ -222,8 +221,7 @@ class Rods:
             names = [f"contact {number}-{number + 1}" for number in range(1, self.wires)]
             rub_at_ends = not self.left.is_prescribed, not self.right.is_prescribed
         rods, places = [self] * self.wires, [self.nodes] * self.wires
-        scales = Scales(self.length, self.stiffness, self.duration)
-        return CutRods(rods, places, names, rub_at_ends, scales).problem()
+        return CutRods(rods, places, names, rub_at_ends).problem()
 
     def loop(self, problem: Problem) -> Loop:
         """Mean force on the ends that are driven over their mean displacement.

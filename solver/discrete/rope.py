@@ -10,7 +10,6 @@ of tension by friction (the capstan term) is left out, as are wires beside each 
 Degrees of freedom run along wire after wire; each is what the wire slips on its support. Ends are
 held: neither an extreme fibre slips, nor what a clamp grips. So friction there could not be told
 from the reactions, and they are no points of the interfaces, one a wire, "wire LAYER.NUMBER".
-Lengths are scaled by the longest wire, forces by E A of the stiffest (solver/README.md, 1).
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.cross_section import CrossSection, HelicalWire, WireLayer
 from solver.discrete.cut_rods import CutRods
 from solver.discrete.probes import Probe, constant
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
@@ -168,20 +167,10 @@ class Rope:
         return len(self.wires[0].curvature) - 1
 
     @property
-    def length(self) -> float:
-        """Of the longest wire, m."""
-        return max(wire.length for wire in self.wires)
-
-    @property
     def seen_length(self) -> float:
         """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
         longest = max(float(wire.along[-1]) for wire in self.wires)
         return longest if self.is_clamped else 2.0 * longest
-
-    @property
-    def stiffness(self) -> float:
-        """Axial stiffness of the stiffest wire, N."""
-        return max(wire.helix.stiffness for wire in self.wires)
 
     def discretise(self) -> Problem:
         """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
@@ -192,8 +181,7 @@ class Rope:
             [self._rod(wire) for wire in self.wires],
             [wire.along for wire in self.wires],
             [wire.name for wire in self.wires],
-            (False, False),
-            Scales(self.length, self.stiffness, self.duration),
+            rub_at_ends=(False, False),
         ).problem()
 
     def _rod(self, wire: RopeWire) -> Rods:

@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Array
 from solver.definitions import (
     POSITIVE,
     Rows,
@@ -244,8 +243,22 @@ class RopeSettings(Settings):
         bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
         if self.tension_load == "steady":
             bounds = bounds[:, 0]
+        share = np.ones(self.elements + 1)
+        if self.is_clamped:
+            share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
+        along = np.outer(share, curvature)
         wires = [
-            self._wire(layer, number, bounds[layer], curvature, tension)
+            RopeWire(
+                layer=layer,
+                number=number,
+                helix=(helix := self.section.helix(layer, number)),
+                made=own,
+                length=self._length_of(helix),
+                bound=bounds[layer],
+                curvature=along,
+                tension=self.section.wire_tension(layer, tension),
+                stands_for=1 if self.is_clamped else own.wires,
+            )
             for layer, own in enumerate(self.section.layers)
             for number in range(own.wires if self.is_clamped else 1)
         ]
@@ -266,25 +279,6 @@ class RopeSettings(Settings):
         if self.is_clamped:
             return float(self.length / np.cos(helix.lay))
         return float(helix.half_pitch)
-
-    def _wire(
-        self, layer: int, number: int, bound: Array, curvature: Array, tension: Array
-    ) -> RopeWire:
-        section, helix = self.section, self.section.helix(layer, number)
-        own, share = section.layers[layer], np.ones(self.elements + 1)
-        if self.is_clamped:
-            share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
-        return RopeWire(
-            layer=layer,
-            number=number,
-            helix=helix,
-            made=own,
-            length=self._length_of(helix),
-            bound=bound,
-            curvature=np.outer(share, curvature),
-            tension=section.wire_tension(layer, tension),
-            stands_for=1 if self.is_clamped else own.wires,
-        )
 
     def sentence(self) -> str:
         """The strand in a sentence."""
