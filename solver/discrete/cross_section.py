@@ -67,34 +67,6 @@ class WireLayer:
 
 
 @dataclass(frozen=True)
-class HelicalWire:
-    """A wire on the cylinder of a strand.
-
-    Attributes
-    ----------
-    stiffness
-        Axial stiffness E A of the wire, N.
-    radius
-        Of the helix of its centre line, R, m.
-    lay
-        Lay angle alpha between wire and strand, rad, above 0 in size and below pi / 2; negative if
-        theta falls along the wire.
-    start
-        Polar angle theta at the wire's beginning, from the outermost fibre, rad.
-    """
-
-    stiffness: float
-    radius: float
-    lay: float
-    start: float = 0.0
-
-    @property
-    def half_pitch(self) -> float:
-        """Length of wire over which it goes half round the strand, m."""
-        return float(np.pi * self.radius / abs(np.sin(self.lay)))
-
-
-@dataclass(frozen=True)
 class CrossSection:
     """A core wire, and layers around it from the inside out.
 
@@ -198,12 +170,6 @@ class CrossSection:
             for one, radius in zip(self.layers, self.radii, strict=True)
         )
         return self.slipping_bending + float(sum(together))
-
-    def helix(self, layer: int, wire: int = 0) -> HelicalWire:
-        """A wire by numbers from 0 on, inside out and as theta grows; the first is outermost."""
-        one = self.layers[layer]
-        start = 2.0 * np.pi * wire / one.wires
-        return HelicalWire(one.stiffness, self.radii[layer], one.lay, start)
 
     def wire_tension(self, layer: int, tension: Array) -> Array:
         """Force in a wire of a layer under a tension of the strand, of its shape, N."""

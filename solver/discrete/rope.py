@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.cross_section import CrossSection, HelicalWire, WireLayer
+from solver.discrete.cross_section import CrossSection, WireLayer
 from solver.discrete.cut_rods import CutRods
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem
@@ -37,10 +37,12 @@ class RopeWire:
     ----------
     layer, number
         From 0 on, inside out and around.
-    helix
-        Its geometry and stiffness E A.
     made
-        Of what: the wire's cross-section and Young's modulus.
+        Of what, and how it is laid: all wires of its layer.
+    radius
+        Of the helix of its centre line, R, m.
+    start
+        Polar angle theta at its beginning, from the outermost fibre, rad.
     length
         Of the wire, m.
     bound
@@ -55,8 +57,9 @@ class RopeWire:
 
     layer: int
     number: int
-    helix: HelicalWire
     made: WireLayer
+    radius: float
+    start: float
     length: float
     bound: float | Array
     curvature: Array
@@ -76,12 +79,12 @@ class RopeWire:
     @property
     def along(self) -> Array:
         """Places of the nodes along the strand, z, shape (n_nodes,), m."""
-        return np.asarray(np.cos(self.helix.lay) * self.arc)
+        return np.asarray(np.cos(self.made.lay) * self.arc)
 
     @property
     def angle(self) -> Array:
         """Theta at the nodes, shape (n_nodes,), rad."""
-        return np.asarray(self.helix.start + self.arc * np.sin(self.helix.lay) / self.helix.radius)
+        return np.asarray(self.start + self.arc * np.sin(self.made.lay) / self.radius)
 
     def stuck_force(self, columns: slice | Indices = slice(None)) -> Array:
         """Change of its force in the elements while all sticks, (n_elements, n_columns), N."""
@@ -90,8 +93,7 @@ class RopeWire:
 
     def _stuck_force(self, columns: slice | Indices) -> Array:
         """The same at the nodes."""
-        helix = self.helix
-        stretch = helix.stiffness * helix.radius * np.cos(helix.lay) ** 2
+        stretch = self.made.stiffness * self.radius * np.cos(self.made.lay) ** 2
         return np.asarray((stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns])
 
     def body_force(self) -> Array:
@@ -113,14 +115,13 @@ class RopeWire:
         in whose middles it is known; or to the mean, which as many wires, evenly laid, have
         together at every section.
         """
-        helix, arc = self.helix, self.arc
-        arm = helix.radius * np.cos(helix.lay)
+        arc, arm = self.arc, self.radius * np.cos(self.made.lay)
         if not at_beginning:
-            around = np.diff(np.sin(self.angle)) * helix.radius / np.sin(helix.lay)
+            around = np.diff(np.sin(self.angle)) * self.radius / np.sin(self.made.lay)
             return np.asarray(arm * around / (arc[-1] - arc[0]))
         levers = np.zeros(len(arc) - 1)
         shares = np.array([1.5, -0.5])[: len(levers)]
-        levers[:2] = arm * np.cos(helix.start) * shares / shares.sum()
+        levers[:2] = arm * np.cos(self.start) * shares / shares.sum()
         return levers
 
 
@@ -188,7 +189,7 @@ class Rope:
         held = End(displacement=np.zeros(len(self.instants)))
         return Rods(
             length=wire.length,
-            stiffness=wire.helix.stiffness,
+            stiffness=wire.made.stiffness,
             elements=self.elements,
             substructures=self.substructures,
             bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
@@ -209,7 +210,7 @@ class Rope:
         weights, stuck = [], self.section.slipping_bending * self.curvature
         for wire in self.wires:
             levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
-            spring = wire.helix.stiffness * levers / np.diff(wire.arc)
+            spring = wire.made.stiffness * levers / np.diff(wire.arc)
             weights.append(-np.diff(spring, prepend=0.0, append=0.0))
             stuck = stuck + levers @ wire.stuck_force()
         together = np.concatenate(weights)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import (
     Rows,
     choice,
@@ -185,8 +186,11 @@ class LayersSettings(PlaneSettings):
     @property
     def spans(self) -> tuple[int, ...]:
         """Elements along every layer."""
-        shares = np.array([share for _, share in self.points("layer_lengths")])
-        return tuple(np.maximum(np.rint(shares * self.elements), 1).astype(int).tolist())
+        return tuple(np.maximum(np.rint(self._shares * self.elements), 1).astype(int).tolist())
+
+    @property
+    def _shares(self) -> Array:
+        return np.array(self.points("layer_lengths"))[:, 1]
 
     @property
     def n_nodes(self) -> int:
@@ -213,8 +217,6 @@ class LayersSettings(PlaneSettings):
         shared.factors_of(self)
 
     def _check_lengths(self) -> None:
-        if isinstance(self.layer_lengths, str):
-            return
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
             raise self.refusal(
@@ -226,8 +228,7 @@ class LayersSettings(PlaneSettings):
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, and how far layers end from where given."""
         yield from super().left_out()
-        shares = np.array([share for _, share in self.points("layer_lengths")])
-        off = float(np.abs(np.array(self.spans) / self.elements - shares).max())
+        off = float(np.abs(np.array(self.spans) / self.elements - self._shares).max())
         if off > UNSEEN:
             yield (
                 f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} % of the "

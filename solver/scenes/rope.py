@@ -22,7 +22,6 @@ from solver.discrete.cross_section import (
     CONSTRUCTIONS,
     MOST_LAYERS,
     CrossSection,
-    HelicalWire,
     laid,
 )
 from solver.discrete.problem import Problem
@@ -211,9 +210,9 @@ class RopeSettings(Settings):
     @property
     def contact_unit(self) -> float:
         """Unit of `contact_stiffness`, N/m^2."""
-        helices = [self.section.helix(layer, 0) for layer in range(len(self.section.layers))]
-        longest = max(self._length_of(helix) for helix in helices)
-        return float(max(helix.stiffness for helix in helices) / longest**2)
+        layers = self.section.layers
+        longest = max(self._length_of(layer) for layer in range(len(layers)))
+        return float(max(layer.stiffness for layer in layers) / longest**2)
 
     def check_together(self) -> None:
         """Refuse a curvature that no fall-off is known of."""
@@ -251,9 +250,10 @@ class RopeSettings(Settings):
             RopeWire(
                 layer=layer,
                 number=number,
-                helix=(helix := self.section.helix(layer, number)),
                 made=own,
-                length=self._length_of(helix),
+                radius=self.section.radii[layer],
+                start=2.0 * np.pi * number / own.wires,
+                length=self._length_of(layer),
                 bound=bounds[layer],
                 curvature=along,
                 tension=self.section.wire_tension(layer, tension),
@@ -274,11 +274,12 @@ class RopeSettings(Settings):
             friction_law=self.law,
         )
 
-    def _length_of(self, helix: HelicalWire) -> float:
-        """Length of a wire that is seen, m."""
+    def _length_of(self, layer: int) -> float:
+        """Length of its wires that is seen, m: down to the clamp, or half round the strand."""
+        lay = self.section.layers[layer].lay
         if self.is_clamped:
-            return float(self.length / np.cos(helix.lay))
-        return float(helix.half_pitch)
+            return float(self.length / np.cos(lay))
+        return float(np.pi * self.section.radii[layer] / abs(np.sin(lay)))
 
     def sentence(self) -> str:
         """The strand in a sentence."""

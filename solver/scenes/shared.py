@@ -192,8 +192,6 @@ def factors_of(settings: Any) -> Array:
     SettingError
         For a table that lacks an interface, or has others.
     """
-    if isinstance(settings.friction_factors, str):
-        return np.ones(settings.n_interfaces)
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
@@ -217,7 +215,7 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
     SettingError
         For a table that lacks one, or has others.
     """
-    table = getattr(settings, name)
+    table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
         raise settings.refusal(
