@@ -135,7 +135,7 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
     forces = wire_forces(rope, displacement, slice(None))
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
-        axial = np.abs(force).max(initial=0.0) / wire.helix.stiffness
+        axial = np.abs(force).max(initial=0.0) / wire.made.stiffness
         bent = 0.5 * wire.made.diameter * np.abs(wire.curvature).max(initial=0.0)
         largest = max(largest, float(axial + bent))
     return largest

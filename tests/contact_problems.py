@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solver.discrete.bricks import Brick
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.substructure import Elasticity, Substructure
@@ -163,7 +164,7 @@ def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, s
     return Stack(
         length=1.0,
         height=given.pop("height", 0.6),
-        bodies=bodies,
+        bricks=[Brick(0, body * elements[1], *elements) for body in range(bodies)],
         elements=elements,
         substructures=cuts,
         young=1e9,

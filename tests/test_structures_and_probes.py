@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from solver.discrete import Given, Problem, Side, Stack, Support
+from solver.discrete.bricks import Brick
 from solver.discrete.elements import von_mises
 from solver.discrete.probes import reaction, side_mean
 from solver.latin import Iterate, iterations
@@ -102,7 +103,7 @@ BODY = Stack(
 )
 BEAMS = replace(
     BODY,
-    bodies=3,
+    bricks=[Brick(0, 4 * body, 8, 4) for body in range(3)],
     support=None,
     sides={
         "left": Side(Given(True, 0.0 * T), Given(True, 0.0 * T)),

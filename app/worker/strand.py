@@ -53,9 +53,10 @@ class DrawnRope:
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
         self._first = len(rope.wires) - len(wires)
-        self._helix, self._radius = wires[0].helix, 0.5 * description.height
+        self._lay, self._helix = wires[0].made.lay, wires[0].radius
+        self._radius = 0.5 * description.height
         self._count = sum(wire.stands_for for wire in wires)
-        turns = description.length * np.tan(abs(self._helix.lay)) / (2 * np.pi * self._helix.radius)
+        turns = description.length * np.tan(abs(self._lay)) / (2 * np.pi * self._helix)
         n_steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
         self._z = np.linspace(0.0, description.length, n_steps + 1)
         numbers, steps, grids = zip(*self._strips(), strict=True)
@@ -93,7 +94,7 @@ class DrawnRope:
 
     def _angle(self, wire: Array, place: Array) -> Array:
         """Polar angle of outer wires by their number, and at places along the strand."""
-        turned = place * np.tan(self._helix.lay) / self._helix.radius
+        turned = place * np.tan(self._lay) / self._helix
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
     def _height(self, angle: Array) -> Array:
@@ -118,7 +119,7 @@ class DrawnRope:
         wires, sides = self._first + numbers, np.ones(len(place), dtype=np.int8)
         share = place / self._z[-1]
         if not self._rope.is_clamped:
-            turned = np.sign(self._helix.lay) * self._angle(numbers, place)
+            turned = np.sign(self._lay) * self._angle(numbers, place)
             wires = np.full(len(place), self._first)
             share = np.arccos(np.cos(turned)) / np.pi
             sides = np.where(np.sin(turned) < 0.0, -1, 1).astype(np.int8)
@@ -173,10 +174,8 @@ class DrawnRope:
         names = [wire.name for wire in rope.wires]
         number = names.index(needs.interface) if needs.interface in names else 0
         wire, places = rope.wires[number], thinned(rope.elements, MOST_POINTS)
-        force, stuck = (
-            wire_forces(rope, moved, columns)[number]
-            for moved in (iterate.displacement, np.zeros_like(iterate.displacement))
-        )
+        stuck = wire.tension[columns] + wire.stuck_force(columns)
+        force = wire_forces(rope, iterate.displacement, columns)[number]
         middles = 0.5 * (wire.along[1:] + wire.along[:-1])
         return {
             "x": floats(np.asarray(middles)[places]),

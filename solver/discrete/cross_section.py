@@ -14,14 +14,18 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.helical_wire import HelicalWire
-from solver.refusal import RefusedError
+from solver.refusal import RefusedError, plain
 
 STEEL, ALUMINIUM = 200e9, 69e9
 """Young's moduli of wires, Pa."""
 PRESTRESSING = 195e9
 """The same of prestressing steel, Pa (EN 1992-1-1, 3.3.6)."""
 MOST_LAYERS = 5
+TIGHT = 1.01
+"""Radius that wires beside each other need, over that of their helix, up to which they fit: those
+of real strands touch each other, and are pressed a little out of round."""
+LEAST_LAY = 0.1
+"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of diameters."""
 
 
 @dataclass(frozen=True)
@@ -44,19 +48,6 @@ class WireLayer:
     diameter: float
     young: float
     lay: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.wires < 1 or self.diameter <= 0.0 or self.young <= 0.0:
-            raise RefusedError(
-                "WireLayer",
-                [self.wires, self.diameter, self.young],
-                "at least one wire, a diameter and a Young's modulus above 0",
-                "leave the layer out, or give it wires",
-            )
-        if abs(self.lay) >= 0.5 * np.pi:
-            raise RefusedError(
-                "WireLayer.lay", self.lay, "angles below pi / 2 in size", "give the angle in rad"
-            )
 
     @property
     def area(self) -> float:
@@ -85,23 +76,42 @@ class CrossSection:
         A layer of one wire, without lay.
     layers
         At least one, each with a lay.
+
+    Raises
+    ------
+    RefusedError
+        For what is no core in a layer of wires or more, and wires that have no room.
     """
 
     core: WireLayer
     layers: tuple[WireLayer, ...]
 
     def __post_init__(self) -> None:
-        if self.core.wires != 1 or self.core.lay != 0.0:
-            raise RefusedError(
-                "CrossSection.core", self.core.wires, "one straight wire", "give wires to layers"
-            )
-        if not self.layers or not all(layer.lay for layer in self.layers):
-            raise RefusedError(
-                "CrossSection.layers",
-                [layer.lay for layer in self.layers],
-                "one layer or more, each with a lay angle that is not 0",
-                "lay the wires around the core",
-            )
+        if remedy := self._remedy():
+            allowed = "rows (wires, diameter, lay angle, modulus) from the core outwards"
+            raise RefusedError("CrossSection", self.rows, allowed, remedy)
+
+    def _remedy(self) -> str:
+        """What to do with what is no strand, by the number of its row; empty for one."""
+        if self.core.wires != 1 or self.core.lay:
+            return "row 1 is the core: give it 1 wire and a lay angle of 0°"
+        if not self.layers:
+            return "it has a core alone: add a row for a layer of wires around it"
+        for row, (count, diameter, lay, young) in enumerate(self.rows, start=1):
+            if min(count, diameter, young) <= 0.0:
+                return f"row {row}: give one wire or more, a diameter and a modulus above 0"
+            if row > 1 and not LEAST_LAY <= abs(lay) < 90.0:
+                least = plain(LEAST_LAY)
+                return f"row {row}: give a lay angle of {least}° or more in size, less than 90°"
+        for layer, (count, diameter, lay, _) in enumerate(self.rows[1:]):
+            needed, radius = self.least_radius(layer), self.radii[layer]
+            if needed > TIGHT * radius:
+                return (
+                    f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do not fit "
+                    f"beside each other on a circle of {2.0 * np.pi * radius:.3g} m, they need "
+                    f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more inside"
+                )
+        return ""
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -161,12 +171,6 @@ class CrossSection:
         )
         return self.slipping_bending + float(sum(together))
 
-    def helix(self, layer: int, wire: int = 0) -> HelicalWire:
-        """A wire by numbers from 0 on, inside out and as theta grows; the first is outermost."""
-        one = self.layers[layer]
-        start = 2.0 * np.pi * wire / one.wires
-        return HelicalWire(one.stiffness, self.radii[layer], one.lay, start)
-
     def wire_tension(self, layer: int, tension: Array) -> Array:
         """Force in a wire of a layer under a tension of the strand, of its shape, N."""
         one = self.layers[layer]
@@ -191,17 +195,15 @@ class CrossSection:
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 
-    def friction_bounds(self, tension: Array, friction: float, factors: Array | None) -> Array:
+    def friction_bounds(self, tension: Array, friction: float, factors: Array) -> Array:
         """Friction that the wires of every layer can take, from below and from above, N/m.
 
         Shape (n_layers, n_instants), per metre of wire, under the tension of the strand,
         (n_instants,), N; `factors` are mu of every layer on what it lies on over `friction`.
         """
         below, above = self.line_pressures(tension)
-        if factors is not None:
-            below = factors[:, None] * below
-            above = np.append(factors[1:], 1.0)[:, None] * above
-        return friction * (below + above)
+        outer = np.append(factors[1:], 1.0)
+        return friction * (factors[:, None] * below + outer[:, None] * above)
 
 
 def laid(rows: Iterable[Sequence[float]]) -> CrossSection:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,11 +46,11 @@ def rod_stiffness(element_stiffness: Array) -> sparse.csr_array:
     return sparse.csr_array((entries, columns, ends), shape=(elements + 1, elements + 1))
 
 
-def tributary(elements: int, element_length: float) -> Array:
-    """Tributary lengths of the nodes of a row of elements, halved at its ends."""
-    weights = np.full(elements + 1, element_length)
-    weights[[0, -1]] = 0.5 * element_length
-    return weights
+def tributary(elements: int) -> Array:
+    """Length that belongs to each node of a row of elements, over that of one of them."""
+    shares = np.ones(elements + 1)
+    shares[[0, -1]] = 0.5
+    return shares
 
 
 def substructure_sizes(elements: int, substructures: int) -> list[int]:
@@ -59,23 +59,21 @@ def substructure_sizes(elements: int, substructures: int) -> list[int]:
     return [size + 1] * extra + [size] * (substructures - extra)
 
 
-def _pieces_of(rods: Rods) -> tuple[list[int], tuple[int, int] | None]:
-    """Elements of the pieces of each rod, which are cut at the break of one.
-
-    And the number of the broken rod and of the piece to the left of its break, from 0; or None.
-    """
+def _pieces_of(rods: Rods) -> tuple[list[int], int]:
+    """Elements of the pieces of each rod, and how many pieces lie before the break of one."""
     if rods.broken is None:
-        return substructure_sizes(rods.elements, rods.substructures), None
-    (rod, node), count = rods.broken, max(rods.substructures, 2)
+        return substructure_sizes(rods.elements, rods.substructures), 0
+    node, count = rods.broken[1], max(rods.substructures, 2)
     beyond = rods.elements - node
     before = round(count * node / rods.elements)
     before = min(max(before, 1, count - beyond), node, count - 1)
-    sizes = substructure_sizes(node, before) + substructure_sizes(beyond, count - before)
-    return sizes, (rod - 1, before - 1)
+    return substructure_sizes(node, before) + substructure_sizes(beyond, count - before), before
 
 
 class CutRods:
     """Parallel rods that are all cut alike.
+
+    Lengths are scaled by the longest rod, forces by ES of the stiffest (solver/README.md, 1).
 
     Each rod rubs on a support of its own, or on the rods before and behind it. Degrees of freedom
     run along rod after rod; a broken one has two at its break, and no boundary row there. Rows are
@@ -100,8 +98,6 @@ class CutRods:
         Of the interfaces: on the support of each rod, or between each two.
     rub_at_ends
         Whether the first and the last node of a rod rub.
-    scales
-        As of `Problem`.
     """
 
     def __init__(
@@ -110,110 +106,120 @@ class CutRods:
         places: Sequence[Array],
         names: Sequence[str],
         rub_at_ends: tuple[bool, bool],
-        scales: Scales,
     ) -> None:
-        self._rods, self._places, self._names, self._scales = rods, places, names, scales
-        self._sizes, self._broken = _pieces_of(rods[0])
-        self._starts = np.concatenate([[0], np.cumsum(self._sizes)[:-1]])
-        # Nodes of each piece that rub, numbered from its first, and of one contact; a cut's twice.
-        self._rubbing = [np.arange(size + 1) for size in self._sizes]
-        if not rub_at_ends[0]:
-            self._rubbing[0] = self._rubbing[0][1:]
-        if not rub_at_ends[1]:
-            self._rubbing[-1] = self._rubbing[-1][:-1]
-        pieces = list(zip(self._starts, self._rubbing, strict=True))
-        self._nodes = np.concatenate([start + rubbing for start, rubbing in pieces])
-        self._nodes_of_dofs = [np.arange(len(own)) for own in places]
-        ends = np.ones((2, len(pieces), len(rods)), dtype=bool)
-        if self._broken is not None:
-            rod, before = self._broken
-            node = self._starts[before + 1]
-            self._nodes_of_dofs[rod] = np.insert(self._nodes_of_dofs[rod], node, node)
-            ends[1, before, rod] = ends[0, before + 1, rod] = False
-        self._first_dof = np.concatenate([[0], np.cumsum([len(x) for x in self._nodes_of_dofs])])
-        self._first_row = np.concatenate([[0], np.cumsum([len(own) for own in self._rubbing])])
+        self._rods, self._places, self._names = rods, places, names
+        length, stiffness = max(one.length for one in rods), max(one.stiffness for one in rods)
+        self._scales = Scales(length, stiffness, rods[0].duration)
+        self._sizes, before = _pieces_of(rods[0])
+        # Nodes of piece after piece: a cut's are there twice.
+        self._piece = np.repeat(np.arange(len(self._sizes)), np.add(self._sizes, 1))
+        self._nodes = np.arange(len(self._piece)) - self._piece
+        self._shares = np.concatenate([tributary(size) for size in self._sizes])
+        self._rubs = slice(1 - rub_at_ends[0], len(self._nodes) - 1 + rub_at_ends[1])
+        # Beyond its break a rod has one degree of freedom more.
+        self._beyond = np.zeros((len(rods), len(self._sizes)), dtype=np.intp)
+        if rods[0].broken is not None:
+            self._beyond[rods[0].broken[0] - 1, before:] = 1
+        breaks = np.diff(self._beyond, axis=1)
+        self._dofs_at = np.ones((len(rods), rods[0].elements + 1), dtype=np.intp)
+        self._dofs_at[:, np.cumsum(self._sizes)[:-1]] += breaks
         # Contacts that have a rod below.
         self._lower = 0 if len(names) == len(rods) else len(names)
-        rows = (len(names) + self._lower) * len(self._nodes) - 1 + np.cumsum(ends.ravel())
-        self._left, self._right = np.where(ends.ravel(), rows, NO_ROW).reshape(ends.shape)
+        self._sides = np.full((len(names) + self._lower, len(self._nodes)), NO_ROW)
+        rubbing = self._sides[:, self._rubs]
+        rubbing[:] = np.arange(rubbing.size).reshape(rubbing.shape)
+        is_there = np.ones((2, len(self._sizes), len(rods)), dtype=bool)
+        is_there[0, 1:] = is_there[1, :-1] = breaks.T == 0
+        rows = rubbing.size - 1 + np.cumsum(is_there).reshape(is_there.shape)
+        self._ends = np.where(is_there, rows, NO_ROW)
 
     def problem(self) -> Problem:
         """The discrete problem."""
-        rods, places, scales = self._rods, self._places, self._scales
-        carried = rods[0].settlement
+        carried, scales = self._rods[0].settlement, self._scales
         shared: dict[tuple[object, ...], Elasticity] = {}
+        wholes = zip(self._places, self._dofs_at, strict=True)
         return Problem(
             substructures=tuple(
-                self._substructure(rod, piece, shared)
-                for rod in range(len(rods))
-                for piece in range(len(self._sizes))
+                piece for rod in range(len(self._rods)) for piece in self._pieces(rod, shared)
             ),
             interfaces=dict(self._interfaces()),
-            positions=np.concatenate(
-                [own[nodes] for own, nodes in zip(places, self._nodes_of_dofs, strict=True)]
-            ),
-            instants=rods[0].instants,
+            positions=np.concatenate([np.repeat(own, dofs) for own, dofs in wholes]),
+            instants=self._rods[0].instants,
             carried=None if carried is None else carried / scales.displacement,
             scales=scales,
         )
 
-    def _side(self, number: int) -> Indices:
-        return np.arange(number * len(self._nodes), (number + 1) * len(self._nodes))
-
-    def _rows(self, rod: int, piece: int) -> tuple[Indices, Indices, int]:
-        """Rows of one piece, the node of it under each, and how many, the last, are its ends."""
-        some = slice(self._first_row[piece], self._first_row[piece + 1])
-        numbers = [rod]
+    def _pieces(
+        self, rod: int, shared: dict[tuple[object, ...], Elasticity]
+    ) -> Iterator[Substructure]:
+        """All pieces of a rod; those of equal operators share it."""
+        rods, stiffness = self._rods[rod], self._stiffness(self._rods[rod])
+        sides = self._sides[[rod]]
         if self._lower:
             # On the rod before it, and below the one behind it.
-            numbers = [self._lower + rod - 1] * (rod > 0) + [rod] * (rod < self._lower)
-        sides = [self._side(number)[some] for number in numbers]
-        ends = np.array([self._left[piece, rod], self._right[piece, rod]])
-        there = ends != NO_ROW
-        held = np.array([0, self._sizes[piece]])[there]
-        trace = np.concatenate([*[self._rubbing[piece]] * len(sides), held])
-        return np.concatenate([*sides, ends[there]]), trace, len(held)
-
-    def _substructure(
-        self, rod: int, piece: int, shared: dict[tuple[object, ...], Elasticity]
-    ) -> Substructure:
-        rods, scales, size = self._rods[rod], self._scales, self._sizes[piece]
-        rows, trace, ends = self._rows(rod, piece)
-        start, length = self._starts[piece], rods.length / scales.displacement
-        stiffness = self._stiffness(rods)[start : start + size]
-        springs = {0: rods.left} if piece == 0 else {}
-        springs |= {size: rods.right} if piece == len(self._sizes) - 1 else {}
-        springs = {node: end for node, end in springs.items() if end.is_on_spring}
-        key = trace.tobytes(), stiffness.tobytes(), length, tuple(springs)
-        if key not in shared:
-            part = size * (element := length / rods.elements)
-            at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
-            direction = np.full(len(trace), at_ends)
-            direction[: len(trace) - ends] = at_ends * element / part
-            matrix = rod_stiffness(stiffness * (rods.elements / length))
+            sides = self._sides[[self._lower + rod - 1] * (rod > 0) + [rod] * (rod < self._lower)]
+        strain = rods.free_strain
+        needed = None if strain is None else strain * stiffness[:, None]
+        inner = self._inner_force(rods, needed)
+        held = {0: rods.left, rods.elements: rods.right}
+        on_springs = {node: end for node, end in held.items() if end.is_on_spring}
+        start, first_dof = 0, int(self._dofs_at[:rod].sum())
+        for piece, size in enumerate(self._sizes):
+            elements, span = slice(start, start + size), range(start, start + size + 1)
+            nodes = slice(span.start + piece, span.stop + piece)
+            rows = np.concatenate([sides[:, nodes].ravel(), self._ends[:, piece, rod]])
+            trace = np.concatenate([*[np.arange(size + 1)] * len(sides), [0, size]])
+            is_row = rows != NO_ROW
+            springs = {node - start: on_springs[node] for node in on_springs if node in span}
+            key = is_row.tobytes(), stiffness[elements].tobytes(), rods.length, tuple(springs)
+            if key not in shared:
+                own, ends = stiffness[elements], int(is_row[-2:].sum())
+                shared[key] = self._operator(rods, own, trace[is_row], ends, springs)
+            force = None if inner is None else inner[nodes]
             for node, end in springs.items():
-                matrix[node, node] += end.spring / (scales.force / scales.displacement)
-            shared[key] = Elasticity(matrix, trace, direction)
+                force = np.zeros((size + 1, len(rods.instants))) if force is None else force
+                force[node] += end.spring / self._scales.force * _seen(rods, end, start + node)
+            first = first_dof + start + int(self._beyond[rod, piece])
+            yield Substructure(
+                elasticity=shared[key],
+                dofs=np.arange(first, first + size + 1),
+                rows=rows[is_row],
+                body_force=force,
+                free_force=None if needed is None else needed[elements],
+            )
+            start += size
+
+    def _inner_force(self, rods: Rods, needed: Array | None) -> Array | None:
+        """Forces inside the pieces of a rod, piece after piece, (n_nodes, n_instants), scaled.
+
+        Of body forces, and of elements that push against their nodes with the force that would keep
+        them as they were; None of neither.
+        """
         forces: list[Array] = []
         if rods.body_force is not None:
+            unit = self._scales.displacement
             along = np.broadcast_to(rods.body_force, (rods.elements + 1, len(rods.instants)))
-            scaled = along[start : start + size + 1] * scales.displacement / scales.force
-            forces.append(tributary(size, length / rods.elements)[:, None] * scaled)
-        strain, needed = rods.free_strain, None
-        if strain is not None:
-            needed = strain[start : start + size] * stiffness[:, None]
-            # Elements push against their nodes with the force that would keep them as they were.
-            forces.append(np.diff(-needed, axis=0, prepend=0.0, append=0.0))
+            element = rods.length / unit / rods.elements * self._shares
+            forces.append(element[:, None] * (along * unit / self._scales.force)[self._nodes])
+        if needed is not None:
+            pushing = np.insert(-needed, np.cumsum([0, *self._sizes]), 0.0, axis=0)
+            forces.append(np.diff(pushing, axis=0))
+        return sum(forces[1:], forces[0]) if forces else None
+
+    def _operator(
+        self, rods: Rods, stiffness: Array, trace: Indices, ends: int, springs: Mapping[int, End]
+    ) -> Elasticity:
+        """Operator of a piece by what its elements have for stiffness, its rows and springs."""
+        units, size = self._scales, len(stiffness)
+        length = rods.length / units.displacement
+        part = size * (element := length / rods.elements)
+        at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
+        direction = np.full(len(trace), at_ends)
+        direction[: len(trace) - ends] = at_ends * element / part
+        matrix = rod_stiffness(stiffness * (rods.elements / length))
         for node, end in springs.items():
-            pulled = np.zeros((size + 1, len(rods.instants)))
-            pulled[node] = end.spring / scales.force * _seen(rods, end, start + node)
-            forces.append(pulled)
-        body_force = sum(forces[1:], forces[0]) if forces else None
-        first_dof = self._first_dof[rod] + start
-        if self._broken is not None and rod == self._broken[0] and piece > self._broken[1]:
-            first_dof += 1
-        dofs = np.arange(first_dof, first_dof + size + 1)
-        return Substructure(shared[key], dofs, rows, body_force, needed)
+            matrix[node, node] += end.spring / (units.force / units.displacement)
+        return Elasticity(matrix, trace, direction)
 
     def _stiffness(self, rods: Rods) -> Array:
         """ES of every element of a rod, scaled."""
@@ -225,14 +231,14 @@ class CutRods:
         first_above = len(self._rods) - len(self._names)
         for number, name in enumerate(self._names):
             yield name, self._friction(first_above + number)
-        yield SIDES["left"], self._held_or_pulled(self._rods[0].left, self._left[0], 0)
+        yield SIDES["left"], self._held_or_pulled(self._rods[0].left, self._ends[0, 0], 0)
         for piece in range(len(self._sizes) - 1):
-            first, second = self._right[piece], self._left[piece + 1]
+            first, second = self._ends[1, piece], self._ends[0, piece + 1]
             whole = first != NO_ROW
             # The macro problem balances the force of each rod.
             macro = np.eye(int(whole.sum()))
             yield f"cut {piece + 1}-{piece + 2}", Perfect(first[whole], second[whole], macro)
-        yield SIDES["right"], self._held_or_pulled(self._rods[0].right, self._right[-1], -1)
+        yield SIDES["right"], self._held_or_pulled(self._rods[0].right, self._ends[1, -1], -1)
 
     def _held_or_pulled(self, end: End, rows: Indices, node: int) -> Interface:
         """Law of the ends of all rods; a spring that holds one is part of the rod."""
@@ -246,23 +252,18 @@ class CutRods:
     def _friction(self, rod: int) -> Contact:
         """Law of a rod on its support, or on the rod before it."""
         rods, units = self._rods[rod], (self._scales.displacement, self._scales.force)
-        component, macro = Component(self._side(rod)), None
+        component, macro = Component(self._sides[rod, self._rubs]), None
+        piece, nodes = self._piece[self._rubs], self._nodes[self._rubs]
         if self._lower:
-            component = Component(self._side(self._lower + rod - 1), self._side(rod - 1))
-            macro = _macro([len(nodes) for nodes in self._rubbing])
-        pieces = list(zip(self._sizes, self._rubbing, strict=True))
-        weights = rods.length * np.concatenate(
-            [tributary(size, 1.0 / rods.elements)[own] for size, own in pieces]
-        )
-        points: Indices = self._nodes - self._nodes[0]
-        if self._broken is not None and self._broken[0] in (rod, rod - 1):
-            piece = np.repeat(np.arange(len(pieces)), [len(own) for own in self._rubbing])
-            points += piece > self._broken[1]
+            above, below = self._sides[[self._lower + rod - 1, rod - 1], self._rubs]
+            component, macro = Component(above, below), _macro(np.bincount(piece).tolist())
+        weights = rods.length * (self._shares[self._rubs] / rods.elements)
+        # Where one of both is broken there are two points.
+        points = nodes - nodes[0] + self._beyond[max(rod - 1, 0) : rod + 1].max(axis=0)[piece]
         positions = np.zeros(points[-1] + 1)
-        positions[points] = self._places[rod][self._nodes]
-        known = rods.bounds[self._nodes] * weights[:, None] / units[1]
-        if rods.factors is not None:
-            known = known * rods.factors[rod - 1]
+        positions[points] = self._places[rod][nodes]
+        known = rods.bounds[nodes] * weights[:, None] / units[1]
+        known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
         # Around a node are half an element on either side, in series.
         soft = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
         around = 2.0 / (soft[:-1] + soft[1:]) * (units[0] / rods.length)
@@ -271,7 +272,7 @@ class CutRods:
             points=points,
             positions=positions,
             weights=weights,
-            around=Rod(around[self._nodes]),
+            around=Rod(around[nodes]),
             macro=macro,
         )
 

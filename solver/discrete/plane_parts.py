@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.plane import Condensed, dofs_of
 from solver.discrete.problem import Scales
+from solver.discrete.substructure import Elasticity
 
 HELD = 1e-9
 """Singular value, beside that of a translation, from which on what is prescribed hinders."""
@@ -23,17 +24,23 @@ class Part:
     ----------
     condensed
         Its stiffness, seen from its boundary rows.
+    elasticity
+        The same, with the search direction; equal parts share it.
     nodes
         Number of its nodes among those of all bodies, shape (n_rows, n_columns) of the mesh.
     body
         Number of its body.
+    rows
+        Boundary rows by joint or by the name of a side, shape (n_nodes, n_components) each.
     force
         Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
     """
 
     condensed: Condensed
+    elasticity: Elasticity
     nodes: Indices
     body: int
+    rows: Mapping[Hashable, Indices]
     force: Array | None
 
     @property
@@ -45,8 +52,7 @@ class Part:
 class Inside:
     """What lies inside condensed substructures, found when somebody looks.
 
-    Made of all substructures in order, the scaled positions of all nodes, (n_nodes, 2), and the
-    degrees of freedom of the problem among those of all nodes.
+    Made of all substructures in order, and the scaled positions of all nodes, (n_nodes, 2).
 
     Attributes
     ----------
@@ -59,25 +65,25 @@ class Inside:
         Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
     bodies, parts
         Body and substructure of every element, shape (n_elements,).
+    dofs
+        Degrees of freedom of the problem under those that each substructure keeps.
+    places
+        Scaled position of every degree of freedom of the problem, shape (n_dofs, 2).
     components
         Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
     """
 
     def __init__(
-        self,
-        parts: Sequence[Part],
-        positions: Array,
-        skeleton: Indices,
-        scales: Scales,
-        n_instants: int,
+        self, parts: Sequence[Part], positions: Array, scales: Scales, n_instants: int
     ) -> None:
-        length = scales.displacement
+        length, kept = scales.displacement, [part.dofs for part in parts]
+        skeleton = np.unique(np.concatenate(kept))
         self._parts, self._length, self._young = parts, length, scales.force / length
         self._size = len(skeleton), n_instants
-        self._dofs = [np.searchsorted(skeleton, part.dofs) for part in parts]
+        self.dofs = [np.searchsorted(skeleton, own) for own in kept]
         self.nodes: Array = positions * length
-        self._places = positions[skeleton // 2]
         self.grids: list[Indices] = [part.nodes for part in parts]
+        self.places = positions[skeleton // 2]
         corners = [part.nodes.ravel()[part.condensed.rectangle.cells] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(own) for own in corners]
@@ -89,7 +95,7 @@ class Inside:
         """Displacement of all nodes, (n_nodes, 2, n), m, by that of the degrees of freedom, m."""
         chosen = skeleton[:, instants] / self._length
         whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
-        for part, dofs in zip(self._parts, self._dofs, strict=True):
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
             force = None if part.force is None else part.force[:, instants]
             whole[part.nodes.ravel()] = part.condensed.recover(chosen[dofs], force)
         return whole * self._length
@@ -104,7 +110,7 @@ class Inside:
         # Substructures share the nodes on their cuts.
         counts = np.bincount(np.concatenate([part.nodes.ravel() for part in self._parts]))
         shares = weights / counts[:, None]
-        for part, dofs in zip(self._parts, self._dofs, strict=True):
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
             own = shares[part.nodes.ravel()].reshape(-1, 1)
             if own.any():
                 np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
@@ -131,12 +137,12 @@ class Inside:
         They move none of the degrees of freedom whose displacement is prescribed, `fixed`.
         """
         motions, bodies = [], np.empty(len(self.components), dtype=np.intp)
-        for part, dofs in zip(self._parts, self._dofs, strict=True):
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
             bodies[dofs] = part.body
         for body in np.unique(bodies):
             own = np.flatnonzero(bodies == body)
             along = self.components[own] == 0
-            x, y = (self._places[own] - self._places[own].mean(axis=0)).T
+            x, y = (self.places[own] - self.places[own].mean(axis=0)).T
             modes = np.stack([along, ~along, np.where(along, -y, x)], axis=1).astype(float)
             _, sizes, ways = np.linalg.svd(modes[np.isin(own, fixed)], full_matrices=True)
             hindered = np.count_nonzero(sizes > HELD)

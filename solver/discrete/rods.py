@@ -11,7 +11,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.cut_rods import SIDES, CutRods
 from solver.discrete.probes import Probe, constant, reaction
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError, check_range
@@ -81,7 +81,7 @@ class Rods:
         Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or where it changes
         with time (n_nodes, n_instants).
     factors
-        On the bound of each interface between several rods, shape (wires - 1,); None is 1.
+        On the bound of each interface between several rods, shape (wires - 1,), or of all.
     left, right
         The ends of every rod.
     instants, duration
@@ -128,7 +128,7 @@ class Rods:
     body_force: Array | None = None
     strain: Array | None = None
     settlement: Array | None = None
-    factors: Array | None = None
+    factors: Array | float = 1.0
     section: Array | None = None
     pressure: Array | None = None
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
@@ -204,15 +204,14 @@ class Rods:
     @property
     def rubbing_sides(self) -> int:
         """Neighbours of the broken rod."""
-        return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
+        return 0 if self.broken is None else 1 + (1 < self.broken[0] < self.wires)
 
     def discretise(self) -> Problem:
         """Make the discrete problem.
 
-        Lengths are scaled by L, forces by ES of one rod (solver/README.md, 1). On the support the
-        interface is "friction"; "contact 1-2" lies between rods 1 and 2, the second being the body
-        above. Its points run along the rods; at the break of either there are two, one for each of
-        the parts that have come apart.
+        On the support the interface is "friction"; "contact 1-2" lies between rods 1 and 2, the
+        second being the body above. Its points run along the rods; at the break of either there are
+        two, one for each of the parts that have come apart.
 
         Between rods held ends do not rub: nothing slips there, and friction could not be told from
         the reactions.
@@ -222,8 +221,7 @@ class Rods:
             names = [f"contact {number}-{number + 1}" for number in range(1, self.wires)]
             rub_at_ends = not self.left.is_prescribed, not self.right.is_prescribed
         rods, places = [self] * self.wires, [self.nodes] * self.wires
-        scales = Scales(self.length, self.stiffness, self.duration)
-        return CutRods(rods, places, names, rub_at_ends, scales).problem()
+        return CutRods(rods, places, names, rub_at_ends).problem()
 
     def loop(self, problem: Problem) -> Loop:
         """Mean force on the ends that are driven over their mean displacement.
@@ -332,8 +330,3 @@ class Rods:
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements
                 yield Hold("support", "bottom", (float(first), float(last)))
-
-
-def neighbours(wire: int, wires: int) -> int:
-    """Number of neighbours that a rod of several has, numbered from 1."""
-    return (wire > 1) + (wire < wires)

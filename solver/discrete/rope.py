@@ -1,9 +1,15 @@
-"""A strand of helical wires that is bent: rods, each on a support of its own.
+"""A strand of helical wires that is bent: rods, each on a support that is stretched with it.
+
+Plane sections of the strand stay plane, so a curvature kappa stretches what a wire lies on by
+kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at which the wire stands.
+Of the wire's displacement only what it slips on its support is unknown, and that is a rod's on a
+rigid support under the body force that the support's stretch brings about (K.-O. Papailiou, On the
+bending stiffness of transmission line conductors, IEEE Trans. Power Delivery 12, 1997). Its growth
+of tension by friction (the capstan term) is left out, as are wires beside each other.
 
 Degrees of freedom run along wire after wire; each is what the wire slips on its support. Ends are
 held: neither an extreme fibre slips, nor what a clamp grips. So friction there could not be told
 from the reactions, and they are no points of the interfaces, one a wire, "wire LAYER.NUMBER".
-Lengths are scaled by the longest wire, forces by E A of the stiffest (solver/README.md, 1).
 """
 
 from __future__ import annotations
@@ -13,12 +19,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete.cross_section import CrossSection, WireLayer
 from solver.discrete.cut_rods import CutRods
-from solver.discrete.helical_wire import HelicalWire
 from solver.discrete.probes import Probe, constant
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
@@ -32,10 +37,12 @@ class RopeWire:
     ----------
     layer, number
         From 0 on, inside out and around.
-    helix
-        Its geometry and stiffness E A.
     made
-        Of what: the wire's cross-section and Young's modulus.
+        Of what, and how it is laid: all wires of its layer.
+    radius
+        Of the helix of its centre line, R, m.
+    start
+        Polar angle theta at its beginning, from the outermost fibre, rad.
     length
         Of the wire, m.
     bound
@@ -50,8 +57,9 @@ class RopeWire:
 
     layer: int
     number: int
-    helix: HelicalWire
     made: WireLayer
+    radius: float
+    start: float
     length: float
     bound: float | Array
     curvature: Array
@@ -71,7 +79,50 @@ class RopeWire:
     @property
     def along(self) -> Array:
         """Places of the nodes along the strand, z, shape (n_nodes,), m."""
-        return np.asarray(np.cos(self.helix.lay) * self.arc)
+        return np.asarray(np.cos(self.made.lay) * self.arc)
+
+    @property
+    def angle(self) -> Array:
+        """Theta at the nodes, shape (n_nodes,), rad."""
+        return np.asarray(self.start + self.arc * np.sin(self.made.lay) / self.radius)
+
+    def stuck_force(self, columns: slice | Indices = slice(None)) -> Array:
+        """Change of its force in the elements while all sticks, (n_elements, n_columns), N."""
+        stuck = self._stuck_force(columns)
+        return np.asarray(0.5 * (stuck[1:] + stuck[:-1]))
+
+    def _stuck_force(self, columns: slice | Indices) -> Array:
+        """The same at the nodes."""
+        stretch = self.made.stiffness * self.radius * np.cos(self.made.lay) ** 2
+        return np.asarray((stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns])
+
+    def body_force(self) -> Array:
+        """Force per length that stands for the stretch of what it lies on.
+
+        It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the wire
+        included, in differences of the elements' forces: equilibrium holds exactly on the mesh.
+        Shape (n_nodes, n_instants), N/m.
+        """
+        stuck, arc = self._stuck_force(slice(None)), self.arc
+        force = np.concatenate([stuck[:1], 0.5 * (stuck[1:] + stuck[:-1]), stuck[-1:]])
+        length = np.concatenate([arc[:1], 0.5 * (arc[1:] + arc[:-1]), arc[-1:]])
+        return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
+
+    def levers(self, *, at_beginning: bool) -> Array:
+        """What a newton in each element adds to the moment of the strand, (n_elements,), N m.
+
+        Either to that at the wire's beginning, where the force follows from the first two elements,
+        in whose middles it is known; or to the mean, which as many wires, evenly laid, have
+        together at every section.
+        """
+        arc, arm = self.arc, self.radius * np.cos(self.made.lay)
+        if not at_beginning:
+            around = np.diff(np.sin(self.angle)) * self.radius / np.sin(self.made.lay)
+            return np.asarray(arm * around / (arc[-1] - arc[0]))
+        levers = np.zeros(len(arc) - 1)
+        shares = np.array([1.5, -0.5])[: len(levers)]
+        levers[:2] = arm * np.cos(self.start) * shares / shares.sum()
+        return levers
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,20 +168,10 @@ class Rope:
         return len(self.wires[0].curvature) - 1
 
     @property
-    def length(self) -> float:
-        """Of the longest wire, m."""
-        return max(wire.length for wire in self.wires)
-
-    @property
     def seen_length(self) -> float:
         """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
         longest = max(float(wire.along[-1]) for wire in self.wires)
         return longest if self.is_clamped else 2.0 * longest
-
-    @property
-    def stiffness(self) -> float:
-        """Axial stiffness of the stiffest wire, N."""
-        return max(wire.helix.stiffness for wire in self.wires)
 
     def discretise(self) -> Problem:
         """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
@@ -141,15 +182,14 @@ class Rope:
             [self._rod(wire) for wire in self.wires],
             [wire.along for wire in self.wires],
             [wire.name for wire in self.wires],
-            (False, False),
-            Scales(self.length, self.stiffness, self.duration),
+            rub_at_ends=(False, False),
         ).problem()
 
     def _rod(self, wire: RopeWire) -> Rods:
         held = End(displacement=np.zeros(len(self.instants)))
         return Rods(
             length=wire.length,
-            stiffness=wire.helix.stiffness,
+            stiffness=wire.made.stiffness,
             elements=self.elements,
             substructures=self.substructures,
             bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
@@ -157,7 +197,7 @@ class Rope:
             right=held,
             instants=self.instants,
             duration=self.duration,
-            body_force=wire.helix.body_force(wire.arc, wire.curvature),
+            body_force=wire.body_force(),
             friction_law=self.friction_law,
         )
 
@@ -169,13 +209,10 @@ class Rope:
         """
         weights, stuck = [], self.section.slipping_bending * self.curvature
         for wire in self.wires:
-            helix, arc = wire.helix, wire.arc
-            find = helix.levers_at_beginning if self.is_clamped else helix.mean_levers
-            levers = wire.stands_for * find(arc)
-            spring = helix.stiffness * levers / np.diff(arc)
-            weights.append(np.concatenate([[0.0], spring]) - np.concatenate([spring, [0.0]]))
-            force = helix.stuck_force(arc, wire.curvature)
-            stuck = stuck + levers @ (0.5 * (force[1:] + force[:-1]))
+            levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
+            spring = wire.made.stiffness * levers / np.diff(wire.arc)
+            weights.append(-np.diff(spring, prepend=0.0, append=0.0))
+            stuck = stuck + levers @ wire.stuck_force()
         together = np.concatenate(weights)
         dofs = np.flatnonzero(together)
         return Probe(dofs, together[dofs], stuck)

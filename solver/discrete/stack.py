@@ -13,7 +13,7 @@ from solver.arrays import Array, Indices, without_residue
 from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
-from solver.discrete.stack_problem import CutStack
+from solver.discrete.stack_problem import problem_of
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
 
@@ -101,12 +101,10 @@ class Stack:
     ----------
     length, height
         Of one body, m.
-    bodies
-        Number of equal bodies on each other.
     bricks
-        Where bodies are and how large, on the grid of the elements of one; None is `bodies` on each
-        other. What is given on the left and the right holds for those which reach farthest, and on
-        top and bottom for all that lies open there.
+        Where bodies are and how large, on the grid of the elements of one; None is a single one.
+        What is given on the left and the right holds for those which reach farthest, and on top and
+        bottom for all that lies open there.
     groups
         Number of the group of each body, shape (bodies,), or None: bodies of one group pass no
         macro forces to each other.
@@ -150,7 +148,6 @@ class Stack:
     poisson: float
     instants: Array
     duration: float
-    bodies: int = 1
     order: int = 1
     macro_degree: int = 1
     state: str = "strain"
@@ -174,9 +171,7 @@ class Stack:
     @cached_property
     def rectangles(self) -> Sequence[Brick]:
         """Every body on the grid of elements."""
-        along, up = self.elements
-        pile = [Brick(0, number * up, along, up) for number in range(self.bodies)]
-        return pile if self.bricks is None else self.bricks
+        return [Brick(0, 0, *self.elements)] if self.bricks is None else self.bricks
 
     @cached_property
     def is_pile(self) -> bool:
@@ -226,7 +221,7 @@ class Stack:
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
-        return CutStack(self).problem()
+        return problem_of(self)
 
     def loop(self, problem: Problem) -> Loop:
         """Spring force on a slope, shear force on a support, or what bends the end."""

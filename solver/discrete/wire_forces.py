@@ -40,20 +40,20 @@ def cut_at(rope: Rope, place: float) -> CutWires:
     """
     cuts = []
     for number, wire in enumerate(rope.wires):
-        helix = wire.helix
-        starts = helix.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
-        arc = place / np.cos(helix.lay)
+        lay = wire.made.lay
+        starts = wire.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
+        arc = place / np.cos(lay)
         if rope.is_clamped:
             arc = min(arc, wire.length)
-        angles = starts + arc * np.sin(helix.lay) / helix.radius
+        angles = starts + arc * np.sin(lay) / wire.radius
         arcs, sides = np.full(len(angles), arc), np.ones(len(angles))
         if not rope.is_clamped:
-            turned = np.sign(helix.lay) * angles
+            turned = np.sign(lay) * angles
             sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
             arcs = np.arccos(np.cos(turned)) / np.pi * wire.length
         cuts.append((np.full(len(angles), number), angles, arcs, sides))
     which, angle, arc, side = (np.concatenate(one) for one in zip(*cuts, strict=True))
-    radius = np.array([wire.helix.radius for wire in rope.wires])[which]
+    radius = np.array([wire.radius for wire in rope.wires])[which]
     centres = radius[:, None] * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     return CutWires(which, centres, arc, side)
 
@@ -67,9 +67,8 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
     slips = np.split(displacement[:, columns], len(rope.wires))
     forces = []
     for wire, slip in zip(rope.wires, slips, strict=True):
-        stuck = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
-        spring = wire.helix.stiffness / np.diff(wire.arc)
-        change = spring[:, None] * np.diff(slip, axis=0) + 0.5 * (stuck[1:] + stuck[:-1])
+        spring = wire.made.stiffness / np.diff(wire.arc)
+        change = spring[:, None] * np.diff(slip, axis=0) + wire.stuck_force(columns)
         forces.append(wire.tension[columns] + change)
     return np.stack(forces)
 

@@ -16,7 +16,7 @@ from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
 from solver.friction_settings import STIFFNESSES
 from solver.loads import interpolate
-from solver.profiles import harmonic_means, means, shares_of
+from solver.profiles import harmonic_means, means
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
@@ -262,9 +262,10 @@ class BarSettings(Settings):
 
     def sentence(self) -> str:
         """The bar in a sentence."""
-        bound = self.law.without_slip(self.structure().bound)
+        rods = self.structure()
+        bound = self.law.without_slip(rods.bound)
         table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-        rests, moved = bar_ends.ends_in_words(self)
+        rests, moved = bar_ends.ends_in_words(rods)
         clauses = [moved] if moved else []
         for path, words in DONE.items():
             if self.acts(path):
@@ -284,7 +285,9 @@ class BarSettings(Settings):
 
     def _bound(self, nodes: Array) -> Array:
         """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
-        density = self.friction * self._density(nodes)
+        density = self.friction * shared.at_nodes(
+            self, nodes, "friction_profile", "pressure_profile"
+        )
         if self.pressure_load == "steady":
             return density * self.pressure
         return np.outer(density, self.path("pressure_load"))
@@ -293,11 +296,14 @@ class BarSettings(Settings):
         """Refuse more force than friction carries, where it alone holds the bar."""
         if {self.left_end, self.right_end} & set(bar_ends.HOLDING):
             return
-        nodes = np.linspace(0.0, self.length, self.elements + 1)
-        bound = self.law.without_slip(self._bound(nodes)) * self.law.strongest
-        shares = tributary(self.elements, self.length / self.elements)
+        rods = self.structure()
+        bound = self.law.without_slip(rods.bounds) * self.law.strongest
+        shares = tributary(self.elements) * (self.length / self.elements)
         most = np.broadcast_to(shares @ bound, (self.n_instants,))
-        total = np.abs(bar_ends.total_force(self))
+        forces = [end.force for end in rods.ends.values() if end.force is not None]
+        if rods.body_force is not None:
+            forces.append(self.length * rods.body_force)
+        total = np.abs(sum(forces, np.zeros(self.n_instants)))
         worst = int(np.argmax(total - most))
         if total[worst] >= (1.0 - SLACK) * most[worst]:
             raise self.refusal(
@@ -323,11 +329,3 @@ class BarSettings(Settings):
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))
         return mean, factors / mean
-
-    def _density(self, nodes: Array) -> Array:
-        """Factors on mu and p together: presets at the nodes, tables over their shares."""
-        names = "friction_profile", "pressure_profile"
-        mu, pressure = tables = [self.points(name) for name in names]
-        if all(isinstance(getattr(self, name), str) for name in names):
-            return interpolate(mu, nodes) * interpolate(pressure, nodes)
-        return means(tables, shares_of(nodes))

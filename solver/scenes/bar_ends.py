@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import param
 
-from solver.arrays import Array
 from solver.definitions import CurveParameter, choice, quantity
-from solver.discrete.rods import End
+from solver.discrete.rods import End, Rods
 from solver.scenes.shared import sized_path
 from solver.scenes.words import acting, listed
 
@@ -82,39 +81,22 @@ def end_of(settings: Any, side: str) -> End:
     return End(displacement=settings.path(paths["displacement"]), spring=stiffness)
 
 
-def ends_in_words(settings: Any) -> tuple[str, str]:
+def ends_in_words(rods: Rods) -> tuple[str, str]:
     """How the ends are held or left alone, and what is done to them."""
     still: dict[str, list[str]] = {}
     moved = []
-    for side in ("right", "left"):
-        kind, the = getattr(settings, f"{side}_end"), f"its {side} end"
-        if kind == "pulled":
-            path = settings.path(PATHS[side]["force"])
-            moved.append(f"{the} is {acting(_outward(side, path), 'pulled', 'pushed')}")
-            continue
-        path = None if kind == "free" else settings.path(PATHS[side]["displacement"])
-        if path is not None and path.any():
-            at = f"the spring at {the}" if kind == "spring" else the
-            moved.append(f"{at} is {acting(path, 'moved', 'moved back')}")
+    for side, end in rods.ends.items():
+        the = f"its {side} end"
+        if end.force is not None:
+            outward = end.force if side == "right" else -end.force
+            moved.append(f"{the} is {acting(outward, 'pulled', 'pushed')}")
+        elif end.displacement is not None and end.displacement.any():
+            at = f"the spring at {the}" if end.is_on_spring else the
+            moved.append(f"{at} is {acting(end.displacement, 'moved', 'moved back')}")
         else:
-            word = {"held": "held", "spring": "on a spring", "free": "free"}[kind]
+            word = "on a spring" if end.is_on_spring else "held" if end.is_prescribed else "free"
             still.setdefault(word, []).append(the)
     rests = [
         f"{word} at {'both ends' if len(ends) == 2 else ends[0]}" for word, ends in still.items()
     ]
     return listed(rests) if rests else "", ", and ".join(moved)
-
-
-def _outward(side: str, path: Array) -> Array:
-    return path if side == "right" else -path
-
-
-def total_force(settings: Any) -> Array:
-    """All forces that are given, shape (n_instants,), N."""
-    total = np.zeros(settings.n_instants)
-    for side, paths in PATHS.items():
-        if getattr(settings, f"{side}_end") == "pulled":
-            total = total + settings.path(paths["force"])
-    if settings.acts("body_load"):
-        total = total + settings.length * settings.path("body_load")
-    return total

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import (
     Rows,
     choice,
@@ -17,9 +18,9 @@ from solver.definitions import (
     redefined,
 )
 from solver.discrete.bricks import Brick
+from solver.discrete.cut_stack import ends_along
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
-from solver.discrete.stack_problem import ends_along
 from solver.discrete.structure import LoopFields
 from solver.loads import PRESETS
 from solver.profiles import UNSEEN
@@ -183,25 +184,22 @@ class LayersSettings(PlaneSettings):
         return self.layers - 1
 
     @property
-    def spans(self) -> tuple[int, ...] | None:
-        """Elements along every layer; None where all are as long."""
-        if self.layer_lengths == "equal":
-            return None
-        shares = np.array([share for _, share in self.points("layer_lengths")])
-        return tuple(np.maximum(np.rint(shares * self.elements), 1).astype(int).tolist())
+    def spans(self) -> tuple[int, ...]:
+        """Elements along every layer."""
+        return tuple(np.maximum(np.rint(self._shares * self.elements), 1).astype(int).tolist())
+
+    @property
+    def _shares(self) -> Array:
+        return np.array(self.points("layer_lengths"))[:, 1]
 
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all layers."""
-        if self.spans is None:
-            return super().n_nodes
         return sum(self.order * span + 1 for span in self.spans) * self.nodes[1]
 
     @property
     def n_substructures(self) -> int:
         """Number of substructures in all."""
-        if self.spans is None:
-            return super().n_substructures
         ends = ends_along(self.elements, self.substructures, self.spans)
         columns = sum(int(np.count_nonzero(ends <= span)) for span in self.spans)
         return columns * int(self.substructures_up)
@@ -219,8 +217,6 @@ class LayersSettings(PlaneSettings):
         shared.factors_of(self)
 
     def _check_lengths(self) -> None:
-        if isinstance(self.layer_lengths, str):
-            return
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
             raise self.refusal(
@@ -232,23 +228,18 @@ class LayersSettings(PlaneSettings):
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, and how far layers end from where given."""
         yield from super().left_out()
-        if self.spans is not None:
-            shares = np.array([share for _, share in self.points("layer_lengths")])
-            off = float(np.abs(np.array(self.spans) / self.elements - shares).max())
-            if off > UNSEEN:
-                yield (
-                    f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} % of "
-                    "the length from where they should; more elements come nearer"
-                )
+        off = float(np.abs(np.array(self.spans) / self.elements - self._shares).max())
+        if off > UNSEEN:
+            yield (
+                f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} % of the "
+                "length from where they should; more elements come nearer"
+            )
 
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""
-        rest, stack = np.zeros(self.n_instants), self.stack()
-        factors, friction = shared.factors_of(self), stack.friction
-        if self.spans is not None:
-            up = self.elements_up
-            bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
-            stack = replace(stack, bricks=bricks)
+        rest, stack, up = np.zeros(self.n_instants), self.stack(), self.elements_up
+        bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
+        stack = replace(stack, bricks=bricks)
         held, free = Given(True, rest), Given(False, rest)
         pressing = self.path("pressure_load")
         pull = self.path("pull_load")
@@ -265,7 +256,7 @@ class LayersSettings(PlaneSettings):
             right = Side(Given(False, pull, extreme, each_body=True), free)
         return replace(
             stack,
-            friction=friction if factors is None else factors[:, None] * friction,
+            friction=shared.factors_of(self)[:, None] * stack.friction,
             stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
             sides={
                 "left": Side(held, held),

@@ -14,8 +14,6 @@ from solver.arrays import Array
 from solver.definitions import POSITIVE, choice, count, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.laws import FrictionLaw
-from solver.loads import interpolate
-from solver.profiles import means, shares_of
 from solver.refusal import plain
 from solver.settings import Features, Settings
 
@@ -177,10 +175,8 @@ class PlaneSettings(Settings):
 
     def factor_at_nodes(self, profile: str) -> Array:
         """Factor of a profile at the nodes along a body; of a table, its mean over their shares."""
-        places, table = np.linspace(0.0, self.length, self.nodes[0]), getattr(self, profile)
-        if isinstance(table, str):
-            return interpolate(self.points(profile), places)
-        return means([table], shares_of(places, self.order))
+        places = np.linspace(0.0, self.length, self.nodes[0])
+        return shared.at_nodes(self, places, profile, order=self.order)
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
@@ -229,7 +225,6 @@ class PlaneSettings(Settings):
         return Stack(
             length=self.length,
             height=getattr(self, self.across),
-            bodies=self.n_bodies,
             elements=(self.elements, self.elements_up),
             substructures=(self.substructures, self.substructures_up),
             order=self.order,

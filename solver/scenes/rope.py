@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Array
 from solver.definitions import (
     POSITIVE,
     Rows,
@@ -19,8 +18,12 @@ from solver.definitions import (
     quantity,
     redefined,
 )
-from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.cross_section import (
+    CONSTRUCTIONS,
+    MOST_LAYERS,
+    CrossSection,
+    laid,
+)
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields
@@ -28,15 +31,10 @@ from solver.laws import FrictionLaw
 from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
-from solver.refusal import plain
+from solver.refusal import RefusedError
 from solver.scenes.words import acting, counted
 from solver.settings import Features, Icon, Settings
 
-TIGHT = 1.01
-"""Radius that wires beside each other need, over that of their helix, up to which they fit: those
-of real strands touch each other, and are pressed a little out of round."""
-LEAST_LAY = 0.1
-"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of diameters."""
 MOST_WIRES = 1000
 """Of a construction of one's own."""
 
@@ -212,9 +210,9 @@ class RopeSettings(Settings):
     @property
     def contact_unit(self) -> float:
         """Unit of `contact_stiffness`, N/m^2."""
-        helices = [self.section.helix(layer, 0) for layer in range(len(self.section.layers))]
-        longest = max(self._length_of(helix) for helix in helices)
-        return float(max(helix.stiffness for helix in helices) / longest**2)
+        layers = self.section.layers
+        longest = max(self._length_of(layer) for layer in range(len(layers)))
+        return float(max(layer.stiffness for layer in layers) / longest**2)
 
     def check_together(self) -> None:
         """Refuse a curvature that no fall-off is known of."""
@@ -244,8 +242,23 @@ class RopeSettings(Settings):
         bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
         if self.tension_load == "steady":
             bounds = bounds[:, 0]
+        share = np.ones(self.elements + 1)
+        if self.is_clamped:
+            share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
+        along = np.outer(share, curvature)
         wires = [
-            self._wire(layer, number, bounds[layer], curvature, tension)
+            RopeWire(
+                layer=layer,
+                number=number,
+                made=own,
+                radius=self.section.radii[layer],
+                start=2.0 * np.pi * number / own.wires,
+                length=self._length_of(layer),
+                bound=bounds[layer],
+                curvature=along,
+                tension=self.section.wire_tension(layer, tension),
+                stands_for=1 if self.is_clamped else own.wires,
+            )
             for layer, own in enumerate(self.section.layers)
             for number in range(own.wires if self.is_clamped else 1)
         ]
@@ -261,30 +274,12 @@ class RopeSettings(Settings):
             friction_law=self.law,
         )
 
-    def _length_of(self, helix: HelicalWire) -> float:
-        """Length of a wire that is seen, m."""
+    def _length_of(self, layer: int) -> float:
+        """Length of its wires that is seen, m: down to the clamp, or half round the strand."""
+        lay = self.section.layers[layer].lay
         if self.is_clamped:
-            return float(self.length / np.cos(helix.lay))
-        return float(helix.half_pitch)
-
-    def _wire(
-        self, layer: int, number: int, bound: Array, curvature: Array, tension: Array
-    ) -> RopeWire:
-        section, helix = self.section, self.section.helix(layer, number)
-        own, share = section.layers[layer], np.ones(self.elements + 1)
-        if self.is_clamped:
-            share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
-        return RopeWire(
-            layer=layer,
-            number=number,
-            helix=helix,
-            made=own,
-            length=self._length_of(helix),
-            bound=bound,
-            curvature=np.outer(share, curvature),
-            tension=section.wire_tension(layer, tension),
-            stands_for=1 if self.is_clamped else own.wires,
-        )
+            return float(self.length / np.cos(lay))
+        return float(np.pi * self.section.radii[layer] / abs(np.sin(lay)))
 
     def sentence(self) -> str:
         """The strand in a sentence."""
@@ -299,7 +294,7 @@ class RopeSettings(Settings):
         tension = self.path("tension_load")
         is_known = not self.is_clamped and self.law == FrictionLaw()
         factors = shared.factors_of(self)
-        rubs = self.friction and (factors is None or factors.all())
+        rubs = self.friction and factors.all()
         if not is_known or np.ptp(tension) or not tension[0] or not rubs:
             return None
         return BentStrand(self.section, self.friction, float(tension[0]), factors)
@@ -313,35 +308,12 @@ class RopeSettings(Settings):
 
 
 def _section_of(rows: Rows) -> CrossSection:
-    """Cross-section of one's own.
-
-    Raises
-    ------
-    SettingError
-        For what is no core in a layer of wires or more, and wires that have no room.
-    """
-
-    def refuse(remedy: str) -> SettingError:
-        allowed = "rows (wires, diameter, lay angle, modulus) from the core outwards"
-        return SettingError("construction", rows, allowed, remedy)
-
-    if rows[0][0] != 1 or rows[0][2]:
-        raise refuse("row 1 is the core: give it 1 wire and a lay angle of 0°")
-    if len(rows) == 1:
-        raise refuse("it has a core alone: add a row for a layer of wires around it")
-    wires = sum(int(count) for count, *_ in rows)
-    if wires > MOST_WIRES:
-        raise refuse(f"it has {wires} wires: give at most {MOST_WIRES}")
-    for row, (_, _, lay, _) in enumerate(rows[1:], start=2):
-        if abs(lay) < LEAST_LAY:
-            raise refuse(f"row {row}: give a lay angle of {plain(LEAST_LAY)}° or more in size")
-    section = laid(rows)
-    for layer, radius in enumerate(section.radii):
-        needed, (count, diameter, lay, _) = section.least_radius(layer), rows[layer + 1]
-        if needed > TIGHT * radius:
-            raise refuse(
-                f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do not fit beside "
-                f"each other on a circle of {2.0 * np.pi * radius:.3g} m, they need "
-                f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more inside"
-            )
+    """Cross-section of one's own."""
+    try:
+        section = laid(rows)
+    except RefusedError as refused:
+        raise SettingError("construction", rows, refused.allowed, refused.remedy) from refused
+    if section.wires > MOST_WIRES:
+        remedy = f"it has {section.wires}: leave some out"
+        raise SettingError("construction", rows, f"at most {MOST_WIRES} wires", remedy)
     return section

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -11,7 +12,8 @@ import param
 
 from solver.arrays import Array
 from solver.definitions import POSITIVE, CurveParameter, Rows, curve, quantity
-from solver.loads import PRESETS, PRESSURES, Preset
+from solver.loads import PRESETS, PRESSURES, Preset, interpolate
+from solver.profiles import means, shares_of
 from solver.settings import Settings
 
 PROFILES = {
@@ -77,6 +79,22 @@ def profile(
 
 def _over_length(shares: Rows, settings: Settings) -> Rows:
     return tuple((share * settings.length, factor) for share, factor in shares)
+
+
+def at_nodes(settings: Settings, places: Array, *profiles: str, order: int = 1) -> Array:
+    """Product of the factors of profiles at nodes; of tables, its mean over their shares.
+
+    Parameters
+    ----------
+    settings, profiles
+        Whose, and the names of one or two of them.
+    places, order
+        Of the nodes, shape (n_nodes,), m; order of their elements.
+    """
+    tables = [settings.points(name) for name in profiles]
+    if all(isinstance(getattr(settings, name), str) for name in profiles):
+        return math.prod((interpolate(table, places) for table in tables), start=np.ones(1))
+    return means(tables, shares_of(places, order))
 
 
 def friction_factors(which: str) -> CurveParameter:
@@ -166,16 +184,14 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
     )
 
 
-def factors_of(settings: Any) -> Array | None:
-    """Factor on mu of each interface, shape (n_interfaces,); None where mu is the same.
+def factors_of(settings: Any) -> Array:
+    """Factor on mu of each interface, shape (n_interfaces,).
 
     Raises
     ------
     SettingError
         For a table that lacks an interface, or has others.
     """
-    if isinstance(settings.friction_factors, str):
-        return None
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
@@ -199,7 +215,7 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
     SettingError
         For a table that lacks one, or has others.
     """
-    table = getattr(settings, name)
+    table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
         raise settings.refusal(

@@ -11,7 +11,7 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import POSITIVE, choice, count, quantity, redefined
 from solver.discrete.problem import Problem
-from solver.discrete.rods import End, Rods, neighbours
+from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
@@ -199,10 +199,7 @@ class StrandSettings(Settings):
         if self.grip != "force" or not self.broken:
             return
         share = 1.0 - self._break_node() / self.elements
-        sides, factors = neighbours(self.broken, self.wires), shared.factors_of(self)
-        beside = [1.0] * sides
-        if factors is not None:
-            beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
+        beside = shared.factors_of(self)[max(self.broken - 2, 0) : self.broken].tolist()
         pressed = self.friction * self.path("pressure_load")
         bound = np.sum([self.law.without_slip(factor * pressed) for factor in beside], axis=0)
         most = share * self.length * bound * self.law.strongest

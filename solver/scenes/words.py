@@ -27,16 +27,17 @@ AGAIN = 2
 """Times that a load comes and goes from which it does so again and again."""
 
 
-TO_AND_FRO, LET_GO = "{} to and fro", "{} and let go"
-
-
 def counted(number: int) -> str:
     """A number as a word, if it is small."""
     return NUMBERS[number] if number < len(NUMBERS) else str(number)
 
 
 def acting(
-    path: Array, forward: str, backward: str, both: str = TO_AND_FRO, back: str = LET_GO
+    path: Array,
+    forward: str,
+    backward: str,
+    both: str = "{} to and fro",
+    back: str = "{} and let go",
 ) -> str:
     """What is done over time by a load: forward where it is positive, backward, or both.
 

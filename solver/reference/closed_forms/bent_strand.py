@@ -17,8 +17,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.cross_section import CrossSection, WireLayer
 from solver.reference.closed_forms.masing import energy_of_cycle, masing
 
 
@@ -29,12 +28,15 @@ class BentWire:
     Attributes
     ----------
     wire
-        Its geometry and stiffness.
+        Its layer.
+    radius
+        Of its helix, m.
     bound
         Friction bound mu q per length of wire, N/m, above 0.
     """
 
-    wire: HelicalWire
+    wire: WireLayer
+    radius: float
     bound: float
 
     @property
@@ -52,9 +54,9 @@ class BentWire:
             Grown from zero, of any shape, 1/m.
         """
         wire = self.wire
-        force = self.bound * wire.radius / abs(np.sin(wire.lay))
+        force = self.bound * self.radius / abs(np.sin(wire.lay))
         share = np.array([self._share(float(kappa)) for kappa in np.ravel(curvature)])
-        moment = wire.radius * np.cos(wire.lay) * force * share
+        moment = self.radius * np.cos(wire.lay) * force * share
         return np.asarray(moment.reshape(np.shape(curvature)))
 
     def energy(self, peak: float) -> float:
@@ -86,14 +88,13 @@ class BentStrand:
     tension
         N, above 0.
     factors
-        On mu of every layer and what it lies on, shape (n_layers,), above 0; None where it is the
-        same.
+        On mu of every layer and what it lies on, shape (n_layers,), above 0.
     """
 
     section: CrossSection
     friction: float
     tension: float
-    factors: Array | None = None
+    factors: Array
 
     @cached_property
     def layers(self) -> tuple[BentWire, ...]:
@@ -101,7 +102,7 @@ class BentStrand:
         tension = np.array([self.tension])
         bounds = self.section.friction_bounds(tension, self.friction, self.factors)[:, 0]
         return tuple(
-            BentWire(self.section.helix(number), float(bound))
+            BentWire(self.section.layers[number], self.section.radii[number], float(bound))
             for number, bound in enumerate(bounds)
         )
 

@@ -227,7 +227,7 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     on what they took over, where friction is not Coulomb's, or not the same between all wires, or
     where the bound changes with time and the grip is rigid or wires slip away from the break.
     """
-    if scene.friction_law != FrictionLaw() or scene.factors is not None:
+    if scene.friction_law != FrictionLaw() or np.any(scene.factors != 1.0):
         return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None

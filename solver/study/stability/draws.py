@@ -192,9 +192,8 @@ def _scales(kind: Any, given: Mapping[str, Any], generator: Generator) -> dict[s
     if "construction" in given:
         names = {"construction", "layers"} & given.keys()
         section = kind.checked({name: given[name] for name in names}).section
-        helix = section.helix(len(section.layers) - 1)
         strain = 10.0 ** generator.uniform(-4.0, -2.0)
-        bent = strain * abs(math.sin(helix.lay)) / helix.radius
+        bent = strain * abs(math.sin(section.layers[-1].lay)) / section.radii[-1]
         return {"N": section.stiffness * strain, "1/m": bent}
     length = given["length"]
     if "section" in given:
