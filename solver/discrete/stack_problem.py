@@ -36,6 +36,7 @@ from solver.laws import (
     Perfect,
     Unilateral,
 )
+from solver.laws.friction import softness_of
 
 if TYPE_CHECKING:
     from solver.discrete.stack import Given, Side, Spring, Stack
@@ -378,7 +379,7 @@ class CutStack:
             friction = replace(friction, bound=friction.bound * (gap <= 0.0)[:, None])
         normal = None
         if across:
-            softness = law.softness_across(areas, scales)
+            softness = softness_of(law.normal_stiffness, areas, scales)
             normal = Unilateral(component=across[0], gap=gap, softness=softness)
         macro = None
         if self._has_macro(joints[0]):
