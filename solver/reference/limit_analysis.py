@@ -99,16 +99,12 @@ def collapse_of(problem: Problem) -> Collapse | None:
         if share < WHOLE:
             first = times[max(instant - 1, 0)]
             time = float(first + share * (times[instant] - first))
-            mechanism = _mechanism(program.eqlin.marginals, problem.motions)
+            shares = np.zeros(len(loads)) if program.status else program.eqlin.marginals
+            moved = -problem.motions @ shares
+            mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
             return Collapse(time, instant, mechanism, _tips(problem, mechanism))
         before = now
     return None
-
-
-def _mechanism(marginals: Array | None, motions: Array) -> Array:
-    """Rigid motions that the dual of the program says, shape (n_dofs,); none without a dual."""
-    moved = np.zeros(len(motions)) if marginals is None else -motions @ marginals
-    return np.asarray(moved / (np.abs(moved).max(initial=0.0) or 1.0))
 
 
 def _tips(problem: Problem, mechanism: Array) -> bool:
