@@ -66,12 +66,11 @@ def collapse_of(problem: Problem) -> Collapse | None:
     holds = sparse.csc_array((jumps(problem) @ motions).T)
     size = len(rules.gap)
     rubs = np.flatnonzero(~rules.normal)
-    rows, ones = np.arange(len(rubs)), np.ones(len(rubs))
-    along = sparse.csr_array((ones, (rows, rubs)), shape=(len(rubs), size))
+    every = sparse.eye_array(size, format="csr")
+    along, under = every[rubs], every[rules.partner[rubs]]
     # Slip may harden: what friction can ever carry is a bound whatever has slipped.
     strongest = np.array([max(one.factors) for one in rules.strengths])[rules.strength[rubs]]
-    friction = strongest * rules.friction[rubs]
-    across = sparse.csr_array((friction, (rows, rules.partner[rubs])), shape=(len(rubs), size))
+    across = sparse.diags_array(strongest * rules.friction[rubs]) @ under
     caps = np.flatnonzero(np.isfinite(rules.cap[rubs]))
     capped = np.tile((strongest * rules.cap[rubs])[caps], 2) / unit
     cone = sparse.vstack([along - across, -along - across, along[caps], -along[caps]])
