@@ -31,6 +31,7 @@ from solver.laws import (
     Perfect,
     Unilateral,
 )
+from solver.laws.friction import softness_of
 
 if TYPE_CHECKING:
     from solver.discrete.stack import Side, Spring, Stack
@@ -118,7 +119,7 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         friction = replace(friction, bound=friction.bound * (gap <= 0.0)[:, None])
     normal = None
     if across:
-        softness = law.softness_across(areas, scales)
+        softness = softness_of(law.normal_stiffness, areas, scales)
         normal = Unilateral(component=across[0], gap=gap, softness=softness)
     macro = None
     if cut.has_macro(joints[0]):

@@ -18,7 +18,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.laws.around import Around, Rod
-from solver.laws.friction import Friction, FrictionRule
+from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
     Gaps,
@@ -177,12 +177,8 @@ class Contact(Interface):
         )
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Law for one k; contact comes first, because only it says what friction can carry."""
-        along = FrictionRule(self.tangential, k, n_instants)
-        if self.normal is None:
-            return along
-        bonds = bool(self.tangential.bound.any())
-        return ContactRule(self.normal, along, k, bonds=bonds)
+        """Law for one k."""
+        return ContactRule(self.normal, self.tangential, k, n_instants)
 
     def by_point(self, values: Array) -> Array:
         """Sum of the values of each point's pairs: (n_pairs, ...) to (n_points, ...)."""

@@ -22,8 +22,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array, in_rows
-from solver.laws.interface import Component, Springs
-from solver.laws.play import Play, Strength, follow
+from solver.laws.interface import Component
+from solver.laws.play import Strength
 from solver.refusal import RefusedError, check_range
 
 OPENED = 1e-9
@@ -98,7 +98,7 @@ class FrictionLaw:
             bound=bound,
             friction=np.zeros(len(weights)) if friction is None else friction,
             cap=None if friction is None else cap,
-            softness=_softness(self.stiffness, weights, scales),
+            softness=softness_of(self.stiffness, weights, scales),
             strength=strength,
         )
 
@@ -111,12 +111,9 @@ class FrictionLaw:
         """Largest factor that slip may make of that."""
         return 1.0 if self.strength is None else max(self.strength.factors)
 
-    def softness_across(self, weights: Array, scales: tuple[float, float]) -> Array | None:
-        """Compression of each pair per pressing force, (n_pairs,), scaled; None without one."""
-        return _softness(self.normal_stiffness, weights, scales)
 
-
-def _softness(stiffness: float, weights: Array, scales: tuple[float, float]) -> Array | None:
+def softness_of(stiffness: float, weights: Array, scales: tuple[float, float]) -> Array | None:
+    """Compliance of pairs by their areas, (n_pairs,), scaled; None where nothing gives way."""
     length, force = scales
     return None if np.isinf(stiffness) else force / (length * stiffness * weights)
 
@@ -258,42 +255,3 @@ def _joined(
             for value, law in zip(values, laws, strict=True)
         ]
     )
-
-
-class FrictionRule:
-    """The tangential component in the local stage, for one k."""
-
-    def __init__(self, law: Friction, k: Array, n_instants: int) -> None:
-        self._law = law
-        self._springs = Springs(law.component, k)
-        soft = self._springs.soft
-        # The slider lags by the force over both springs, the jump by their own share of that.
-        self._lag = soft if law.softness is None else soft + law.softness[:, None]
-        self._share = None if law.softness is None else np.asarray(soft / self._lag)
-        self._reach = None if law.cap is not None else np.asarray(law.bound * self._lag)
-        self._grows = law.friction[:, None] * self._lag
-        self._play = Play(len(law.bound), n_instants, law.start)
-
-    def __call__(
-        self,
-        incoming: Array,
-        displacement: Array,
-        _instants: slice,
-        pressing: Array | None = None,
-        opening: Array | None = None,
-    ) -> None:
-        """Write W^ of the rows, as `Rule`; N and opening of the pairs where they vary."""
-        jump = self._springs.jump(incoming)
-        reach = self._reached(pressing, opening)
-        strength = self._law.strength
-        slider = follow(jump, reach, strength) if strength else self._play(jump, reach)
-        held = slider
-        if self._share is not None:
-            held = jump + self._share * (slider - jump)
-        self._springs.close(incoming, jump, held, displacement)
-
-    def _reached(self, pressing: Array | None, opening: Array | None) -> Array:
-        """How far the slider may stay behind z, (n_pairs, n_instants) or (n_pairs, 1)."""
-        if self._reach is not None and opening is None:
-            return self._reach if pressing is None else self._reach + self._grows * pressing
-        return np.asarray(self._law.without_slip(pressing, opening) * self._lag)

@@ -54,7 +54,7 @@ def Play(  # noqa: N802  # chooses a class, as one
 class _Walk:
     """One instant after the other."""
 
-    def __init__(self, n_points: int, n_times: int, start: Array | float = 0.0) -> None:
+    def __init__(self, n_points: int, n_times: int, start: Array | float) -> None:
         self._low, self._high, self._position = np.zeros((3, n_times, n_points))
         before = [start, *self._position[:-1]]
         self._steps = list(zip(before, self._low, self._high, self._position, strict=True))
@@ -75,7 +75,7 @@ class _Scan:
     what the block makes of a point that enters it far below, or far above.
     """
 
-    def __init__(self, n_points: int, n_times: int, start: Array | float = 0.0) -> None:
+    def __init__(self, n_points: int, n_times: int, start: Array | float) -> None:
         size = max(2, round(0.5 * np.sqrt(n_times)))
         blocks = -(-n_times // size)
         self._limits = np.zeros((2, blocks, size, n_points))

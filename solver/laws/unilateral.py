@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.friction import FrictionRule
+from solver.laws.friction import Friction
 from solver.laws.interface import Component, Springs
+from solver.laws.play import Play, follow
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,22 +61,52 @@ class Unilateral:
 
 
 class ContactRule:
-    """The normal component, and friction after it: only contact says what friction can carry."""
+    """A contact in the local stage, for one k: pressing comes first, as it says what rubs."""
 
-    def __init__(self, law: Unilateral, friction: FrictionRule, k: Array, *, bonds: bool) -> None:
-        self._springs = Springs(law.component, k)
-        self._closed = -law.gap[:, None]
-        self._friction, self._bonds = friction, bonds
+    def __init__(
+        self, normal: Unilateral | None, along: Friction, k: Array, n_instants: int
+    ) -> None:
+        self._normal, self._along, self._springs = normal, along, Springs(along.component, k)
+        if normal is not None:
+            self._across, self._closed = Springs(normal.component, k), -normal.gap[:, None]
+            self._pressed = _share(self._across.soft, normal.softness)
+            self._bonds = bool(along.bound.any())
         soft = self._springs.soft
-        self._share = None if law.softness is None else soft / (soft + law.softness[:, None])
+        # The slider lags by the force over both springs, the jump by their own share of that.
+        self._lag = soft if along.softness is None else soft + along.softness[:, None]
+        self._share = _share(soft, along.softness)
+        self._reach = None if along.cap is not None else np.asarray(along.bound * self._lag)
+        self._grows = along.friction[:, None] * self._lag
+        self._play = Play(len(along.bound), n_instants, along.start)
 
-    def __call__(self, incoming: Array, displacement: Array, instants: slice) -> None:
-        """Press where the sides would overlap; write W^ of all rows, as `Rule`."""
+    def __call__(self, incoming: Array, displacement: Array, _instants: slice) -> None:
+        """Write W^ of the rows, as `Rule`."""
+        pressing = opening = None
+        if self._normal is not None:
+            pressing, opening = self._press(incoming, displacement)
         jump = self._springs.jump(incoming)
+        reach, strength = self._reached(pressing, opening), self._along.strength
+        slider = follow(jump, reach, strength) if strength else self._play(jump, reach)
+        held = slider if self._share is None else jump + self._share * (slider - jump)
+        self._springs.close(incoming, jump, held, displacement)
+
+    def _press(self, incoming: Array, displacement: Array) -> tuple[Array, Array | None]:
+        """Press where the sides would overlap: by which force, and how far bonds are open."""
+        jump = self._across.jump(incoming)
         held = np.maximum(jump, self._closed)
         opening = held - self._closed if self._bonds else None
-        if self._share is not None:
-            held = jump + self._share * (held - jump)
-        self._springs.close(incoming, jump, held, displacement)
-        pressing = (held - jump) / self._springs.soft
-        self._friction(incoming, displacement, instants, pressing, opening)
+        if self._pressed is not None:
+            held = jump + self._pressed * (held - jump)
+        self._across.close(incoming, jump, held, displacement)
+        return (held - jump) / self._across.soft, opening
+
+    def _reached(self, pressing: Array | None, opening: Array | None) -> Array:
+        """How far the slider may stay behind z, (n_pairs, n_instants) or (n_pairs, 1)."""
+        if self._reach is not None and opening is None:
+            return self._reach if pressing is None else self._reach + self._grows * pressing
+        return np.asarray(self._along.without_slip(pressing, opening) * self._lag)
+
+
+def _share(soft: Array, softness: Array | None) -> Array | None:
+    """Share of the search direction's spring in what both give way by; None where it is alone."""
+    return None if softness is None else np.asarray(soft / (soft + softness[:, None]))

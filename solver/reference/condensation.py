@@ -87,8 +87,8 @@ class Condensation:
         Where jumps of the base depend on each other: forces that move nothing, of shape
         (n_base, n_stresses), and the stiffness in S that keeps the jumps from coming apart along
         them, scaled.
-    compliance
-        In series with every jump, shape (n_forces,), scaled.
+    all_rules, rules
+        What all jumps obey, and those that are unknown.
     given
         Jumps that prescribed displacements make, shape (n_forces, n_instants); final where a jump
         is not unknown.
@@ -100,14 +100,13 @@ class Condensation:
         self._whole = assembled_stiffness(problem)
         self._force = external_force(problem)
         self._jumps = jumps(problem)
-        rules = rules_of(problem)
-        self.compliance: Array = rules.compliance
-        self._overlap = np.maximum(-rules.gap, 0.0)
+        self.all_rules = rules_of(problem)
         self._fixed, self._prescribed, self._free = fixed, prescribed, free
         self.given: Array = self._jumps[:, fixed] @ prescribed
         free_jumps = self._jumps[:, free]
         self.moving: Indices = np.flatnonzero(np.diff(free_jumps.indptr))
-        free_jumps, rigid = free_jumps[self.moving], self.compliance[self.moving] == 0.0
+        self.rules = self.all_rules.kept(self.moving)
+        free_jumps, rigid = free_jumps[self.moving], self.rules.compliance == 0.0
         self.base, self.ties = base_of(free_jumps, rigid)
         free_jumps, rigid = free_jumps[self.base], rigid[self.base]
         self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
@@ -221,16 +220,16 @@ class Condensation:
         """
         inside = abs(self._whole) @ np.abs(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))
-        sprung = moved[self.compliance > 0.0]
+        sprung = moved[self.all_rules.compliance > 0.0]
         left = LEFT_INSIDE * max(inside.max(initial=0.0), sprung.max(initial=0.0))
         return float(max(left, min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size)))
 
     @cached_property
     def unit(self) -> Array:
         """A stiffness of every jump and what is in series with it, shape (n_forces,), scaled."""
-        unit = np.ones(len(self.compliance))
+        unit = np.ones(len(self.all_rules.gap))
         springs = abs(self.ties) @ self.springs
-        unit[self.moving] = springs / (1.0 + springs * self.compliance[self.moving])
+        unit[self.moving] = springs / (1.0 + springs * self.rules.compliance)
         return unit
 
     @cached_property
@@ -241,7 +240,8 @@ class Condensation:
         """
         pushed = self._whole[:, self._fixed] @ self._prescribed
         largest = max(np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0))
-        return float(largest or (self.unit * self._overlap).max(initial=0.0))
+        overlap = np.maximum(-self.all_rules.gap, 0.0)
+        return float(largest or (self.unit * overlap).max(initial=0.0))
 
 
 def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:

@@ -10,9 +10,7 @@ LATIN: friction opposes the increment of the tangential jump.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -22,10 +20,10 @@ from solver.laws import OPEN
 from solver.laws.play import follow, play
 from solver.reference.condensation import Condensation, NoReferenceError
 from solver.reference.distance import broken_laws
-from solver.reference.instants import Instants, Marched
+from solver.reference.instants import Instants
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED
-from solver.reference.rules import Rules, States, rules_of
+from solver.reference.rules import Increment, Rules, States
 from solver.reference.solution import Interrupted, Reference
 
 MOST_JUMPS = 13_000
@@ -60,7 +58,8 @@ class IncrementalContact:
                 f"{MOST_JUMPS}); take fewer elements, layers or wires to have one"
             )
         self._problem = problem
-        self._condensed, self._rules = Condensation(problem), rules_of(problem)
+        self._condensed = Condensation(problem)
+        self._rules = self._condensed.all_rules
         self._is_analysed = False
         self._collapse: Collapse | None = None
 
@@ -88,37 +87,23 @@ class IncrementalContact:
         Interrupted
             As soon as `stop` returns True.
         """
-        start = time.perf_counter()
-        problem, condensed, rules = self._problem, self._condensed, self._rules
-        own = rules.kept(condensed.moving)
+        problem, condensed = self._problem, self._condensed
         guesses = None if guess is None else guess[condensed.moving]
-        instants = Instants(condensed, own, problem.rest, guesses, self._may_hold)
-        n_moving, sizes = len(condensed.moving), condensed.gauge.shape
-        done = Marched(
-            *(np.zeros((size, problem.n_instants)) for size in (n_moving, n_moving, *sizes))
-        )
-        ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
+        instants = Instants(condensed, problem.rest, guesses, self._may_hold)
+        sizes = (len(condensed.moving),) * 2 + condensed.gauge.shape
+        done = Increment(*(np.zeros((size, problem.n_instants)) for size in sizes))
+        turned, reached = np.zeros((2, problem.n_instants), dtype=bool)
         for instant in range(problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
             if most is not None and instants.system.solutions >= most:
                 break
             for field, values in zip(done, instants(instant), strict=True):
-                field[:, instant] = values
-            ambiguous[instant] = instants.system.turned
-            reached[instant] = True
+                field[:, instant] = values[:, 0]
+            turned[instant], reached[instant] = instants.system.turned, True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
-        solution = self._judged(done, reached)
-        return replace(
-            solution,
-            ambiguous=ambiguous & solution.converged,
-            steps=instants.system.solutions,
-            jumps_at=instants.jumps_at,
-            collapse=self._collapse,
-            is_lost=bool(np.any(reached & ~solution.converged)),
-            seconds=time.perf_counter() - start,
-        )
+        return self._judged(instants, done, turned, reached)
 
     def _may_hold(self, instant: int) -> bool:
         """Whether any contact forces balance the loads of an instant."""
@@ -126,7 +111,9 @@ class IncrementalContact:
             self._is_analysed, self._collapse = True, collapse_of(self._problem)
         return self._collapse is None or instant < self._collapse.instant
 
-    def _judged(self, done: Marched, reached: Flags) -> Reference:
+    def _judged(
+        self, instants: Instants, done: Increment, turned: Flags, reached: Flags
+    ) -> Reference:
         """All fields, and how far they are from equilibrium and laws."""
         problem, condensed, rules = self._problem, self._condensed, self._rules
         motion = np.cumsum(done.motion, axis=1)
@@ -143,10 +130,11 @@ class IncrementalContact:
         wrong[np.setdiff1d(np.flatnonzero(rules.normal), condensed.moving)] = 0.0
         wrong = np.concatenate([wrong, np.abs(condensed.unbalanced(deformation, forces))])
         unbalanced = wrong.max(axis=0, initial=0.0)
-        slip[condensed.moving] = done.slip
+        slip[condensed.moving] = done.jump
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
         residual = unbalanced / size if size > 0.0 else unbalanced
+        converged = reached & (unbalanced <= max(CONVERGED * size, blurred))
         scales = problem.scales
         return Reference(
             problem=problem,
@@ -157,10 +145,12 @@ class IncrementalContact:
             residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * scales.force,
             rounding=blurred * scales.force,
-            converged=reached & (unbalanced <= max(CONVERGED * size, blurred)),
-            ambiguous=np.zeros_like(reached),
-            steps=0,
-            seconds=0.0,
+            converged=converged,
+            ambiguous=turned & converged,
+            steps=instants.system.solutions,
+            jumps_at=instants.jumps_at,
+            is_lost=bool(np.any(reached & ~converged)),
+            collapse=self._collapse,
         )
 
 

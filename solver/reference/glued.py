@@ -13,11 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.csgraph import (
-    breadth_first_order,
-    connected_components,
-    minimum_spanning_tree,
-)
+from scipy.cluster.hierarchy import DisjointSet
+from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Flags, Indices
@@ -145,18 +142,10 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     size = len(rigid)
     if rigid.all() or _is_forest(jumps):
         return np.arange(size), sparse.csr_array(sparse.eye_array(size))
-    dear = np.where(rigid, 1.0, 2.0)
-    first, last = edges = graph_of(jumps)
-    # Of edges that join the same two points SciPy would take the sum of both for one.
-    order = np.lexsort((np.arange(size), dear, last, first))
-    new = np.ones(size, dtype=bool)
-    new[1:] = np.any(np.diff(np.stack(edges)[:, order], axis=1) != 0, axis=0)
-    single = order[new]
-    nodes = jumps.shape[1] + 1
-    weights = sparse.csr_array((dear[single], (first[single], last[single])), shape=(nodes, nodes))
-    tree = minimum_spanning_tree(weights).tocoo()
-    number = sparse.csr_array((single + 1, (first[single], last[single])), shape=(nodes, nodes))
-    tree_jumps = np.asarray(number[tree.coords[0], tree.coords[1]]).ravel() - 1
+    first, last = (points.tolist() for points in graph_of(jumps))
+    forest = DisjointSet(range(jumps.shape[1] + 1))
+    rigid_first = np.argsort(~rigid, kind="stable").tolist()
+    tree_jumps = np.array([jump for jump in rigid_first if forest.merge(first[jump], last[jump])])
     base = np.union1d(np.flatnonzero(rigid), tree_jumps)
     others = np.setdiff1d(np.arange(size), base)
     branches = jumps[tree_jumps]

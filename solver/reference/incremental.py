@@ -47,28 +47,16 @@ def rubs_on_supports(problem: Problem) -> bool:
 
 
 class IncrementalRod:
-    """The incremental solver of rods that rub on rigid supports, ready to march through time.
+    """The incremental solver of rods for which `rubs_on_supports`, ready to march through time.
 
     A point whose displacement is prescribed may rub too. Where it moves, its friction force is
     -r sign(v). Where it stands still, only the sum of friction force and reaction is determinate:
     the friction force is taken as zero. LATIN shares the sum in a way that depends on k and on
     the decomposition (measured, once the whole bar slides), so compare no force there.
-
-    Parameters
-    ----------
-    problem
-        A structure whose interfaces with friction are supports, of known bound.
-
-    Raises
-    ------
-    ValueError
-        If its law is no play operator.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        if not rubs_on_supports(problem):
-            raise ValueError("this solver knows Coulomb's friction of known bound on supports")
         self._dofs, self._rules = points_dofs(problem), rules_of(problem)
         # Degrees of freedom are numbered along one rod after the other.
         whole = assembled_stiffness(problem)
@@ -103,8 +91,7 @@ class IncrementalRod:
             If friction softens so fast that the general solver is needed, and there are too many
             points for it.
         """
-        start, starts = time.perf_counter(), Starts()
-        self._systems = 0
+        starts, self._systems = Starts(), 0
         minima: list[Minimum] = []
         balance, status, gone = np.zeros((3, self._problem.n_dofs))
         for instant in range(self._problem.n_instants):
@@ -123,7 +110,7 @@ class IncrementalRod:
             starts.took(self._systems - done, from_guess=from_guess)
             balance, status = least.pull, least.status
             gone = gone + np.abs(least.increment)
-        return self._gathered(minima, time.perf_counter() - start)
+        return self._gathered(minima)
 
     def _on_dofs(self, values: Array | States) -> Array:
         """Values of the points that rub, (n_points,), and 0 elsewhere, (n_dofs,)."""
@@ -199,7 +186,7 @@ class IncrementalRod:
             end, status = reached, least.status
         return None
 
-    def _gathered(self, minima: list[Minimum], seconds: float) -> Reference:
+    def _gathered(self, minima: list[Minimum]) -> Reference:
         """Solution of the first instants' minima, after which nothing moves."""
         problem, dofs = self._problem, self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
@@ -223,7 +210,6 @@ class IncrementalRod:
             is_lost=not solved[: len(minima)].all(),
             ambiguous=np.zeros(problem.n_instants, dtype=bool),
             steps=self._systems,
-            seconds=seconds,
         )
 
 

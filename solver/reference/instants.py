@@ -4,7 +4,7 @@ Where Newton's method cycles, springs lead loose bodies home (`solver.reference.
 following the solution down from large pressure finds it (`solver.reference.unloading`). Where
 friction softens an instant may have several solutions: the one that goes on from the instant before
 is followed while the load of the instant grows, in steps so small that between their ends no other
-branches off (`solver.reference.stability`).
+branches off.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import chain
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,17 +21,7 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
 from solver.reference.proximal import approach
-from solver.reference.rules import (
-    HELD,
-    Increment,
-    InstantSolution,
-    Rules,
-    Sides,
-    Starts,
-    States,
-    states_at,
-)
-from solver.reference.unloading import unload
+from solver.reference.rules import HELD, Increment, InstantSolution, Sides, Starts, States
 
 PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
@@ -44,19 +33,10 @@ SLIDES = 100
 """Slips at most, each with the friction that the one before has left, up to the next solution."""
 
 
-class Marched(NamedTuple):
-    """What every instant adds: slip, force in all, y of the base, motion; (n, n_instants) each."""
-
-    slip: Array
-    force: Array
-    strained: Array
-    motion: Array
-
-
 class Instants:
-    """Jumps and forces of one instant after the other.
+    """Jumps and forces of a condensed structure, one instant after the other.
 
-    From what rules say of the condensed structure; `rest` is a displacement from which contacts may
+    `rest` is a displacement from which contacts may
     be guessed, (n_dofs, n_instants), and `guesses` are states to try, (n, n_instants). `may_hold`
     says whether there may be an equilibrium at an instant, where none is found at once.
 
@@ -71,12 +51,11 @@ class Instants:
     def __init__(
         self,
         condensed: Condensation,
-        rules: Rules,
         rest: Array | None,
         guesses: States | None,
         may_hold: Callable[[int], bool],
     ) -> None:
-        self._newton = Newton(condensed, rules)
+        self._newton, rules = Newton(condensed), condensed.rules
         self.system = self._newton.system
         self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules
@@ -89,13 +68,13 @@ class Instants:
             guesses[rules.smooth] = OPEN
         self._at_rest: States | None = None
         if rest is not None:
-            self._at_rest = states_at(condensed.jump(rest)[condensed.moving], rules)
+            self._at_rest = rules.states_at(condensed.jump(rest)[condensed.moving])
         has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
         # Nothing has acted yet: then nothing moves, though a free body might.
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
 
-    def __call__(self, instant: int) -> Marched:
-        """What an instant adds.
+    def __call__(self, instant: int) -> Increment:
+        """What an instant adds, with the slip, or opening, of each jump.
 
         The forces that move nothing are the multipliers that keep dependent jumps together
         (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
@@ -103,7 +82,7 @@ class Instants:
         condensed, rules = self._condensed, self._rules
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
-            return Marched(*map(np.zeros_like, still))
+            return Increment(*(np.zeros((len(field), 1)) for field in still))
         load = condensed.load[:, instant] - self._load - self.system.on_base(self._force)
         before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         held = before - np.where(rules.normal, self._opening, 0.0)
@@ -116,7 +95,7 @@ class Instants:
         self._motion += step.motion[:, 0]
         opened = self._states[rules.partner[rules.bonds]] == OPEN
         self._intact[rules.bonds[opened]] = 0.0
-        return Marched(slip, self._force, step.strained[:, 0], step.motion[:, 0])
+        return step._replace(jump=slip[:, None])
 
     def _bound(self, instant: int) -> Array:
         """Friction force that needs no pressing one, where no bond is broken yet, (n, 1)."""
@@ -159,21 +138,14 @@ class Instants:
         still = np.zeros_like(sides.held)
         nothing = Increment(still, self._force[:, None], still[: len(sides.load)], still[:0])
         begin = InstantSolution(self._states, nothing, still[:, 0])
-        solved = newton.follow(begin, sides, guesses, rules)
+        solved = newton.follow(begin, sides, guesses)
         if solved is None and rules.is_curved:
             solved = self._in_parts(begin, sides, known, instant)
         elif solved is None and not self._is_lost and self._may_hold(instant):
-            seek = partial(newton.seek, near=begin, rules=rules)
-            steps = approach(condensed, rules, self._states, sides, seek)
-            solved = newton.follow(begin, sides, steps, rules)
-            solved = solved or self._unloaded(begin, sides, rules)
+            steps = approach(condensed, self._states, sides, partial(newton.seek, near=begin))
+            solved = newton.follow(begin, sides, steps) or newton.unload(begin, sides)
         self._is_lost = self._is_lost or solved is None
         return solved
-
-    def _unloaded(self, at: InstantSolution, sides: Sides, rules: Rules) -> InstantSolution | None:
-        """Find states and step from large pressure on, or None."""
-        states = unload(self.system, rules, sides)
-        return None if states is None else self._newton.seek(self.system, states, sides, at, rules)
 
     def _in_parts(
         self, at: InstantSolution, sides: Sides, known: list[States], instant: int
@@ -188,7 +160,7 @@ class Instants:
         while share < 1.0:
             target = min(share + length, 1.0)
             part = begin.towards(sides, target)
-            following = self._newton.follow(at, part, [at.states, *known], rules)
+            following = self._newton.follow(at, part, [at.states, *known])
             if following is not None:
                 at, share, length = following, target, 2.0 * length
             elif length > SHORTEST:
@@ -212,11 +184,9 @@ class Instants:
         lefts = (self._rules.factor(gone + np.abs(at.slip)) for _ in range(SLIDES))
         last = self._rules.factor(np.full_like(gone, np.inf))
         for factor in chain(lefts, [last]):
-            before, rules = at.states, self._rules.without_slip(factor)
-            self.system.set_friction(rules.friction, np.zeros_like(factor))
+            before, newton = at.states, self._newton.with_friction_left(factor)
             given = replace(sides, bound=sides.bound * factor[:, None])
-            slid = self._newton.follow(at, given, [before, *known], rules)
-            slid = slid or self._unloaded(at, given, rules)
+            slid = newton.follow(at, given, [before, *known]) or newton.unload(at, given)
             if slid is None:
                 return None
             at = slid

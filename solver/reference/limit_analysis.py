@@ -66,12 +66,11 @@ def collapse_of(problem: Problem) -> Collapse | None:
     holds = sparse.csc_array((jumps(problem) @ motions).T)
     size = len(rules.gap)
     rubs = np.flatnonzero(~rules.normal)
-    rows, ones = np.arange(len(rubs)), np.ones(len(rubs))
-    along = sparse.csr_array((ones, (rows, rubs)), shape=(len(rubs), size))
+    every = sparse.eye_array(size, format="csr")
+    along, under = every[rubs], every[rules.partner[rubs]]
     # Slip may harden: what friction can ever carry is a bound whatever has slipped.
     strongest = np.array([max(one.factors) for one in rules.strengths])[rules.strength[rubs]]
-    friction = strongest * rules.friction[rubs]
-    across = sparse.csr_array((friction, (rows, rules.partner[rubs])), shape=(len(rubs), size))
+    across = sparse.diags_array(strongest * rules.friction[rubs]) @ under
     caps = np.flatnonzero(np.isfinite(rules.cap[rubs]))
     capped = np.tile((strongest * rules.cap[rubs])[caps], 2) / unit
     cone = sparse.vstack([along - across, -along - across, along[caps], -along[caps]])
@@ -99,16 +98,12 @@ def collapse_of(problem: Problem) -> Collapse | None:
         if share < WHOLE:
             first = times[max(instant - 1, 0)]
             time = float(first + share * (times[instant] - first))
-            mechanism = _mechanism(program.eqlin.marginals, problem.motions)
+            shares = np.zeros(len(loads)) if program.status else program.eqlin.marginals
+            moved = -problem.motions @ shares
+            mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
             return Collapse(time, instant, mechanism, _tips(problem, mechanism))
         before = now
     return None
-
-
-def _mechanism(marginals: Array | None, motions: Array) -> Array:
-    """Rigid motions that the dual of the program says, shape (n_dofs,); none without a dual."""
-    moved = np.zeros(len(motions)) if marginals is None else -motions @ marginals
-    return np.asarray(moved / (np.abs(moved).max(initial=0.0) or 1.0))
 
 
 def _tips(problem: Problem, mechanism: Array) -> bool:

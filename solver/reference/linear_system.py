@@ -12,7 +12,7 @@ from scipy.linalg import lapack
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.reference.condensation import Condensation
-from solver.reference.rules import HELD, Increment, Rules, Sides, States
+from solver.reference.rules import HELD, Increment, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is free."""
@@ -45,10 +45,8 @@ class LinearSystem:
         Whether the last one left a motion free; then its smallest solution is given.
     """
 
-    def __init__(
-        self, condensed: Condensation, rules: Rules, stiffness: Array, gauge: Array
-    ) -> None:
-        self._stiffness, self._gauge = stiffness, gauge
+    def __init__(self, condensed: Condensation, stiffness: Array, gauge: Array) -> None:
+        self._stiffness, self._gauge, rules = stiffness, gauge, condensed.rules
         self._partner, self.friction = rules.partner, rules.friction
         self._growth = np.zeros_like(rules.friction)
         self._base, self._soft = condensed.base, rules.compliance[:, None]

@@ -10,16 +10,19 @@ is taken by its tangent, which adds its growth per slip to the stiffness where c
 from __future__ import annotations
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
+from numpy.linalg import LinAlgError
+from scipy.linalg import cholesky
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
-from solver.reference.rules import HELD, Increment, InstantSolution, Rules, Sides, States
-from solver.reference.stability import is_stable
+from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
+from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
 """Newton steps from one guess of the states; more than a dozen means that they cycle."""
@@ -44,40 +47,48 @@ class Newton:
         Largest force of the load on a jump, scaled.
     """
 
-    def __init__(self, condensed: Condensation, rules: Rules) -> None:
-        self.system = LinearSystem(condensed, rules, condensed.stiffness, condensed.gauge)
-        self._condensed, self._rules = condensed, rules
+    def __init__(self, condensed: Condensation) -> None:
+        self.system = LinearSystem(condensed, condensed.stiffness, condensed.gauge)
+        self._condensed, self._rules = condensed, condensed.rules
+        rules = self._rules
         self.gone, self.strained = np.zeros_like(rules.gap), np.zeros(len(condensed.base))
         self._smooth: Indices = np.flatnonzero(rules.smooth)
         self._rubs: Indices = np.union1d(np.flatnonzero(rules.friction > 0.0), rules.bonds)
         self._carry: Indices = rules.partner[self._rubs]
         self.largest = float(np.abs(condensed.load).max(initial=0.0))
 
+    def with_friction_left(self, factor: Array) -> Newton:
+        """The same method for a friction that slip has changed by a factor, and changes no more."""
+        changed = copy(self)
+        changed._rules = self._rules.without_slip(factor)
+        self.system.set_friction(changed._rules.friction, np.zeros_like(factor))
+        return changed
+
     def follow(
-        self, at: InstantSolution, sides: Sides, guesses: Iterable[States], rules: Rules
+        self, at: InstantSolution, sides: Sides, guesses: Iterable[States]
     ) -> InstantSolution | None:
         """Go on to other right sides, None where no guess leads there or to another branch."""
         for states in guesses:
-            reached = self.seek(self.system, states, sides, at, rules)
-            if reached and (not rules.softens or self._goes_on(at, reached, sides)):
+            reached = self.seek(self.system, states, sides, at)
+            if reached and (not self._rules.softens or self._goes_on(at, reached, sides)):
                 return reached
         return None
 
+    def unload(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
+        """Come down from large pressure, None where that leads nowhere."""
+        states = unload(self.system, self._rules, sides)
+        return None if states is None else self.seek(self.system, states, sides, at)
+
     def stable(self, near: InstantSolution, sides: Sides) -> InstantSolution | None:
         """The solution near what is none yet, or None where it is not stable."""
-        reached = self.seek(self.system, near.states, sides, near, self._rules)
+        reached = self.seek(self.system, near.states, sides, near)
         return reached if reached and self._goes_on(reached, reached, sides) else None
 
     def seek(
-        self,
-        system: LinearSystem,
-        states: States,
-        sides: Sides,
-        near: InstantSolution,
-        rules: Rules,
+        self, system: LinearSystem, states: States, sides: Sides, near: InstantSolution
     ) -> InstantSolution | None:
         """Seek states and slip, from those of a solution nearby; None where they cycle."""
-        slip, force = near.slip, near.step.force[:, 0]
+        rules, slip, force = self._rules, near.slip, near.step.force
         pieces: list[bytes] = []
         for _ in range(NEWTON_LIMIT):
             tangent, piece = sides, states.tobytes()
@@ -92,10 +103,10 @@ class Newton:
             # Those with springs count, too.
             self.system.solutions += system is not self.system
             corrected = self._corrected(states, step, tangent)
-            if self._rules.is_curved:
+            if self._condensed.rules.is_curved:
                 slip = np.where(rules.normal, 0.0, (step.jump - sides.held)[:, 0])
-            force, reached = step.force[:, 0], InstantSolution(states, step, slip)
-            if np.array_equal(corrected, states) and self._obeys(system, reached, sides, rules):
+            force, reached = step.force, InstantSolution(states, step, slip)
+            if np.array_equal(corrected, states) and self._obeys(system, reached, sides):
                 return reached
             states = corrected
         return None
@@ -105,27 +116,22 @@ class Newton:
 
         And where it is capped.
         """
-        rules, carried = self._rules, self._carried(force, sides)
-        is_capped, factor = carried > rules.cap, rules.factor(self.gone + slip)
-        grows = rules.growth(self.gone + slip) * np.minimum(carried, rules.cap)
+        rules, most = self._rules, self._rules.before_slip(sides.bound, force)[:, 0]
+        is_capped, factor = most >= rules.cap, rules.factor(self.gone + slip)
+        grows = rules.growth(self.gone + slip) * most
         self.system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
         bound = np.where(is_capped, rules.cap, sides.bound[:, 0]) * factor - grows * slip
         return replace(sides, bound=bound[:, None]), is_capped
 
-    def _carried(self, force: Array, sides: Sides) -> Array:
-        """Friction force r + mu f_n before slip, whatever the cap, shape (n,)."""
-        rules = self._rules
-        return sides.bound[:, 0] + np.maximum(rules.friction * force[rules.partner], 0.0)
-
-    def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides, rules: Rules) -> bool:
+    def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides) -> bool:
         """Whether forces balance, and friction is what slip has left, not only by its tangent."""
         slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest, slack):
             return False
+        rules, force = self._rules, at.step.force[:, 0]
         if not rules.is_curved:
             return True
-        force = at.step.force[:, 0]
-        most = np.minimum(self._carried(force, sides), rules.cap)
+        most = rules.before_slip(sides.bound, at.step.force)[:, 0]
         wrong = np.abs(force + at.states * rules.factor(self.gone + np.abs(at.slip)) * most)
         largest = max(self.largest, np.abs(force).max())
         return bool(wrong[np.abs(at.states) == 1].max(initial=0.0) <= SETTLED * largest)
@@ -134,13 +140,36 @@ class Newton:
         """Whether a solution is the one that another goes over into.
 
         So it is if the structure is stable however far the contacts that slip in either have
-        softened on the way: then no other solution slips there alone.
+        softened on the way, whatever else slips: then no other solution slips there alone.
         """
-        rules, begin, end = self._rules, np.abs(at.slip), np.abs(reached.slip)
-        carried = [self._carried(either.step.force[:, 0], sides) for either in (at, reached)]
+        rules, condensed = self._rules, self._condensed
+        begin, end = np.abs(at.slip), np.abs(reached.slip)
+        carried = [rules.before_slip(sides.bound, one.step.force)[:, 0] for one in (at, reached)]
         on_way = self.gone + np.minimum(begin, end), self.gone + np.maximum(begin, end)
-        growth = rules.lowest_growth(*on_way) * np.minimum(np.maximum(*carried), rules.cap)
-        return is_stable(self._condensed, rules, growth, at.states, reached.states)
+        slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
+        growth = np.where(slips, rules.lowest_growth(*on_way) * np.maximum(*carried), 0.0)
+        if not np.any(growth < 0.0):
+            return True
+        sprung = rules.compliance > 0.0
+        stiffness = 1.0 + growth * rules.compliance
+        if np.any(stiffness <= 0.0):
+            return False
+        growth /= stiffness
+        presses = sprung & (at.states == HELD) & (reached.states == HELD)
+        growth[presses] += 1.0 / rules.compliance[presses]
+        is_free = slips | (at.states == OPEN) & (reached.states == OPEN) | sprung
+        free = np.flatnonzero(is_free[condensed.base])
+        softened = condensed.elastic[np.ix_(free, free)]
+        if len(condensed.base) == len(growth):
+            softened[np.diag_indices_from(softened)] += growth[free]
+        else:
+            tied = condensed.ties[:, free].toarray()
+            softened += tied.T @ (growth[:, None] * tied)
+        try:
+            cholesky(softened, overwrite_a=True, check_finite=False)
+        except LinAlgError:
+            return False
+        return True
 
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
         """Force that rounding may make anywhere; and of a jump that is not held, (n,) or (1,).

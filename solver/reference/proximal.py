@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
-from solver.reference.rules import InstantSolution, Rules, Sides, States
+from solver.reference.rules import InstantSolution, Sides, States
 
 FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
 """Springs, as shares of the stiffness of each jump alone."""
@@ -31,25 +31,14 @@ MOST_JUMPS = 4000
 
 def approach(
     condensed: Condensation,
-    rules: Rules,
     states: States,
     sides: Sides,
     seek: Callable[[LinearSystem, States, Sides], InstantSolution | None],
 ) -> Iterator[States]:
     """States of an instant that have come to rest, each nearer to those without springs.
 
-    None where no body is loose, or there are too many jumps.
-
-    Parameters
-    ----------
-    condensed, rules
-        The structure.
-    states
-        Those of the instant before, shape (n,).
-    sides
-        Of the instant, one column.
-    seek
-        Newton's method from some states, None where it cycles.
+    From those of the instant before, (n,), by Newton's method, `seek`. None where no body is loose,
+    or there are too many jumps.
     """
     if not condensed.gauge.size or len(condensed.stiffness) > MOST_JUMPS:
         return
@@ -58,7 +47,7 @@ def approach(
     for _ in range(STEPS):
         springs = share * alone[:, None]
         held = condensed.elastic + np.diagflat(springs)
-        sprung = LinearSystem(condensed, rules, held, condensed.gauge[:, :0])
+        sprung = LinearSystem(condensed, held, condensed.gauge[:, :0])
         pulled = replace(sides, load=sides.load + springs * moved)
         solved = seek(sprung, states, pulled)
         if solved is not None:

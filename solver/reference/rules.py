@@ -134,6 +134,13 @@ class Rules:
         """Numbers of the points of the strengths behind accumulated slips, shape (n,)."""
         return self._of_strengths(Strength.segment, gone).astype(np.intp)
 
+    def states_at(self, jumps: Array) -> States:
+        """States of a body that is where it would be if it were rigid, (n, n_instants)."""
+        closed = (jumps + self.gap[:, None] <= 0.0)[self.partner]
+        slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
+        slip[self.normal] = HELD
+        return np.where(closed, slip, OPEN).astype(np.int8)
+
     def _of_strengths(self, value: Callable[..., Array | Indices], *slips: Array) -> Array:
         values = np.ones_like(slips[0])
         for number, strength in enumerate(self.strengths):
@@ -270,11 +277,3 @@ class Starts:
         account = self._guess if from_guess else self._before
         account[0] += systems
         account[1] += 1
-
-
-def states_at(jumps: Array, rules: Rules) -> States:
-    """States of a body that is where it would be if it were rigid, (n, n_instants)."""
-    closed = (jumps + rules.gap[:, None] <= 0.0)[rules.partner]
-    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
-    slip[rules.normal] = HELD
-    return np.where(closed, slip, OPEN).astype(np.int8)

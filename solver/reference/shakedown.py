@@ -42,7 +42,6 @@ from scipy.optimize import OptimizeResult, linprog
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.condensation import Condensation, NoReferenceError
-from solver.reference.rules import rules_of
 
 MOST_KNOWN = 1000
 """Points of known bound above which matrices, which are full, take more than some seconds."""
@@ -81,7 +80,7 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     # Jumps y = T y_b obey S y_b = T' f + q, and with a spring of compliance c in series
     # y = s - c f. A point whose bound is nothing at all times has f = 0.
     condensed = Condensation(problem)
-    rules = rules_of(problem).kept(condensed.moving)
+    rules = condensed.rules
     if rules.ages:
         raise NoReferenceError("Where friction changes with slip the theorem says nothing.")
     residual, elastic, rings = condensed.stiffness, -condensed.load[:, cycle], condensed.stresses
@@ -175,7 +174,7 @@ def slip_space(problem: Problem) -> SlipSpace:
     if _count(problem) > MOST_POINTS:
         raise NoReferenceError(f"The planes are those of at most {MOST_POINTS} points.")
     condensed = Condensation(problem)
-    rules = rules_of(problem).kept(condensed.moving)
+    rules = condensed.rules
     is_whole = len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
     if (
         not is_whole

@@ -52,8 +52,6 @@ class Reference:
         friction is large.
     steps
         Newton steps, which are linear systems of full size, in all.
-    seconds
-        Time taken.
     rounding
         What rounding alone may leave of `unbalanced`, N.
     jumps_at
@@ -64,6 +62,8 @@ class Reference:
         Whether an instant that was tried is not solved.
     collapse
         From when on no contact forces balance the loads, where it is known that they do not.
+    seconds
+        Time that `reference_of` took.
     """
 
     problem: Problem
@@ -76,11 +76,11 @@ class Reference:
     converged: NDArray[np.bool_]
     ambiguous: NDArray[np.bool_]
     steps: int
-    seconds: float
-    rounding: float = 0.0
+    rounding: float
     jumps_at: int | None = None
     is_lost: bool = False
     collapse: Collapse | None = None
+    seconds: float = 0.0
 
     @property
     def friction_force(self) -> Array:

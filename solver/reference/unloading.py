@@ -31,13 +31,11 @@ FLAT = 1e-12
 
 def unload(system: LinearSystem, rules: Rules, sides: Sides) -> States | None:
     """States that solve an instant, of one column, or None where the walk goes off to infinity."""
-    walk = _PathFollower(system, rules, sides)
-    size = len(rules.gap)
+    walk, size = _PathFollower(system, rules, sides), len(rules.gap)
     for _ in range(int(CHANGES * size * min(1.0, (FEW / size) ** 2))):
-        if walk.step():
-            return walk.states
-        if walk.lost:
-            return None
+        arrives = walk.step()
+        if arrives is not None:
+            return walk.states if arrives else None
     return None
 
 
@@ -58,19 +56,17 @@ class _PathFollower:
             np.column_stack([sides.held, np.zeros(size)]),
         )
         self.states = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
-        self.lost = False
         self._level, self._way = np.inf, -1.0
         self._changed: tuple[int, int] | None = None
 
-    def step(self) -> bool:
-        """Go on to the next change of state; tell whether lambda = 0 comes before it."""
+    def step(self) -> bool | None:
+        """Go on to the next change of state: None, or whether it ends at lambda = 0 before it."""
         jump, force, *_ = self._system(self.states, self._sides)
         room, slope = self._room(jump, force)
         slope[np.abs(slope) <= FLAT * np.abs(slope).max(initial=0.0)] = 0.0
         if self._changed is not None:
             self._way = float(np.sign(slope[self._changed]))
-        self.lost = self._system.singular or self._way == 0.0
-        if self.lost:
+        if self._system.singular or self._way == 0.0:
             return False
         ending = slope * self._way < 0.0
         levels = np.full(room.shape, self._way * np.inf)
@@ -80,12 +76,12 @@ class _PathFollower:
         level = self._way * max(float(levels[place, side]), self._way * self._level)
         if self._way < 0.0 and level <= 0.0:
             return True
-        self.lost = not np.isfinite(level)
-        if not self.lost:
-            self._level = level
-            moved = jump - self._sides.held
-            self._change(place, side, moved[:, 0] + level * moved[:, 1])
-        return False
+        if not np.isfinite(level):
+            return False
+        self._level = level
+        moved = jump - self._sides.held
+        self._change(place, side, moved[:, 0] + level * moved[:, 1])
+        return None
 
     def _room(self, jump: Array, force: Array) -> tuple[Array, Array]:
         """What has to stay positive at lambda = 0, and its slope, (n, 2): a held point has two."""
