@@ -188,7 +188,7 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
         pieces = in_pieces(iterate)
     return {
         "table": fitted.given.size,
-        "branches": len(fitted.branches),
+        "branches": fitted.branches,
         "SVD": _pairs(products_in(fitted)),
         "PGD": None if pieces is None else _pairs(pieces),
         "clips": _pairs(of_clips(fitted)),

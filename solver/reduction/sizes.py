@@ -18,6 +18,9 @@ from solver.reduction.basis import Modes
 from solver.reduction.clips import Clips
 from solver.reduction.svd import BoundaryFields, Decomposition, decompose
 
+SAME_SHAPE = 1e-9
+"""Share of the largest bound by which one that changes in size alone may differ from that."""
+
 
 @dataclass(frozen=True, eq=False)
 class Sizes:
@@ -44,9 +47,22 @@ def of_products(product: Decomposition) -> Sizes:
 
 
 def of_clips(clips: Clips) -> Sizes:
-    """Keep clips with memory, and singular vectors of what these leave."""
-    product = sum(clips.given.shape)
-    return Sizes(clips.numbers + product * np.arange(len(clips.errors)), clips.errors)
+    """Keep clips with memory, and singular vectors of what these leave.
+
+    Clips take two vectors and a place a branch, the load, and the bound.
+    """
+    points, instants = clips.given.shape
+    alone = clips.branches * (2 * points + 1) + instants + _numbers_of_bound(clips.bound)
+    return Sizes(alone + (points + instants) * np.arange(len(clips.errors)), clips.errors)
+
+
+def _numbers_of_bound(bound: Array) -> int:
+    """How many numbers a bound takes: fewer if it changes in size alone."""
+    sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
+    shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
+    if np.abs(bound - shape * sizes).max() > SAME_SHAPE * most:
+        return bound.size
+    return len(bound) + (bound.shape[1] if np.ptp(sizes) else 0)
 
 
 def in_pieces(fields: BoundaryFields) -> Sizes:
