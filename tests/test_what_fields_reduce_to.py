@@ -197,7 +197,8 @@ def test_branches_go_one_way_and_are_as_few_as_can_be(load):
 def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers():
     reduced = {"linear_stage": "pgd", "substructures": 1, "relaxation": 1.0}
     iterate = sample(settings_of("bar", method="paper", **reduced), 8)
-    own, best = of_bases(iterate, iterate.bases), in_pieces(iterate)
+    fields = iterate.problem, iterate.boundary_force
+    own, best = of_bases(*fields, iterate.bases), in_pieces(*fields)
     assert own.errors[-1] < 1e-9
     assert np.all(own.errors >= best.errors[: len(own.errors)] - EXACT)
     assert own.within(0.1) >= best.within(0.1)

@@ -16,7 +16,7 @@ from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.definitions import SettingError
 from solver.discrete import Problem
 from solver.latin import Iterate
-from solver.reduction.basis import Modes
+from solver.reduction.basis import SharedBasis
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.condensation import NoReferenceError
@@ -37,7 +37,7 @@ MOST_MODES = 5
 
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in every substructure, over the largest of all."""
-    parts = decompositions(iterate, "friction_force")
+    parts = decompositions(iterate.problem, iterate.boundary_force, is_force=True)
     values = [part.values for part in parts]
     shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
@@ -139,7 +139,7 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     basis, problem = iterate.bases[place], sampler.problem
     x, space = _along(basis, problem, place)
     size = _signed_size(space)
-    time = basis.time_functions[:MOST_MODES, sampler.columns] * problem.scales.displacement
+    time = basis.time_functions(place)[:MOST_MODES, sampler.columns] * problem.scales.displacement
     return {
         "x": floats(x),
         "space": floats(space / size[:, None]),
@@ -149,7 +149,7 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     }
 
 
-def _along(basis: Modes, problem: Problem, substructure: int) -> tuple[Floats, Floats]:
+def _along(basis: SharedBasis, problem: Problem, substructure: int) -> tuple[Floats, Floats]:
     """Places along the bodies in their order, and the displacement of each mode there."""
     rows = problem.substructures[substructure].rows
     # Rows of two interfaces that meet at a point move together.
@@ -183,9 +183,9 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
     fitted, bases = clips_in(sampler.settings, iterate), iterate.bases
-    pieces = of_bases(iterate, bases) if bases else None
+    pieces = of_bases(iterate.problem, iterate.boundary_force, bases) if bases else None
     if not bases and len(sampler.problem.substructures) > 1:
-        pieces = in_pieces(iterate)
+        pieces = in_pieces(iterate.problem, iterate.boundary_force)
     return {
         "table": fitted.given.size,
         "branches": fitted.branches,

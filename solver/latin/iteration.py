@@ -8,10 +8,11 @@ from itertools import count
 
 from numpy.linalg import LinAlgError
 
+from solver.arrays import read_only
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
 from solver.latin.blocks import Blocks, one_blas_thread
-from solver.latin.iterate import Checkpoint, Iterate, read_only
+from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.linear_stage import LinearStage
 from solver.latin.local_stage import LocalStage
 from solver.latin.method import Latin

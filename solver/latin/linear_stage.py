@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from solver.latin.blocks import ALL, Blocks
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
 from solver.latin.response import Responses, response_of
-from solver.reduction.basis import Modes
+from solver.reduction.basis import SharedBasis
 
 if TYPE_CHECKING:
     from solver.latin.pgd import PGD
@@ -26,16 +26,9 @@ class Full:
 
     Attributes
     ----------
-    remedy
-        What helps a run that does not converge, to begin a sentence with; nothing here.
-    has_to_prove
-        Whether a run ends by proof alone, whatever that costs.
     responses
         Factors of substructures that runs with one k share; None: each run has its own.
     """
-
-    remedy: ClassVar[str] = ""
-    has_to_prove: ClassVar[bool] = False
 
     responses: Responses | None = field(default=None, repr=False)
 
@@ -76,7 +69,7 @@ class LinearStage:
         for group in self.groups:
             group.go_to(checkpoint)
 
-    def bases(self) -> tuple[Modes, ...]:
+    def bases(self) -> tuple[SharedBasis, ...]:
         """The separated bases of the state, one per substructure; none of one in full."""
         bases = dict(basis for group in self.groups for basis in group.bases())
         return tuple(bases[number] for number in sorted(bases))
@@ -200,7 +193,7 @@ class Group:
             reflected += 2.0 * self.body[:, :, instants]
         return self._reflected
 
-    def bases(self) -> Iterator[tuple[int, Modes]]:
+    def bases(self) -> Iterator[tuple[int, SharedBasis]]:
         """Separated bases, by number of the substructure."""
         return iter(())
 

@@ -92,8 +92,6 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
 
 def _bodies(problem: Problem) -> Indices:
     """Number of the body that every degree of freedom belongs to, from 0 on."""
-    if len(problem.rubbing) == 1 and problem.friction.is_on_support:
-        return np.zeros(problem.n_dofs, dtype=np.intp)
     parts, n_dofs = problem.substructures, problem.n_dofs
     dofs = np.concatenate([part.dofs for part in parts])
     number = n_dofs + np.repeat(np.arange(len(parts)), [len(part.dofs) for part in parts])

@@ -85,6 +85,6 @@ def paper_runs() -> PaperRuns:
         run(multiscale=False, **ten),
         five,
         run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
-        decompositions(five.last, "friction_force"),
-        decompositions(five.last, "displacement"),
+        decompositions(five.last.problem, five.last.boundary_force, is_force=True),
+        decompositions(five.last.problem, five.last.boundary_displacement, is_force=False),
     )
