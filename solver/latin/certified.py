@@ -63,16 +63,13 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     """
     known, is_known = known_forces(problem, contact_force)
     balance, needed = balance_of_rows(problem, displacement)
-    cuts = problem.cuts
-    n_cuts = sum(len(side) for side, _ in cuts)
-    first = np.concatenate([np.zeros(0, dtype=np.intp), *(side for side, _ in cuts)])
-    second = np.concatenate([np.zeros(0, dtype=np.intp), *(side for _, side in cuts)])
-    pairs = np.arange(n_cuts)
+    sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *problem.cuts], axis=1)
+    pairs = np.arange(sides.shape[1])
     opposite = sparse.csr_array(
-        (np.ones(2 * n_cuts), (np.tile(pairs, 2), np.concatenate([first, second]))),
-        shape=(n_cuts, problem.n_rows),
+        (np.ones(sides.size), (np.tile(pairs, 2), sides.ravel())),
+        shape=(len(pairs), problem.n_rows),
     )
-    right = np.concatenate([needed - balance @ known, np.zeros((n_cuts, problem.n_instants))])
+    right = np.concatenate([needed - balance @ known, np.zeros((len(pairs), problem.n_instants))])
     system = sparse.csr_array(sparse.vstack([balance, opposite]))
     open_rows = np.flatnonzero(~is_known)
     known[open_rows] = _smallest(sparse.csr_array(system[:, open_rows]), right)

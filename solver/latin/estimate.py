@@ -27,10 +27,8 @@ LAST = 10.0
 ROOM = 4.0
 """Times the seconds of a step that are left of a run's limit when its last trial begins."""
 AGAIN = 2.0
-"""Ratio of the iteration at which a failed status step is tried again."""
-RARELY = 2.0
-"""Ratio of the iterations at which the cost of a step is asked anew: a rough number, and dear
-beside a small iteration."""
+"""Ratio of the iterations at which a failed status step is tried again, and its cost asked anew: a
+rough number, and dear beside a small iteration."""
 
 
 class ErrorEstimate:
@@ -146,6 +144,6 @@ class ErrorEstimate:
 
     def _costs_of(self, iterate: Iterate) -> Costs:
         """Estimate the costs by the statuses that an iterate shows, now and then anew."""
-        if self._costs is None or iterate.number >= RARELY * self._costs[0]:
+        if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
             self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
         return self._costs[1]

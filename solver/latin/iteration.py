@@ -96,7 +96,6 @@ class Iteration:
             start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
         self.linear.go_to(start)
         self._show()
-        self._read = self.incoming
 
     def _show(self) -> None:
         self.incoming = read_only(self.linear.incoming())
@@ -105,7 +104,6 @@ class Iteration:
     def local_stage(self) -> None:
         """Obey the laws along E+ (paper, problem 2.1)."""
         self.linear.read(self.local(self.incoming))
-        self._read = read_only(self.local.incoming)
 
     def linear_stage(self) -> None:
         """Solve elasticity along E- (paper, problem 2.2), relax, accelerate."""
@@ -132,7 +130,7 @@ class Iteration:
             outgoing=self.outgoing,
             incoming=self.incoming,
             local_displacement=read_only(self.local.displacement),
-            local_incoming=self._read,
+            local_incoming=read_only(self.local.incoming),
             bases=self.linear.bases(),
             course=self._course,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -76,23 +76,13 @@ class LinearStage:
 
     def read(self, target: Array) -> None:
         """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.gather(target, instants)
-
-        self._blocks.each(work)
+        self._each(lambda group, instants: group.gather(target, instants))
 
     def advance(self, relaxation: float) -> None:
         """Solve the linear stage: the state takes on so large a share of the new one."""
         if self._coarse is not None:
             self._coarse.add_multiplier()
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.relax(relaxation, instants)
-
-        self._blocks.each(work)
+        self._each(lambda group, instants: group.relax(relaxation, instants))
 
     def outgoing(self) -> Array:
         """W + F/k, shape (n_rows, n_instants)."""
@@ -104,13 +94,17 @@ class LinearStage:
     def incoming(self) -> Array:
         """W - F/k, shape (n_rows, n_instants)."""
         boundary = np.empty(self._shape, order="F")
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.scatter(group.reflect(instants), boundary, instants)
-
-        self._blocks.each(work)
+        self._each(lambda group, some: group.scatter(group.reflect(some), boundary, some))
         return boundary
+
+    def _each(self, work: Callable[[Group, slice], None]) -> None:
+        """Do some work for every group at every block of instants."""
+
+        def of_block(instants: slice) -> None:
+            for group in self.groups:
+                work(group, instants)
+
+        self._blocks.each(of_block)
 
 
 class Group:
@@ -142,8 +136,6 @@ class Group:
         self.target = self.field()
         self._reflected = self.field()
         self._order = np.ascontiguousarray(self.rows.T.ravel())
-        covers = self.rows.size == problem.n_rows
-        self._back = np.argsort(self._order) if covers else None
 
     def field(self) -> Array:
         """Allocate a zero field of the group."""
@@ -156,11 +148,7 @@ class Group:
 
     def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
         """Write a field of the group into the rows of a boundary field, at some instants."""
-        flat = values.T.reshape(self._n_instants, -1)[instants]
-        if self._back is None:
-            field.T[instants, self._order] = flat
-        else:
-            np.take(flat, self._back, axis=1, out=field.T[instants], mode="clip")
+        field.T[instants, self._order] = values.T.reshape(self._n_instants, -1)[instants]
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the state of a checkpoint, or that in which all is zero."""

@@ -18,12 +18,7 @@ from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import (
-    ReductionRecord,
-    SeparatedBasis,
-    SharedBasis,
-    nearest_mode,
-)
+from solver.reduction.basis import ReductionRecord, SeparatedBasis, SharedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -79,6 +74,7 @@ class PGDGroup(Group):
     def __init__(self, problem: Problem, numbers: list[int], k: Array, pgd: PGD) -> None:
         super().__init__(problem, numbers, k, pgd.responses)
         self._pgd, self._weights = pgd, problem.time_weights
+        self._place = {number: place for place, number in enumerate(numbers)}
         self.iterations = 0
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
@@ -128,7 +124,7 @@ class PGDGroup(Group):
 
         It is a view of the field if there is one member, otherwise a copy.
         """
-        places = np.searchsorted(self.numbers, members)
+        places = [self._place[number] for number in members]
         if len(places) == 1:
             field = field[:, places[0] : places[0] + 1]
         else:
@@ -137,7 +133,7 @@ class PGDGroup(Group):
 
     def _put(self, members: Sequence[int], field: Array, columns: Array) -> None:
         """Write such a matrix into a group field."""
-        places = np.searchsorted(self.numbers, members)
+        places = [self._place[number] for number in members]
         field[:, places] = columns.reshape(len(field), len(places), -1, order="F")
 
     def _advanced(self, shared: SharedBasis, relaxation: float) -> SharedBasis:

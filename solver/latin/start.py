@@ -66,14 +66,10 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     the result are those of the fine rows, (n_rows,) and (n_rows, n_instants).
     """
     coarse = solution.problem
-    displacement = (solution.displacement / coarse.scales.displacement)[coarse.row_dofs]
+    displacement = solution.displacement / coarse.scales.displacement
     force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
-    row_of_dof = np.zeros(coarse.n_dofs, dtype=np.intp)
-    row_of_dof[coarse.row_dofs] = np.arange(coarse.n_rows)
     bodies, fine_bodies = _bodies(coarse), _bodies(fine)
-    inside = _interpolated(
-        _apart(fine, fine_bodies), _apart(coarse, bodies), displacement[row_of_dof]
-    )
+    inside = _interpolated(_apart(fine, fine_bodies), _apart(coarse, bodies), displacement)
     moved = inside[fine.row_dofs]
     carried, rests = np.zeros_like(moved), np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
