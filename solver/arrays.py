@@ -22,6 +22,12 @@ def space_time(n_rows: int, n_instants: int) -> Array:
     return np.zeros((n_rows, n_instants), order="F")
 
 
+def read_only(field: Array) -> Array:
+    """The same field, which nobody can change any more."""
+    field.flags.writeable = False
+    return field
+
+
 def as_slice(rows: Indices) -> slice | Indices:
     """Rows as a slice when they follow each other, so that reading them copies nothing."""
     first = int(rows[0]) if len(rows) else 0

@@ -18,7 +18,6 @@ from solver.curves import messages, read_tables
 from solver.definitions import SettingError, parse
 from solver.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
 from solver.latin import Iterate, Solution
-from solver.reduction.basis import modes_stored
 from solver.reference.distance import determinate_forces, held_instants
 from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
@@ -164,7 +163,7 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
     last = solution.records[-1] if solution.records else None
     counts = [basis.n_modes for basis in solution.iterate.bases]
-    stored = modes_stored(solution.iterate.bases)
+    stored = sum(basis.n_modes for basis in set(solution.iterate.bases))
     bases = {
         "modes_largest": max(counts, default=0),
         "modes_stored": stored,

@@ -36,7 +36,7 @@ MOST_MODES = 5
 
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in every substructure, over the largest of all."""
-    parts = decompositions(iterate, "friction_force")
+    parts = decompositions(iterate.problem, iterate.boundary_force, is_force=True)
     values = [part.values for part in parts]
     shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
@@ -142,7 +142,7 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     dofs, first = np.unique(rows, return_index=True)
     space = basis.displacement_modes[first, :MOST_MODES].T
     size = _signed_size(space)
-    time = basis.time_functions[:MOST_MODES, sampler.columns] * problem.scales.displacement
+    time = basis.time_functions(place)[:MOST_MODES, sampler.columns] * problem.scales.displacement
     kept = thinned(len(dofs), MOST_POINTS)
     return {
         "x": floats(problem.positions[dofs[kept]]),
@@ -175,12 +175,12 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
     fitted, bases = clips_in(sampler.settings, iterate), iterate.bases
-    pieces = of_bases(iterate, bases) if bases else None
+    pieces = of_bases(iterate.problem, iterate.boundary_force, bases) if bases else None
     if not bases and len(sampler.problem.substructures) > 1:
-        pieces = in_pieces(iterate)
+        pieces = in_pieces(iterate.problem, iterate.boundary_force)
     return {
         "table": fitted.given.size,
-        "branches": len(fitted.branches),
+        "branches": fitted.branches,
         "SVD": _pairs(products_in(fitted)),
         "PGD": None if pieces is None else _pairs(pieces),
         "clips": _pairs(of_clips(fitted)),

@@ -11,9 +11,9 @@ from solver.latin.pgd import PGD
 from solver.latin.slabs import solve_in_slabs
 from solver.latin.solve import Record, Solution, judged, record, solve
 from solver.latin.start import Nested
-from solver.latin.status import Ending, Status
+from solver.latin.status import Decision, Ending, Status
 from solver.latin.status_step import StatusStep
-from solver.latin.stop import Decision, Stop, StopState
+from solver.latin.stop import Stop, StopState
 
 __all__ = [
     "PGD",

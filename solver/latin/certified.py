@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array
+from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
-from solver.latin.iterate import Iterate, read_only
+from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate
-from solver.reduction.basis import Modes, ReductionRecord
+from solver.reduction.basis import ReductionRecord
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""
@@ -21,19 +21,15 @@ MOST_STEPS = 60
 
 
 def finished(
-    problem: Problem,
-    k: Array,
-    certificate: Certificate,
-    number: int = 1,
-    seconds: float = 0.0,
-    searched: tuple[Modes, ...] = (),
+    problem: Problem, k: Array, certificate: Certificate, last: Iterate | None = None
 ) -> Iterate:
-    """The iterate that a certified solution is, of this number after so many seconds.
+    """The iterate that a certified solution is, after the `last` of the run that led to it.
 
     Its linear and its local stage are the same fields, a fixed point of the method for every k, of
-    the rows, (n_rows,), read-only. `searched` are the bases of the search, if it had any.
+    the rows, (n_rows,), read-only. Its bases are those of the search, if it had any.
     """
-    bases = (replace(basis, record=ReductionRecord.idle(basis.n_modes)) for basis in searched)
+    searched = last.bases if last else ()
+    idle = {basis: replace(basis, record=ReductionRecord(basis.n_modes)) for basis in searched}
     scales, solution = problem.scales, certificate.solution
     deformation = solution.deformation / scales.displacement
     force = row_forces(problem, deformation, solution.contact_force / scales.force)
@@ -42,15 +38,15 @@ def finished(
     fields = moved + stretched, moved - stretched, moved, force
     outgoing, incoming, local, force = (read_only(np.asfortranarray(field)) for field in fields)
     return Iterate(
-        number=number,
-        seconds=seconds,
+        number=last.number + 1 if last else 1,
+        seconds=last.seconds if last else 0.0,
         problem=problem,
         k=k,
         outgoing=outgoing,
         incoming=incoming,
         local_displacement=local,
         local_incoming=incoming,
-        bases=tuple(bases),
+        bases=tuple(idle[basis] for basis in searched),
         residual=certificate.residual,
         force=force,
     )
@@ -67,16 +63,13 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     """
     known, is_known = known_forces(problem, contact_force)
     balance, needed = balance_of_rows(problem, displacement)
-    cuts = problem.cuts
-    n_cuts = sum(len(side) for side, _ in cuts)
-    first = np.concatenate([np.zeros(0, dtype=np.intp), *(side for side, _ in cuts)])
-    second = np.concatenate([np.zeros(0, dtype=np.intp), *(side for _, side in cuts)])
-    pairs = np.arange(n_cuts)
+    sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *problem.cuts], axis=1)
+    pairs = np.arange(sides.shape[1])
     opposite = sparse.csr_array(
-        (np.ones(2 * n_cuts), (np.tile(pairs, 2), np.concatenate([first, second]))),
-        shape=(n_cuts, problem.n_rows),
+        (np.ones(sides.size), (np.tile(pairs, 2), sides.ravel())),
+        shape=(len(pairs), problem.n_rows),
     )
-    right = np.concatenate([needed - balance @ known, np.zeros((n_cuts, problem.n_instants))])
+    right = np.concatenate([needed - balance @ known, np.zeros((len(pairs), problem.n_instants))])
     system = sparse.csr_array(sparse.vstack([balance, opposite]))
     open_rows = np.flatnonzero(~is_known)
     known[open_rows] = _smallest(sparse.csr_array(system[:, open_rows]), right)

@@ -50,7 +50,7 @@ class CoarseProblem:
                 held = local.T @ held.reshape(len(rows), -1, order="F")
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
             self._members.append(_Member(group, rows, local, np.asfortranarray(forces)))
-        self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
+        self._spread = sparse.csr_array(sparse.hstack(seen))
         whole = sparse.block_diag(list(map(sparse.coo_array, systems)), format="csr")
         system = self._spread @ whole @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
@@ -62,8 +62,7 @@ class CoarseProblem:
 
         def work(instants: slice) -> None:
             forces = [member.macro_forces(instants) for member in self._members]
-            stacked = np.concatenate(forces) if len(forces) > 1 else forces[0]
-            multiplier = self._solve(stacked, instants)
+            multiplier = self._solve(np.concatenate(forces), instants)
             for member, place in zip(self._members, self._places, strict=True):
                 member.add(multiplier[place], instants)
 

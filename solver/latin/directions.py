@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
-from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress, read_only
+from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 from solver.laws import Bodies
 from solver.refusal import check_range
 

@@ -6,12 +6,12 @@ import math
 import time
 
 from solver.latin.cost import WAIT, Costs, costs_of
-from solver.latin.force_changes import ForceChanges
+from solver.latin.falling import ForceChanges
 from solver.latin.iterate import Iterate
+from solver.latin.status import JUMPS, Status, collapses
 from solver.latin.status_step import Certificate, states_of, status_step
 from solver.reference.condensation import NoReferenceError
 from solver.reference.incremental import Incremental, incremental_solver
-from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Interrupted
 
 SETTLED = 0.04
@@ -27,10 +27,8 @@ LAST = 10.0
 ROOM = 4.0
 """Times the seconds of a step that are left of a run's limit when its last trial begins."""
 AGAIN = 2.0
-"""Ratio of the iteration at which a failed status step is tried again."""
-RARELY = 2.0
-"""Ratio of the iterations at which the cost of a step is asked anew: a rough number, and dear
-beside a small iteration."""
+"""Ratio of the iterations at which a failed status step is tried again, and its cost asked anew: a
+rough number, and dear beside a small iteration."""
 
 
 class ErrorEstimate:
@@ -44,19 +42,19 @@ class ErrorEstimate:
 
     Attributes
     ----------
+    needs_proof
+        As given.
     certificate
         The solution, once it is known.
     deadline
         When a status step is given up, and before which none begins that would take longer, by
         `time.perf_counter`.
-    jumps
-        Whether the last status step found nothing any more after the structure had jumped.
-    collapse
-        From when on no contact forces balance the loads, if the last status step ended there.
+    ending
+        How the run ends, if the last status step came to where no equilibrium goes on.
     """
 
     def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
-        self._accuracy, self._needs_proof = accuracy, needs_proof
+        self._accuracy, self.needs_proof = accuracy, needs_proof
         self._changes = ForceChanges()
         self._next_trial = 1
         self._solver: Incremental | None = None
@@ -64,8 +62,7 @@ class ErrorEstimate:
         self._has_solver, self._had_its_last = True, False
         self.certificate: Certificate | None = None
         self.deadline = math.inf
-        self.jumps = False
-        self.collapse: Collapse | None = None
+        self.ending: Status | None = None
 
     def __call__(self, iterate: Iterate) -> float:
         """The estimate for the next iterate of a run; NaN where there is none."""
@@ -83,6 +80,11 @@ class ErrorEstimate:
             return worst
         return self.certificate.distance.of_friction_force(iterate)
 
+    @property
+    def is_proven(self) -> bool:
+        """Whether it is the distance to a certified solution."""
+        return self.certificate is not None
+
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
         """Whether displacement and contact force are that near to a certified solution."""
         if self.certificate is None:
@@ -99,7 +101,7 @@ class ErrorEstimate:
         costs = self._costs_of(iterate)
         if not self._has_solver or costs.step > self._left():
             return False
-        return self._needs_proof or costs.afford(patience * iterate.number, least)
+        return self.needs_proof or costs.afford(patience * iterate.number, least)
 
     def try_in_time(self, iterate: Iterate) -> None:
         """Try the status step, once, where a run without an answer has no time for it later."""
@@ -129,8 +131,10 @@ class ErrorEstimate:
             return
         except Interrupted:
             return
-        self.jumps = solution.jumps_at is not None and solution.is_lost
-        self.collapse = solution.collapse
+        jumped = solution.jumps_at is not None and solution.is_lost
+        self.ending = JUMPS if jumped else None
+        if solution.collapse is not None:
+            self.ending = collapses(solution.collapse)
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
 
@@ -140,6 +144,6 @@ class ErrorEstimate:
 
     def _costs_of(self, iterate: Iterate) -> Costs:
         """Estimate the costs by the statuses that an iterate shows, now and then anew."""
-        if self._costs is None or iterate.number >= RARELY * self._costs[0]:
+        if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
             self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
         return self._costs[1]

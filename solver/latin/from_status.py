@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.directions import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
-from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress, read_only
+from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 
 SETTLED, CALM = 0.1, 25
 """The status has settled when no larger share of all points and instants than this changed, so many

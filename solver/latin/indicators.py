@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -162,28 +161,3 @@ def ratio(part: float, whole: float) -> float:
     if part == 0.0:
         return 0.0
     return part / whole if whole != 0.0 else float("inf")
-
-
-SHARE = 8
-"""What may be low enough is computed again at the latest after this part of the iterations."""
-
-
-class Look:
-    """The next iteration at which a number that falls is worth computing.
-
-    Half way to where its last two values, over what is low enough, would have it fall to 1; while
-    it does not fall, after half of the longest wait. So it is missed by little, and only if it
-    falls suddenly.
-    """
-
-    def __init__(self) -> None:
-        self.next, self._last = 0, (0, math.nan)
-
-    def saw(self, iteration: int, value: float) -> None:
-        """Take in a value."""
-        (before, last), left = self._last, 0.0
-        self._last = iteration, value
-        if 1.0 < value < last and iteration > before:
-            left = 0.5 * math.log(value) / math.log(last / value) * (iteration - before)
-        least = 0 if value <= 1.0 else iteration // (2 * SHARE)
-        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)

@@ -9,11 +9,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import Array, read_only
 from solver.discrete.contacts import ContactFields, contact_fields
 from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_of, contact_status, latin_indicator
-from solver.reduction.basis import Modes
+from solver.reduction.basis import SharedBasis
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +46,6 @@ class UpdateProgress:
     fields: tuple[Array, ...] = ()
     violation: float = np.inf
 
-    @property
-    def outgoing(self) -> Array:
-        """W + F/k of these with the k of the next iteration, read-only."""
-        displacement, force = self.fields
-        return read_only(displacement + force / self.k[:, None])
-
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
@@ -72,7 +66,7 @@ class Checkpoint:
     number: int
     seconds: float
     outgoing: Array
-    bases: tuple[Modes, ...] = ()
+    bases: tuple[SharedBasis, ...] = ()
     course: UpdateProgress | None = None
 
 
@@ -120,7 +114,7 @@ class Iterate:
     incoming: Array
     local_displacement: Array
     local_incoming: Array
-    bases: tuple[Modes, ...] = ()
+    bases: tuple[SharedBasis, ...] = ()
     course: UpdateProgress | None = None
     residual: float | None = None
     force: Array | None = None
@@ -136,7 +130,9 @@ class Iterate:
         """What is needed to go on from here."""
         new = self.new_course
         if new is not None:
-            return Checkpoint(self.number, self.seconds, new.outgoing, course=new)
+            displacement, force = new.fields
+            outgoing = read_only(displacement + force / new.k[:, None])
+            return Checkpoint(self.number, self.seconds, outgoing, course=new)
         bases = self.bases if self.residual is None else ()
         return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
 
@@ -196,8 +192,6 @@ class Iterate:
         Points of all interfaces with friction, one interface after the other.
         """
         places = self.problem.contact_places.values()
-        if not self.problem.opens:
-            return self.contact_force
         return np.concatenate([self.contact_force[own[-1]] for own in places])
 
     def contact(self, name: str) -> ContactFields:
@@ -214,9 +208,3 @@ class Iterate:
         interfaces with friction, one interface after the other.
         """
         return contact_status(self)
-
-
-def read_only(field: Array) -> Array:
-    """The same field, which nobody can change any more."""
-    field.flags.writeable = False
-    return field

@@ -8,10 +8,11 @@ from itertools import count
 
 from numpy.linalg import LinAlgError
 
+from solver.arrays import read_only
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
 from solver.latin.blocks import Blocks, one_blas_thread
-from solver.latin.iterate import Checkpoint, Iterate, read_only
+from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.linear_stage import LinearStage
 from solver.latin.local_stage import LocalStage
 from solver.latin.method import Latin
@@ -95,7 +96,6 @@ class Iteration:
             start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
         self.linear.go_to(start)
         self._show()
-        self._read = self.incoming
 
     def _show(self) -> None:
         self.incoming = read_only(self.linear.incoming())
@@ -104,7 +104,6 @@ class Iteration:
     def local_stage(self) -> None:
         """Obey the laws along E+ (paper, problem 2.1)."""
         self.linear.read(self.local(self.incoming))
-        self._read = read_only(self.local.incoming)
 
     def linear_stage(self) -> None:
         """Solve elasticity along E- (paper, problem 2.2), relax, accelerate."""
@@ -131,7 +130,7 @@ class Iteration:
             outgoing=self.outgoing,
             incoming=self.incoming,
             local_displacement=read_only(self.local.displacement),
-            local_incoming=self._read,
+            local_incoming=read_only(self.local.incoming),
             bases=self.linear.bases(),
             course=self._course,
         )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from solver.latin.blocks import ALL, Blocks
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
 from solver.latin.response import Responses, response_of
-from solver.reduction.basis import Modes
+from solver.reduction.basis import SharedBasis
 
 if TYPE_CHECKING:
     from solver.latin.pgd import PGD
@@ -26,16 +26,9 @@ class Full:
 
     Attributes
     ----------
-    remedy
-        What helps a run that does not converge, to begin a sentence with; nothing here.
-    has_to_prove
-        Whether a run ends by proof alone, whatever that costs.
     responses
         Factors of substructures that runs with one k share; None: each run has its own.
     """
-
-    remedy: ClassVar[str] = ""
-    has_to_prove: ClassVar[bool] = False
 
     responses: Responses | None = field(default=None, repr=False)
 
@@ -76,30 +69,20 @@ class LinearStage:
         for group in self.groups:
             group.go_to(checkpoint)
 
-    def bases(self) -> tuple[Modes, ...]:
+    def bases(self) -> tuple[SharedBasis, ...]:
         """The separated bases of the state, one per substructure; none of one in full."""
         bases = dict(basis for group in self.groups for basis in group.bases())
         return tuple(bases[number] for number in sorted(bases))
 
     def read(self, target: Array) -> None:
         """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.gather(target, instants)
-
-        self._blocks.each(work)
+        self._each(lambda group, instants: group.gather(target, instants))
 
     def advance(self, relaxation: float) -> None:
         """Solve the linear stage: the state takes on so large a share of the new one."""
         if self._coarse is not None:
             self._coarse.add_multiplier()
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.relax(relaxation, instants)
-
-        self._blocks.each(work)
+        self._each(lambda group, instants: group.relax(relaxation, instants))
 
     def outgoing(self) -> Array:
         """W + F/k, shape (n_rows, n_instants)."""
@@ -111,13 +94,17 @@ class LinearStage:
     def incoming(self) -> Array:
         """W - F/k, shape (n_rows, n_instants)."""
         boundary = np.empty(self._shape, order="F")
-
-        def work(instants: slice) -> None:
-            for group in self.groups:
-                group.scatter(group.reflect(instants), boundary, instants)
-
-        self._blocks.each(work)
+        self._each(lambda group, some: group.scatter(group.reflect(some), boundary, some))
         return boundary
+
+    def _each(self, work: Callable[[Group, slice], None]) -> None:
+        """Do some work for every group at every block of instants."""
+
+        def of_block(instants: slice) -> None:
+            for group in self.groups:
+                work(group, instants)
+
+        self._blocks.each(of_block)
 
 
 class Group:
@@ -149,8 +136,6 @@ class Group:
         self.target = self.field()
         self._reflected = self.field()
         self._order = np.ascontiguousarray(self.rows.T.ravel())
-        covers = self.rows.size == problem.n_rows
-        self._back = np.argsort(self._order) if covers else None
 
     def field(self) -> Array:
         """Allocate a zero field of the group."""
@@ -163,11 +148,7 @@ class Group:
 
     def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
         """Write a field of the group into the rows of a boundary field, at some instants."""
-        flat = values.T.reshape(self._n_instants, -1)[instants]
-        if self._back is None:
-            field.T[instants, self._order] = flat
-        else:
-            np.take(flat, self._back, axis=1, out=field.T[instants], mode="clip")
+        field.T[instants, self._order] = values.T.reshape(self._n_instants, -1)[instants]
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the state of a checkpoint, or that in which all is zero."""
@@ -200,7 +181,7 @@ class Group:
             reflected += 2.0 * self.body[:, :, instants]
         return self._reflected
 
-    def bases(self) -> Iterator[tuple[int, Modes]]:
+    def bases(self) -> Iterator[tuple[int, SharedBasis]]:
         """Separated bases, by number of the substructure."""
         return iter(())
 

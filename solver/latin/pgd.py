@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import Modes, ReductionRecord, SeparatedBasis, nearest_mode
+from solver.reduction.basis import ReductionRecord, SeparatedBasis, SharedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -46,12 +45,9 @@ class PGD:
         Equal substructures use the same modes if these miss at most this share of each one's field;
         0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
         (solver/study/README.md, 8).
-    remedy, has_to_prove, responses
+    responses
         As of `Full`.
     """
-
-    remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
-    has_to_prove: ClassVar[bool] = True
 
     modes: int = 10
     tolerance: float = 1e-7
@@ -70,128 +66,92 @@ class PGD:
         return PGDGroup(problem, numbers, k, self)
 
 
-@dataclass
-class Family:
-    """One basis, and the substructures that use it by their places in a group.
-
-    The basis is of y = W + F/k; its columns run through the members, then through the instants.
-    Beside it W - F/k of every mode, (n_boundary, n_modes), and what the last iteration did.
-    """
-
-    members: list[int]
-    basis: SeparatedBasis
-    incoming_modes: Array
-    record: ReductionRecord
-
-    def columns(self, field: Array) -> Array:
-        """The members of a group field as one matrix, shape (n_boundary, n_columns).
-
-        It is a view of the field if there is one member, otherwise a copy.
-        """
-        members = self.members
-        if len(members) == 1:
-            field = field[:, members[0] : members[0] + 1]
-        else:
-            field = np.asfortranarray(field[:, members])
-        return field.reshape(len(field), -1, order="F")
-
-    def put(self, field: Array, columns: Array) -> None:
-        """Write such a matrix into a group field."""
-        field[:, self.members] = columns.reshape(len(field), len(self.members), -1, order="F")
-
-
 class PGDGroup(Group):
-    """Identical substructures whose y is separated, in families that each share a basis."""
+    """Identical substructures whose y is separated, on bases that some of them may share."""
 
-    families: list[Family]
+    shared: list[SharedBasis]
 
     def __init__(self, problem: Problem, numbers: list[int], k: Array, pgd: PGD) -> None:
         super().__init__(problem, numbers, k, pgd.responses)
         self._pgd, self._weights = pgd, problem.time_weights
+        self._place = {number: place for place, number in enumerate(numbers)}
         self.iterations = 0
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the bases of a checkpoint, or the nearest ones to its fields, or none."""
         self.iterations = checkpoint.number if checkpoint else 0
         if checkpoint is not None and checkpoint.bases:
-            self.families = list(self._shown(checkpoint.bases))
+            self.shared = list(dict.fromkeys(checkpoint.bases[number] for number in self.numbers))
             return
         field = self.field()
         if checkpoint is not None:
             field = checkpoint.outgoing[self.rows]
-        self.families = [self._family([place], field) for place in range(self.rows.shape[1])]
+        self.shared = [self._of_field((number,), field) for number in self.numbers]
 
     def outgoing(self) -> Array:
         """W + F/k, rebuilt."""
         rebuilt = self.field()
-        for family in self.families:
-            family.put(rebuilt, family.basis.field())
+        for shared in self.shared:
+            self._put(shared.members, rebuilt, shared.basis.field())
         return rebuilt
 
     def relax(self, relaxation: float, instants: slice = ALL) -> None:
         """Bring the bases towards the target: update time functions, enrich, downsize."""
-        for family in self.families:
-            self._advance(family, relaxation)
+        self.shared = [self._advanced(shared, relaxation) for shared in self.shared]
         self.iterations += 1
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share()
 
     def reflect(self, instants: slice = ALL) -> Array:
         """W - F/k; the next call overwrites it."""
-        for family in self.families:
-            columns = family.columns(self._reflected)
-            np.matmul(family.incoming_modes, family.basis.time_functions, out=columns)
-            if len(family.members) > 1:
-                family.put(self._reflected, columns)
+        for shared in self.shared:
+            columns = self._columns(shared.members, self._reflected)
+            np.matmul(shared.incoming, shared.basis.time_functions, out=columns)
+            if len(shared.members) > 1:
+                self._put(shared.members, self._reflected, columns)
         if self.body is not None:
             self._reflected += 2.0 * self.body
         return self._reflected
 
-    def bases(self) -> Iterator[tuple[int, Modes]]:
+    def bases(self) -> Iterator[tuple[int, SharedBasis]]:
         """The bases, by number of the substructure."""
-        for family in self.families:
-            time_functions = family.basis.time_functions
-            for place, member in enumerate(family.members):
-                modes = Modes(
-                    outgoing=family.basis.modes,
-                    incoming=family.incoming_modes,
-                    time_functions=time_functions[:, place :: len(family.members)].copy(),
-                    k=self.k,
-                    stored=self.numbers[family.members[0]],
-                    record=family.record,
-                )
-                yield self.numbers[member], modes
+        for shared in self.shared:
+            for number in shared.members:
+                yield number, shared
 
-    def _shown(self, bases: Sequence[Modes]) -> Iterator[Family]:
-        """Families that were shown, bit by bit."""
-        places: dict[int, list[int]] = {}
-        for place, number in enumerate(self.numbers):
-            places.setdefault(bases[number].stored, []).append(place)
-        for members in places.values():
-            shown = [bases[self.numbers[place]] for place in members]
-            modes = np.asfortranarray(shown[0].outgoing)
-            time_functions = [basis.time_functions for basis in shown]
-            joined = np.stack(time_functions, axis=2).reshape(modes.shape[1], -1)
-            weights = np.repeat(self._weights, len(members))
-            basis = SeparatedBasis(modes, joined, self.k, weights)
-            yield Family(members, basis, self._incoming(basis), shown[0].record)
+    def _columns(self, members: Sequence[int], field: Array) -> Array:
+        """Some members of a group field as one matrix, shape (n_boundary, n_columns).
 
-    def _advance(self, family: Family, relaxation: float) -> None:
-        basis, pgd = family.basis, self._pgd
-        target = family.columns(self.target)
+        It is a view of the field if there is one member, otherwise a copy.
+        """
+        places = [self._place[number] for number in members]
+        if len(places) == 1:
+            field = field[:, places[0] : places[0] + 1]
+        else:
+            field = np.asfortranarray(field[:, places])
+        return field.reshape(len(field), -1, order="F")
+
+    def _put(self, members: Sequence[int], field: Array, columns: Array) -> None:
+        """Write such a matrix into a group field."""
+        places = [self._place[number] for number in members]
+        field[:, places] = columns.reshape(len(field), len(places), -1, order="F")
+
+    def _advanced(self, shared: SharedBasis, relaxation: float) -> SharedBasis:
+        basis, incoming, pgd = shared.basis, shared.incoming, self._pgd
+        target = self._columns(shared.members, self.target)
         wanted = basis.coefficients(target)
         # What was last reflected is read already, and its place is free.
-        whole = basis.squared(target, family.columns(self._reflected))
+        whole = basis.squared(target, self._columns(shared.members, self._reflected))
         inside = basis.squared_of(wanted)
         change = wanted - basis.time_functions
         updated = basis.squared_of(change)
-        basis.time_functions += relaxation * change
         left = whole - inside
         if left < NOTHING_LEFT * whole:
             left = 0.0
         residual = left + updated
         enough = pgd.tolerance**2 * whole
         explained, added, dropped = 0.0, 0, 0.0
+        basis = replace(basis, time_functions=basis.time_functions + relaxation * change)
         if left > enough:
             rest = target - basis.modes @ wanted
             while added < pgd.pairs and left - explained > enough:
@@ -200,45 +160,46 @@ class PGDGroup(Group):
                     break
                 time_function = (self.k * mode) @ rest
                 rest -= np.multiply.outer(mode, time_function)
-                basis.append(mode, relaxation * time_function)
+                basis = basis.appended(mode, relaxation * time_function)
                 explained += basis.squared_of(time_function[None])
                 added += 1
-            dropped = basis.downsize(pgd.tolerance, pgd.modes)
-            family.incoming_modes = self._incoming(basis)
-        family.record = ReductionRecord(
+            basis, dropped = basis.downsized(pgd.tolerance, pgd.modes)
+            incoming = self._incoming(basis)
+        record = ReductionRecord(
             modes=basis.n_modes,
             added=added,
             updated=updated / residual if residual > 0.0 else 1.0,
             enriched=min(explained / residual, 1.0) if residual > 0.0 else 0.0,
             dropped=dropped,
         )
+        return SharedBasis(shared.members, basis, incoming, record)
 
     def _share(self) -> None:
-        """Join families whose fields lie in each other's modes up to the allowed share."""
-        joined: list[Family] = []
-        for family in self.families:
+        """Join bases whose fields lie in each other's modes up to the allowed share."""
+        joined: list[SharedBasis] = []
+        for shared in self.shared:
             for place, other in enumerate(joined):
-                apart = family.basis.outside(other.basis), other.basis.outside(family.basis)
+                apart = shared.basis.outside(other.basis), other.basis.outside(shared.basis)
                 if max(apart) <= self._pgd.sharing:
                     field = self.field()
-                    for part in (other, family):
-                        part.put(field, part.basis.field())
-                    members = sorted(other.members + family.members)
-                    joined[place] = replace(self._family(members, field), record=other.record)
+                    for part in (other, shared):
+                        self._put(part.members, field, part.basis.field())
+                    members = tuple(sorted(other.members + shared.members))
+                    joined[place] = replace(self._of_field(members, field), record=other.record)
                     break
             else:
-                joined.append(family)
-        self.families = joined
+                joined.append(shared)
+        self.shared = joined
 
-    def _family(self, members: list[int], field: Array) -> Family:
-        """Some members with a basis of their part of a group field."""
-        columns = field[:, members].reshape(len(field), -1, order="F")
-        weights, pgd = np.repeat(self._weights, len(members)), self._pgd
+    def _of_field(self, members: tuple[int, ...], field: Array) -> SharedBasis:
+        """Basis of some members' part of a group field."""
+        columns, pgd = self._columns(members, field), self._pgd
+        weights = np.repeat(self._weights, len(members))
         basis = SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
-        return Family(members, basis, self._incoming(basis), ReductionRecord.idle(basis.n_modes))
+        return SharedBasis(members, basis, self._incoming(basis), ReductionRecord(basis.n_modes))
 
     def _incoming(self, basis: SeparatedBasis) -> Array:
-        incoming = np.empty(basis.modes.shape, order="F")
-        if basis.n_modes:
-            self.response.reflect(basis.modes, incoming)
+        """W - F/k of every mode."""
+        incoming = np.empty_like(basis.modes)
+        self.response.reflect(basis.modes, incoming)
         return incoming

@@ -11,6 +11,7 @@ from solver.discrete.problem import Problem
 from solver.latin.anderson import MEMORY, MOST_VALUES
 from solver.latin.cost import SYSTEMS, WAIT, costs_of
 from solver.latin.method import Latin
+from solver.latin.pgd import PGD
 from solver.reference.contact import MOST_JUMPS, jumps_in
 from solver.reference.incremental import rubs_on_supports
 
@@ -75,7 +76,7 @@ def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool)
     expected = (ITERATIONS + MORE * coupled) * (1.0 if latin.acceleration else PLAIN)
     iterations = min(expected, most)
     is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
-    steps = has_solver and (latin.linear.has_to_prove or is_worth_it)
+    steps = has_solver and (isinstance(latin.linear, PGD) or is_worth_it)
     seconds = BEGINNING + WATCHED * iterations * costs.iteration + steps * incremental
     reference = incremental if with_reference and has_solver else 0.0
     field = problem.n_rows * problem.n_instants

@@ -8,22 +8,21 @@ does, the next few, and one or two once friction has settled (solver/study/READM
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.directions import SearchDirection
 from solver.latin.from_status import FromStatus
-from solver.latin.iterate import Checkpoint, Iterate, read_only
+from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.method import Latin
-from solver.latin.solve import Record, Solution, solve
+from solver.latin.solve import Solution, record, solve
 from solver.latin.start import Nested
-from solver.latin.status import Ending
+from solver.latin.status import Decision, Ending
 from solver.latin.status_step import StatusStep
 from solver.reference.distance import Distance
 from solver.refusal import RefusedError
@@ -46,17 +45,14 @@ class Slab:
     start: Checkpoint | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _OfWhole(SearchDirection):
     """The search direction of the whole interval, whatever acts in a slab of it."""
 
-    k: Array | None = None
+    k: Array
 
-    def of(self, problem: Problem) -> Array:
-        assert self.k is not None
+    def rule(self, problem: Problem) -> Array:
         return self.k
-
-    rule = of
 
 
 def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
@@ -77,15 +73,18 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
             "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
         )
     instants = slice(0, min(1 + length, problem.n_instants))
-    direction = _OfWhole(k=latin.direction.of(problem))
-    linear = replace(latin.linear, responses={})
-    start, nested = None, latin.start
+    start, nested, stop = None, latin.start, latin.stop
     if nested is not None:
         start = Nested(lambda: (_during(coarser, instants) for coarser in nested.coarser()))
-    stop, accuracy = latin.stop, latin.stop.accuracy
-    if np.isfinite(accuracy):
-        stop = replace(stop, sufficient=min(SHARE * accuracy, 1.0) ** 2)
-    method = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
+    if np.isfinite(stop.accuracy):
+        stop = replace(stop, sufficient=min(SHARE * stop.accuracy, 1.0) ** 2)
+    method = replace(
+        latin,
+        direction=_OfWhole(k=latin.direction.of(problem)),
+        linear=replace(latin.linear, responses={}),
+        start=start,
+        stop=stop,
+    )
     return Slab(instants, _during(problem, instants), method)
 
 
@@ -172,7 +171,10 @@ def solve_in_slabs(
     missed = (solution for solution in solutions if solution.status.ending is not Ending.CONVERGED)
     status = next(missed, solutions[-1]).status
     joined = _together(problem, [solution.iterate for solution in solutions])
-    return Solution(joined, _records(solutions, joined, distance), status)
+    *records, last = (entry for solution in solutions for entry in solution.records)
+    records = [replace(entry, iteration=number) for number, entry in enumerate(records, 1)]
+    of_whole = Decision(last.seconds, last.estimated_error, status)
+    return Solution(joined, [*records, record(joined, of_whole, distance)], status)
 
 
 def _together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
@@ -193,19 +195,3 @@ def _together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
         local_displacement=joined("local_displacement"),
         local_incoming=joined("local_incoming"),
     )
-
-
-def _records(
-    solutions: Sequence[Solution], whole: Iterate, distance: Distance | None
-) -> list[Record]:
-    """The records of all slabs, numbered through; the last is of the whole interval."""
-    records = [record for solution in solutions for record in solution.records]
-    records = [replace(record, iteration=number) for number, record in enumerate(records, 1)]
-    records[-1] = replace(
-        records[-1],
-        indicator=whole.indicator,
-        behaviour=whole.behaviour,
-        error_displacement=distance.of_displacement(whole) if distance else math.nan,
-        error_force=distance.of_friction_force(whole) if distance else math.nan,
-    )
-    return records

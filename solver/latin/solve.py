@@ -11,8 +11,8 @@ from solver.latin.blocks import one_blas_thread
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.method import Latin
-from solver.latin.status import CANCELLED, Ending, Status
-from solver.latin.stop import Decision, StopState
+from solver.latin.status import CANCELLED, Decision, Ending, Status
+from solver.latin.stop import StopState
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 

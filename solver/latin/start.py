@@ -66,14 +66,10 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     the result are those of the fine rows, (n_rows,) and (n_rows, n_instants).
     """
     coarse = solution.problem
-    displacement = (solution.displacement / coarse.scales.displacement)[coarse.row_dofs]
+    displacement = solution.displacement / coarse.scales.displacement
     force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
-    row_of_dof = np.zeros(coarse.n_dofs, dtype=np.intp)
-    row_of_dof[coarse.row_dofs] = np.arange(coarse.n_rows)
     bodies, fine_bodies = _bodies(coarse), _bodies(fine)
-    inside = _interpolated(
-        _apart(fine, fine_bodies), _apart(coarse, bodies), displacement[row_of_dof]
-    )
+    inside = _interpolated(_apart(fine, fine_bodies), _apart(coarse, bodies), displacement)
     moved = inside[fine.row_dofs]
     carried, rests = np.zeros_like(moved), np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
@@ -92,8 +88,6 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
 
 def _bodies(problem: Problem) -> Indices:
     """Number of the body that every degree of freedom belongs to, from 0 on."""
-    if len(problem.rubbing) == 1 and problem.friction.is_on_support:
-        return np.zeros(problem.n_dofs, dtype=np.intp)
     parts, n_dofs = problem.substructures, problem.n_dofs
     dofs = np.concatenate([part.dofs for part in parts])
     number = n_dofs + np.repeat(np.arange(len(parts)), [len(part.dofs) for part in parts])

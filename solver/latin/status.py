@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
+from solver.latin.pgd import PGD
 from solver.latin.status_step import Certificate
 from solver.reference.limit_analysis import Collapse
 
@@ -36,6 +37,31 @@ class Status:
 
     ending: Ending
     advice: str
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What the stop rules make of an iterate.
+
+    Attributes
+    ----------
+    seconds
+        Time that the run took so far, the stop rules' own included, s.
+    estimated_error
+        As in `Record`; NaN where the rules did not need it.
+    status
+        How the run ends, or None if it goes on.
+    certificate
+        The solution of the discrete problem, if a status step has found it.
+    finished
+        The iterate that it makes, where the run ends with it, and the decision on that.
+    """
+
+    seconds: float
+    estimated_error: float = math.nan
+    status: Status | None = None
+    certificate: Certificate | None = None
+    finished: tuple[Iterate, Decision] | None = None
 
 
 CANCELLED = Status(Ending.CANCELLED, "The run was stopped before its end; start it again.")
@@ -73,6 +99,7 @@ _BY_INCREMENTS = (
     "whose own contact force was still {} % away from it."
 )
 _ON_BASES = " The modes are those of that iterate."
+_FEW_MODES = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
 
@@ -166,8 +193,9 @@ def stalled(latin: Latin, lowest: float) -> Status:
 
 def _remedies(latin: Latin) -> tuple[str, str]:
     """What helps against an unsuitable k, as part of a sentence, and bases that are too small."""
-    has_step, modes = latin.finish is not None, latin.linear.remedy
-    of_k = "try a k_scale ten times smaller, and if that is no better ten times larger"
-    also = "" if has_step else ", or set finish=at-once"
-    of_bases = f"{modes}{also}." if modes else ""
-    return of_k if has_step else "set finish=at-once, for which k does not matter", of_bases
+    of_k, also = "set finish=at-once, for which k does not matter", ", or set finish=at-once"
+    if latin.finish is not None:
+        of_k = "try a k_scale ten times smaller, and if that is no better ten times larger"
+        also = ""
+    has_bases = isinstance(latin.linear, PGD)
+    return of_k, f"{_FEW_MODES}{also}." if has_bases else ""

@@ -9,38 +9,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solver.arrays import Array
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
-from solver.latin.indicators import Look
+from solver.latin.falling import Look, Lowest
 from solver.latin.iterate import Iterate
+from solver.latin.pgd import PGD
 from solver.latin.status import (
     BELOW,
     EXPECTED,
-    JUMPS,
     PROVEN,
+    Decision,
     Ending,
     Status,
     certified,
-    collapses,
     diverged,
     exhausted,
     stalled,
     with_jump,
 )
-from solver.latin.status_step import Certificate
 from solver.refusal import check_range
 
 if TYPE_CHECKING:
     from solver.latin.method import Latin
 
-STALL_WINDOW = 200
-"""Iterations without a lower indicator after which a run is called stalled."""
-STALL_FACTOR = 0.99
-"""A lower indicator is one below this part of the lowest so far."""
-SELDOM = 16
-"""Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
 DEFAULT_ACCURACY = 0.01
 """Of a status step that ends a run which nobody asks to be accurate."""
 LEAST_VIOLATION, LARGEST_VIOLATION = 1e-12, 1e-2
@@ -92,31 +84,6 @@ class Stop:
         check_range(self, "sufficient", 0.0, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Decision:
-    """What the stop rules make of an iterate.
-
-    Attributes
-    ----------
-    seconds
-        Time that the run took so far, the stop rules' own included, s.
-    estimated_error
-        As in `Record`; NaN where the rules did not need it.
-    status
-        How the run ends, or None if it goes on.
-    certificate
-        The solution of the discrete problem, if a status step has found it.
-    finished
-        The iterate that it makes, where the run ends with it, and the decision on that.
-    """
-
-    seconds: float
-    estimated_error: float = math.nan
-    status: Status | None = None
-    certificate: Certificate | None = None
-    finished: tuple[Iterate, Decision] | None = None
-
-
 class StopState:
     """What a run remembers to see its end, and what that costs.
 
@@ -135,15 +102,13 @@ class StopState:
 
     def __init__(self, latin: Latin, spent: float = 0.0) -> None:
         self._latin, self._stop, self.seconds = latin, latin.stop, spent
+        self._may_finish = latin.finish is not None
         self._searches = latin.finish is not None and not latin.finish.at_once
         self._asks_accuracy = math.isfinite(self._stop.accuracy)
-        self.estimate = ErrorEstimate(
-            self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY,
-            needs_proof=latin.linear.has_to_prove,
-        )
+        accuracy = self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY
+        self.estimate = ErrorEstimate(accuracy, needs_proof=isinstance(latin.linear, PGD))
         self._on_goal, self._on_sufficient = Look(), Look()
-        self._lowest, self._lowest_at = math.inf, 0
-        self._k: Array | None = None
+        self._lowest = Lowest()
 
     def judge(self, iterate: Iterate) -> Decision:
         """Whether the run ends after an iterate, and how."""
@@ -155,18 +120,16 @@ class StopState:
         certificate = self.estimate.certificate
         decision = Decision(self._billed(iterate, began), error, status, certificate)
         goes_on = self._searches and status is None
-        if certificate is None or self._latin.finish is None or goes_on:
+        if certificate is None or not self._may_finish or goes_on:
             return decision
         began = time.perf_counter()
         error = certificate.distance.of_friction_force(iterate)
-        number, spent, searched = iterate.number + 1, iterate.seconds, iterate.bases
-        answer = finished(iterate.problem, iterate.k, certificate, number, spent, searched)
+        answer = finished(iterate.problem, iterate.k, certificate, iterate)
         answer = replace(answer, is_answer=self._searches)
         gave_up = status is not None and status.ending is not Ending.CONVERGED
         end = certified(answer, certificate, error, status.advice if status and gave_up else "")
-        seconds = self._billed(iterate, began)
-        last = answer, Decision(seconds, certificate.residual, end, certificate)
-        return replace(decision, estimated_error=error, status=None, finished=last)
+        last = Decision(self._billed(iterate, began), certificate.residual, end, certificate)
+        return replace(decision, estimated_error=error, status=None, finished=(answer, last))
 
     def _billed(self, iterate: Iterate, began: float) -> float:
         """Seconds of the whole run, with those since `began`."""
@@ -175,47 +138,40 @@ class StopState:
 
     def _ending(self, iterate: Iterate) -> tuple[float, Status | None]:
         """Estimated error of an iterate, NaN where nobody asks, and how the run ends, or None."""
-        stop, number, may_finish = self._stop, iterate.number, self._latin.finish is not None
+        stop, estimate, number = self._stop, self.estimate, iterate.number
         is_last = number >= stop.iterations or iterate.seconds + self.seconds >= stop.seconds
-        if may_finish:
-            self.estimate.try_in_time(iterate)
-        is_due, error = is_last or number >= self._on_goal.next, math.nan
+        if self._may_finish:
+            estimate.try_in_time(iterate)
+        is_due, error, status = is_last or number >= self._on_goal.next, math.nan, None
         # How many iterations a search takes is asked; a distance costs a hundredth to a sixth of
         # one (measured on the five scenes).
         if self._asks_accuracy and (is_due or self._searches):
-            error = self.estimate(iterate)
-        status = None
-        if self._searches and self._is_proven and error <= stop.accuracy:
+            error = estimate(iterate)
+        if self._searches and estimate.is_proven and error <= stop.accuracy:
             status = PROVEN
         elif is_due:
             status = self._converged(iterate, error)
-        if (
-            stop.sufficient
-            and status is None
-            and (is_last or number >= self._on_sufficient.next)
-            and self._is_low(iterate, stop.sufficient, self._on_sufficient)
-        ):
+        looks = stop.sufficient > 0.0 and (is_last or number >= self._on_sufficient.next)
+        if status is None and looks and self._is_low(iterate, stop.sufficient, self._on_sufficient):
             status = BELOW
-        if status is None and self._has_stalled(iterate):
-            status = stalled(self._latin, self._lowest)
+        if status is None and self._lowest.has_stalled(iterate):
+            status = stalled(self._latin, self._lowest.indicator)
         gives_up = is_last if status is None else status.ending is not Ending.CONVERGED
-        if gives_up and may_finish and not self._is_proven:
+        if gives_up and self._may_finish and not estimate.is_proven:
             # Whatever it costs, where a run that may end with it would give up.
-            self.estimate.try_step(iterate, LAST)
-        if self.estimate.collapse is not None:
-            return error, collapses(self.estimate.collapse)
-        if self.estimate.jumps:
-            return error, JUMPS
+            estimate.try_step(iterate, LAST)
+        if estimate.ending is not None:
+            return error, estimate.ending
         if status is None and is_last:
-            status = exhausted(self._latin, iterate, is_proven=self._is_proven)
-        return error, status and with_jump(status, iterate.problem, self.estimate.certificate)
+            status = exhausted(self._latin, iterate, is_proven=estimate.is_proven)
+        return error, status and with_jump(status, iterate.problem, estimate.certificate)
 
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
         """Status of a run that is accurate enough, at a low indicator, as far as both are asked."""
-        stop, number = self._stop, iterate.number
+        stop, estimate, number = self._stop, self.estimate, iterate.number
         if self._asks_accuracy:
             value = error / stop.accuracy
-            self._on_goal.saw(number, value if self._is_proven else math.nan)
+            self._on_goal.saw(number, value if estimate.is_proven else math.nan)
             if not value <= 1.0:
                 return None
             # The indicator says when to look again.
@@ -225,16 +181,11 @@ class StopState:
             return None
         if not self._asks_accuracy:
             return BELOW if asks_tolerance else None
-        if self._is_proven:
+        if estimate.is_proven:
             return PROVEN
         # An estimate counts for nothing on bases, or where a step is worth its cost.
-        counts = not self._latin.linear.has_to_prove
-        return EXPECTED if counts and not self.estimate.can_be_proven(iterate, least=WAIT) else None
-
-    @property
-    def _is_proven(self) -> bool:
-        """Whether the estimate is the distance to a certified solution."""
-        return self.estimate.certificate is not None
+        counts = not (estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT))
+        return EXPECTED if counts else None
 
     def _is_low(self, iterate: Iterate, tolerance: float, look: Look) -> bool:
         """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.
@@ -248,15 +199,3 @@ class StopState:
             return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
         return iterate.behaviour <= enough or self.estimate.is_proven_within(enough, iterate)
-
-    def _has_stalled(self, iterate: Iterate) -> bool:
-        """Whether the LATIN indicator has stopped falling."""
-        number = iterate.number
-        if iterate.k is not self._k:
-            # The indicator is measured by k: to look for the lowest begins anew.
-            self._k, self._lowest, self._lowest_at = iterate.k, math.inf, number
-        if number % SELDOM and number - self._lowest_at < STALL_WINDOW:
-            return False
-        if iterate.indicator < STALL_FACTOR * self._lowest:
-            self._lowest, self._lowest_at = iterate.indicator, number
-        return number - self._lowest_at >= STALL_WINDOW

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,24 +16,19 @@ STAGNATION = 0.01
 """Change of a pair's size, as a share, at which the fixed point stops; 0 and 0.1 as well."""
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class SeparatedBasis:
     """A field as a sum of space modes times time functions.
 
-    The modes are orthonormal in the inner product of the search direction, a^T k b; for the
-    boundary fields g = k u of solver/README.md, 3 that is the 1/k inner product.
+    The modes are orthonormal in the inner product of the search direction, a^T k b.
 
     Attributes
     ----------
-    modes
-        Shape (n_boundary, n_modes).
-    time_functions
-        Shape (n_modes, n_columns). The columns are instants; of a basis that several
-        substructures share, those of all of them.
-    k
-        Weights in space, shape (n_boundary,), positive.
-    weights
-        Weights of the columns, shape (n_columns,), positive.
+    modes, time_functions
+        Shapes (n_boundary, n_modes) and (n_modes, n_columns). The columns are instants; of a basis
+        that several substructures share, those of all of them.
+    k, weights
+        Weights in space and of the columns, shapes (n_boundary,) and (n_columns,), positive.
     """
 
     modes: Array
@@ -48,10 +42,8 @@ class SeparatedBasis:
     ) -> SeparatedBasis:
         """Basis of a field, shape (n_boundary, n_columns), downsized."""
         root = np.sqrt(k)[:, None]
-        basis = cls(np.eye(len(k)), root * field, k, weights)
-        basis.downsize(tolerance, largest)
-        basis.modes /= root
-        return basis
+        basis, _ = cls(np.eye(len(k)), root * field, k, weights).downsized(tolerance, largest)
+        return replace(basis, modes=basis.modes / root)
 
     @property
     def n_modes(self) -> int:
@@ -77,10 +69,11 @@ class SeparatedBasis:
         """Squared norm of what these time functions make with the modes."""
         return float(np.sum(time_functions * time_functions @ self.weights))
 
-    def append(self, mode: Array, time_function: Array) -> None:
-        """Add a pair whose mode is orthonormal to the others."""
-        self.modes = np.asfortranarray(np.column_stack([self.modes, mode]))
-        self.time_functions = np.vstack([self.time_functions, time_function])
+    def appended(self, mode: Array, time_function: Array) -> SeparatedBasis:
+        """Basis with a pair more, whose mode is orthonormal to the others."""
+        modes = np.asfortranarray(np.column_stack([self.modes, mode]))
+        time_functions = np.vstack([self.time_functions, time_function])
+        return replace(self, modes=modes, time_functions=time_functions)
 
     def orthonormal(self, mode: Array) -> Array | None:
         """A mode made orthonormal to the others; None if nothing of it is left."""
@@ -97,23 +90,24 @@ class SeparatedBasis:
             mode = mode / rest
         return mode
 
-    def downsize(self, tolerance: float, largest: int) -> float:
-        """Turn the modes into those of the field's singular values, sorted, and drop the smallest.
+    def downsized(self, tolerance: float, largest: int) -> tuple[SeparatedBasis, float]:
+        """Basis with the modes of the field's singular values, sorted, without the smallest.
 
-        Up to `tolerance`, a share of the field's norm, and in any case beyond the `largest` number
-        of modes. As the modes are orthonormal, the singular values of the field are those of the
-        small matrix of time functions. Returns the share of the field's norm that was dropped.
+        These are dropped up to `tolerance`, a share of the field's norm, and in any case beyond the
+        `largest` number of modes. As modes are orthonormal, the singular values of the field are
+        those of the small matrix of time functions. Also the share of the norm that was dropped.
         """
         if self.n_modes == 0:
-            return 0.0
+            return self, 0.0
         root = np.sqrt(self.weights)
         turn, values, right = np.linalg.svd(self.time_functions * root, full_matrices=False)
         tails = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
         rank = min(int(np.count_nonzero(tails > tolerance * tails[0])), largest)
-        self.modes = np.asfortranarray(self.modes @ turn[:, :rank])
-        self.time_functions = values[:rank, None] * right[:rank] / root
+        modes = np.asfortranarray(self.modes @ turn[:, :rank])
+        time_functions = values[:rank, None] * right[:rank] / root
         total = float(values @ values)
-        return float(np.sqrt(values[rank:] @ values[rank:] / total)) if total > 0.0 else 0.0
+        dropped = float(np.sqrt(values[rank:] @ values[rank:] / total)) if total > 0.0 else 0.0
+        return replace(self, modes=modes, time_functions=time_functions), dropped
 
     def outside(self, other: SeparatedBasis) -> float:
         """Share of this field that lies outside another's modes, in norm."""
@@ -169,60 +163,48 @@ class ReductionRecord:
     """
 
     modes: int
-    added: int
-    updated: float
-    enriched: float
-    dropped: float
-
-    @classmethod
-    def idle(cls, modes: int) -> ReductionRecord:
-        """Record of an iteration which did nothing to so many modes."""
-        return cls(modes, 0, 1.0, 0.0, 0.0)
+    added: int = 0
+    updated: float = 1.0
+    enriched: float = 0.0
+    dropped: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
-class Modes:
-    """What a substructure's basis holds: read-only, scaled, largest first.
+class SharedBasis:
+    """A separated basis of y = W + F/k, and the substructures that share it; read-only, scaled.
 
     Attributes
     ----------
-    outgoing
-        Modes of W + F/k, shape (n_boundary, n_modes), rows as `Substructure.rows`.
+    members
+        Their numbers, ascending; columns of the basis run through them, then through the instants.
+    basis
+        Its modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first.
     incoming
-        Modes of W - F/k, same shape; both belong to one admissible pair (paper, eq. 3).
-    time_functions
-        Shape (n_modes, n_instants).
-    k
-        Shape (n_boundary,).
-    stored
-        Which stored basis it reads: equal for substructures that share.
+        W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
     record
         What the last iteration did to it.
     """
 
-    outgoing: Array
+    members: tuple[int, ...]
+    basis: SeparatedBasis
     incoming: Array
-    time_functions: Array
-    k: Array
-    stored: int
     record: ReductionRecord
 
     @property
     def n_modes(self) -> int:
         """Number of modes."""
-        return int(self.outgoing.shape[1])
+        return self.basis.n_modes
+
+    def time_functions(self, member: int) -> Array:
+        """Time functions of a substructure, shape (n_modes, n_instants)."""
+        return self.basis.time_functions[:, self.members.index(member) :: len(self.members)]
 
     @cached_property
     def displacement_modes(self) -> Array:
         """Z, shape (n_boundary, n_modes)."""
-        return 0.5 * (self.outgoing + self.incoming)
+        return 0.5 * (self.basis.modes + self.incoming)
 
     @cached_property
     def force_modes(self) -> Array:
         """G = k (u - Z), shape (n_boundary, n_modes): the force that Z needs (paper, eq. 3)."""
-        return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
-
-
-def modes_stored(bases: Iterable[Modes]) -> int:
-    """Modes that the bases of a structure store, a shared basis counted once."""
-    return sum({basis.stored: basis.n_modes for basis in bases}.values())
+        return 0.5 * self.basis.k[:, None] * (self.basis.modes - self.incoming)

@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from solver.arrays import Array
-from solver.reduction.svd import Decomposition, decompose
+from solver.reduction.svd import decompose
 
 FADED = 1e-9
 """Share of its largest value that the bound is not taken to be below, where the load is divided by
@@ -28,30 +28,6 @@ STEPS = 6
 error where friction changes with slip is a sixth larger (measured)."""
 ENTRIES = 64
 """Instants of a branch, at most, at which lines are drawn through the entries of all points."""
-SAME_SHAPE = 1e-9
-"""Share of the largest bound by which one that changes in size alone may differ from that."""
-
-
-@dataclass(frozen=True, eq=False)
-class Branch:
-    """Instants between two reversals of the load, and the argument of their clip.
-
-    Attributes
-    ----------
-    instants
-        Which, as a slice.
-    way
-        1 where the load rises, or -1.
-    slope, offset
-        The argument is slope times load plus offset, a share of the bound, (n_points,) each. Where
-        the slope takes it up as the load goes on, it is clipped between the friction before and
-        the bound; where it takes it down, between that and the bound the other way.
-    """
-
-    instants: slice
-    way: float
-    slope: Array
-    offset: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,60 +36,33 @@ class Clips:
 
     Attributes
     ----------
-    given
-        The field, shape (n_points, n_instants), N/m.
+    given, field
+        The field, and what the clips are, shape (n_points, n_instants), N/m.
     bound
         Largest friction, same shape, N/m.
-    load
-        What drives it, over the size of the bound at every instant as a share of its largest,
-        shape (n_instants,).
     branches
-        In their order.
+        How many times the load goes one way.
     space_weights, time_weights
         Lengths of the points, and weights of the instants, in which errors are measured.
     """
 
     given: Array
+    field: Array
     bound: Array
-    load: Array
-    branches: tuple[Branch, ...]
+    branches: int
     space_weights: Array
     time_weights: Array
 
     @cached_property
-    def field(self) -> Array:
-        """What the clips are, shape (n_points, n_instants), N/m."""
-        field = np.empty_like(self.given)
-        held = np.zeros(len(field))
-        for branch in self.branches:
-            some = branch.instants
-            field[:, some] = _clipped(branch, held, self.bound[:, some], self.load)
-            held = field[:, some.stop - 1]
-        return field
-
-    @cached_property
-    def rest(self) -> Decomposition:
-        """What they leave of the field, in singular vectors."""
-        left = self.given - self.field
-        return decompose(left, self.space_weights, self.time_weights)
-
-    @cached_property
     def errors(self) -> Array:
-        """Error of the clips with every number of modes from 0 on, shape (n_modes + 1,).
+        """Error of the clips with every number of singular vectors of the rest, (n_modes + 1,).
 
         Relative to the field in L2 over length and time; zero for a field that vanishes.
         """
+        rest = decompose(self.given - self.field, self.space_weights, self.time_weights)
         whole = float(self.space_weights @ self.given**2 @ self.time_weights)
-        if whole == 0.0:
-            return np.zeros(len(self.rest.values) + 1)
-        left = float(np.sqrt(self.rest.values @ self.rest.values / whole))
-        return np.asarray(left * self.rest.errors)
-
-    @property
-    def numbers(self) -> int:
-        """How many numbers they take: two vectors and a place a branch, the load, the bound."""
-        points, instants = self.given.shape
-        return int(len(self.branches) * (2 * points + 1) + instants) + _numbers_of(self.bound)
+        left = float(np.sqrt(rest.values @ rest.values / whole)) if whole > 0.0 else 0.0
+        return np.asarray(left * rest.errors)
 
 
 def clips_of(
@@ -142,15 +91,13 @@ def clips_of(
     share = np.maximum(size / most, FADED)
     driving = np.asarray(load / share)
     weights = time_weights * share**2
-    held, before = np.zeros(len(field)), 0.0
-    branches: list[Branch] = []
-    for some in monotone(driving):
-        limit = bound[:, some]
-        branch = _fitted(field[:, some], held, limit, driving, some, before, weights[some])
-        held = _clipped(branch, held, limit, driving)[:, -1]
-        before = float(driving[some.stop - 1])
-        branches.append(branch)
-    return Clips(field, bound, driving, tuple(branches), space_weights, time_weights)
+    fitted, held, before = np.empty(field.shape), np.zeros((len(field), 1)), 0.0
+    branches = list(monotone(driving))
+    for some in branches:
+        path = np.append(before, driving[some])
+        fitted[:, some] = _branch(field[:, some], held, bound[:, some], path, weights[some])
+        held, before = fitted[:, some][:, -1:], path[-1]
+    return Clips(field, fitted, bound, len(branches), space_weights, time_weights)
 
 
 def monotone(load: Array) -> Iterator[slice]:
@@ -161,31 +108,27 @@ def monotone(load: Array) -> Iterator[slice]:
     yield from (slice(int(a), int(b)) for a, b in pairwise([0, *turns, len(load)]))
 
 
-def _fitted(
-    field: Array,
-    held: Array,
-    bound: Array,
-    load: Array,
-    some: slice,
-    before: float,
-    weights: Array,
-) -> Branch:
-    """Branch whose argument is fitted, each point counted in the way that its friction goes."""
-    way = 1.0 if load[some.stop - 1] >= before else -1.0
-    up = np.where((field - held[:, None]) @ weights < 0.0, -1.0, 1.0)
+def _branch(field: Array, held: Array, bound: Array, load: Array, weights: Array) -> Array:
+    """Clip fitted to a field between two reversals of the load, (n_points, n_instants).
+
+    From the friction that was `held` before, (n_points, 1), and the load from then on,
+    (n_instants + 1,). Each point is seen in the way that its friction goes; a lower bound cuts
+    what it held.
+    """
+    up = np.where((field - held) @ weights < 0.0, -1.0, 1.0)[:, None]
     limit = np.where(bound > 0.0, bound, np.inf)
-    shares, low = (up[:, None] * force / limit for force in (field, held[:, None]))
-    slope, offset = _ramps(shares, np.clip(low, -1.0, 1.0), way * load[some], way * before, weights)
-    return Branch(some, way, way * up * slope, np.where(slope > 0.0, up * offset, BELOW))
+    path = load if load[-1] >= load[0] else -load
+    low = np.clip(up * held / limit, -1.0, 1.0)
+    slope, offset = _ramps(up * field / limit, low, path, weights)
+    line = (slope[:, None] * path[1:] + offset[:, None]) * bound
+    return up * np.minimum(bound, np.maximum(np.clip(up * held, -bound, bound), line))
 
 
-def _ramps(
-    shares: Array, low: Array, load: Array, before: float, weights: Array
-) -> tuple[Array, Array]:
+def _ramps(shares: Array, low: Array, loads: Array, weights: Array) -> tuple[Array, Array]:
     """Slope and offset of the line fitted to every point in one branch, (n_points,) each.
 
-    A point keeps the friction `low` that it had before, then follows the load g, which rises from
-    `before`, in proportion, then slips at its bound: its share is min(1, max(low, a g + b)).
+    A point keeps the friction `low` that it had before, then follows the load g, which rises, in
+    proportion, then slips at its bound: its share is min(1, max(low, a g + b)).
 
     Of lines through entries, as steep as the point is before them or after them, the nearest is
     taken. With the ones through the entry farthest from both stops, and the first above their
@@ -193,25 +136,24 @@ def _ramps(
     fitted to the instants at which its clip shows it. A point that keeps what it has gets a slope
     of 0, and all others one above.
     """
+    load, missed = loads[1:], np.full(len(shares), np.inf)
+    slope, offset = np.zeros_like(missed), np.zeros_like(missed)
 
-    def miss(slope: Array, offset: Array) -> Array:
-        line = slope[:, None] * load + offset[:, None]
-        clipped = np.minimum(1.0, np.maximum(low, line))
-        return np.asarray((clipped - shares) ** 2 @ weights)
+    def line_of(slope: Array, offset: Array) -> Array:
+        return np.asarray(slope[:, None] * load + offset[:, None])
 
     def keep(new_slope: Array, new_offset: Array) -> None:
         usable = np.isfinite(new_slope) & np.isfinite(new_offset) & (new_slope > 0.0)
         tried = np.where(usable, new_slope, 0.0), np.where(usable, new_offset, BELOW)
-        misses = miss(*tried)
+        clipped = np.minimum(1.0, np.maximum(low, line_of(*tried)))
+        misses = (clipped - shares) ** 2 @ weights
         better = misses < missed
         for kept, new in zip((missed, slope, offset), (misses, *tried), strict=True):
             kept[better] = new[better]
 
-    slope, offset = np.zeros(len(shares)), np.full(len(shares), BELOW)
-    missed = miss(slope, offset)
-    with_start, loads = np.hstack([low[:, :1], shares]), np.append(before, load)
+    keep(slope, offset)
     rises = np.diff(loads)
-    slopes = np.diff(with_start) / np.where(rises > 0.0, rises, np.inf)
+    slopes = np.diff(np.hstack([low[:, :1], shares])) / np.where(rises > 0.0, rises, np.inf)
     steepest = np.maximum(slopes, np.hstack([slopes[:, 1:], slopes[:, -1:]]))
     deepest = np.argmax(np.minimum(shares - low, 1.0 - shares), axis=1)
     slid = np.argmax(shares >= 0.5 * (low + 1.0), axis=1)
@@ -221,7 +163,7 @@ def _ramps(
         steep = steepest[points, entry]
         keep(steep, shares[points, entry] - steep * load[entry])
     for _ in range(STEPS):
-        line = slope[:, None] * load + offset[:, None]
+        line = line_of(slope, offset)
         keep(*_regression(load, shares, ((line > low) & (line < 1.0)) * weights))
     return slope, offset
 
@@ -236,22 +178,3 @@ def _regression(load: Array, shares: Array, weights: Array) -> tuple[Array, Arra
         weights = weights * apart
         slope = (weights * shares).sum(axis=1) / (weights * apart).sum(axis=1)
         return slope, mean - slope * middle
-
-
-def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:
-    """Clipped argument of a branch, (n_points, n_instants); a lower bound cuts what was held."""
-    line = (branch.slope[:, None] * load[branch.instants] + branch.offset[:, None]) * bound
-    kept = np.clip(held[:, None], -bound, bound)
-    is_up = (branch.way * branch.slope >= 0.0)[:, None]
-    up, down = np.minimum(bound, np.maximum(kept, line)), np.maximum(-bound, np.minimum(kept, line))
-    return np.where(is_up, up, down)
-
-
-def _numbers_of(bound: Array) -> int:
-    """How many numbers a bound takes: fewer if it changes in size alone."""
-    sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
-    shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
-    is_product = np.abs(bound - shape * sizes).max() <= SAME_SHAPE * most
-    if not is_product:
-        return int(bound.size)
-    return int(len(bound) + (bound.shape[1] if np.ptp(sizes) else 0))

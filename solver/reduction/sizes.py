@@ -14,9 +14,12 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.reduction.basis import Modes
+from solver.reduction.basis import SharedBasis
 from solver.reduction.clips import Clips
-from solver.reduction.svd import BoundaryFields, Decomposition, decompose
+from solver.reduction.svd import Decomposition, decompose
+
+SAME_SHAPE = 1e-9
+"""Share of the largest bound by which one that changes in size alone may differ from that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,14 +47,30 @@ def of_products(product: Decomposition) -> Sizes:
 
 
 def of_clips(clips: Clips) -> Sizes:
-    """Keep clips with memory, and singular vectors of what these leave."""
-    product = sum(clips.given.shape)
-    return Sizes(clips.numbers + product * np.arange(len(clips.errors)), clips.errors)
+    """Keep clips with memory, and singular vectors of what these leave.
+
+    Clips take two vectors and a place a branch, the load, and the bound.
+    """
+    points, instants = clips.given.shape
+    alone = clips.branches * (2 * points + 1) + instants + _numbers_of_bound(clips.bound)
+    return Sizes(alone + (points + instants) * np.arange(len(clips.errors)), clips.errors)
 
 
-def in_pieces(fields: BoundaryFields) -> Sizes:
-    """Keep as many singular vectors of each substructure: the best that a PGD could find there."""
-    pieces, time_weights = list(_pieces(fields)), _time_weights(fields.problem)
+def _numbers_of_bound(bound: Array) -> int:
+    """How many numbers a bound takes: fewer if it changes in size alone."""
+    sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
+    shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
+    if np.abs(bound - shape * sizes).max() > SAME_SHAPE * most:
+        return bound.size
+    return len(bound) + (bound.shape[1] if np.ptp(sizes) else 0)
+
+
+def in_pieces(problem: Problem, force: Array) -> Sizes:
+    """Keep as many singular vectors of each substructure: the best that a PGD could find there.
+
+    Of F of all rows, (n_rows, n_instants), scaled.
+    """
+    pieces, time_weights = list(_pieces(problem, force)), _time_weights(problem)
     values = [decompose(field, weights, time_weights).values for *_, field, weights in pieces]
     most = max(map(len, values))
     left, numbers = np.zeros(most + 1), np.zeros(most + 1, dtype=int)
@@ -61,24 +80,25 @@ def in_pieces(fields: BoundaryFields) -> Sizes:
     return Sizes(numbers, _relative(left))
 
 
-def of_bases(fields: BoundaryFields, bases: Sequence[Modes]) -> Sizes:
+def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Sizes:
     """Keep as many modes of each of a run's separated bases, the largest.
 
     Of their space modes the entries count that rub; those of a basis that several share, once.
     """
-    most = max(modes.n_modes for modes in bases)
+    most = max(basis.n_modes for basis in bases)
     left, numbers = np.zeros(most + 1), np.zeros(most + 1, dtype=int)
-    time_weights, seen = _time_weights(fields.problem), set[int]()
-    for number, places, field, weights in _pieces(fields):
-        modes = bases[number]
-        rest, points = field.copy(), 0 if modes.stored in seen else len(field)
-        seen.add(modes.stored)
-        space = modes.force_modes[places] * fields.problem.scales.force / weights[:, None]
+    time_weights, seen = _time_weights(problem), set[SharedBasis]()
+    for number, places, field, weights in _pieces(problem, force):
+        basis = bases[number]
+        rest, points = field.copy(), 0 if basis in seen else len(field)
+        seen.add(basis)
+        space = basis.force_modes[places] * problem.scales.force / weights[:, None]
+        time = basis.time_functions(number)
         for rank in range(most + 1):
-            if 0 < rank <= modes.n_modes:
-                rest -= space[:, [rank - 1]] * modes.time_functions[rank - 1]
+            if 0 < rank <= basis.n_modes:
+                rest -= space[:, [rank - 1]] * time[rank - 1]
             left[rank] += weights @ rest**2 @ time_weights
-            numbers[rank] += min(rank, modes.n_modes) * (points + rest.shape[1])
+            numbers[rank] += min(rank, basis.n_modes) * (points + rest.shape[1])
     return Sizes(numbers, _relative(left))
 
 
@@ -87,13 +107,12 @@ def _relative(left: Array) -> Array:
     return np.sqrt(left / left[0]) if left[0] > 0.0 else np.zeros_like(left)
 
 
-def _pieces(fields: BoundaryFields) -> Iterator[tuple[int, Indices, Array, Array]]:
+def _pieces(problem: Problem, force: Array) -> Iterator[tuple[int, Indices, Array, Array]]:
     """Yield the friction of every substructure on bodies above.
 
     Its number; places of the rows that rub, among its own; friction, N/m, shape
     (n_places, n_instants); and lengths, m. Between two bodies friction is that of the one above.
     """
-    problem, force = fields.problem, fields.boundary_force
     lengths = np.zeros(problem.n_rows)
     for law in problem.rubbing.values():
         lengths[law.components[-1].above] = law.weights

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Protocol
 
 import numpy as np
 
@@ -17,25 +16,6 @@ from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
 """Relative difference up to which two entries count as equally large when a sign is fixed."""
-
-
-class BoundaryFields(Protocol):
-    """What is analysed: an iterate, or whatever else has fields on the boundary rows.
-
-    Fields have the shape of those of `Iterate`, (n_rows, n_instants), scaled.
-    """
-
-    @property
-    def problem(self) -> Problem:
-        """The problem whose rows they live on."""
-
-    @property
-    def boundary_displacement(self) -> Array:
-        """Displacement W."""
-
-    @property
-    def boundary_force(self) -> Array:
-        """Nodal force F."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,25 +93,20 @@ def decompose(
     )
 
 
-def decompositions(
-    fields: BoundaryFields, name: Literal["friction_force", "displacement"]
-) -> list[Decomposition]:
-    """Decomposition of a field on the rows that rub in every substructure (paper, section 3.2).
+def decompositions(problem: Problem, field: Array, *, is_force: bool) -> list[Decomposition]:
+    """Decomposition of F or W, on the rows that rub in every substructure (paper, section 3.2).
 
-    Singular values of the friction force, per length, are in N sqrt(s/m), of the displacement in
-    m sqrt(m s).
+    Of fields of all rows, (n_rows, n_instants), scaled. Singular values of the friction force, per
+    length, are in N sqrt(s/m), of the displacement in m sqrt(m s).
     """
-    problem, scales = fields.problem, fields.problem.scales
-    lengths = np.zeros(problem.n_rows)
+    scales, lengths = problem.scales, np.zeros(problem.n_rows)
     for law in problem.rubbing.values():
         for rows in law.tangent.sides:
             lengths[rows] = law.weights
     slides = lengths > 0.0
-    if name == "friction_force":
-        whole = fields.boundary_force * scales.force
+    whole = field * (scales.force if is_force else scales.displacement)
+    if is_force:
         whole[slides] /= lengths[slides, None]
-    else:
-        whole = fields.boundary_displacement * scales.displacement
     positions, times = problem.positions[problem.row_dofs], problem.time_weights * scales.time
     rubbing = (part.rows[slides[part.rows]] for part in problem.substructures)
     return [decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in rubbing]

@@ -197,9 +197,9 @@ def _state(iterate: Iterate) -> tuple[int, float]:
     """Most modes of a substructure, 0 of full fields; and MB of the state."""
     if not iterate.bases:
         return 0, iterate.outgoing.nbytes / 1e6
-    shared = {own.stored: own for own in iterate.bases}
-    held = sum(2 * own.outgoing.nbytes for own in shared.values())
-    held += sum(own.time_functions.nbytes for own in iterate.bases)
+    held = sum(
+        2 * own.incoming.nbytes + own.basis.time_functions.nbytes for own in set(iterate.bases)
+    )
     return max(own.n_modes for own in iterate.bases), held / 1e6
 
 

@@ -77,6 +77,7 @@ def paper_runs() -> PaperRuns:
         return run(tolerance=1e-30, max_iterations=iterations, multiscale=multiscale)
 
     five = run(substructures=5, tolerance=CONVERGED, max_iterations=10 * LONG)
+    last = five.iterate
     return PaperRuns(
         reference,
         ten(LONG, True),
@@ -84,8 +85,8 @@ def paper_runs() -> PaperRuns:
         [ten(EARLY, multiscale).iterate for multiscale in (True, False)],
         five,
         run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
-        decompositions(five.iterate, "friction_force"),
-        decompositions(five.iterate, "displacement"),
+        decompositions(last.problem, last.boundary_force, is_force=True),
+        decompositions(last.problem, last.boundary_displacement, is_force=False),
     )
 
 

@@ -267,7 +267,6 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     if certificate is None or certificate.residual > settings.accuracy:
         return None
     k = method_of(settings).direction.of(problem)
-    k.flags.writeable = False
     finish = finished(problem, k, certificate)
     status, residual = certified(finish, certificate), certificate.residual
     seconds = time.perf_counter() - began

@@ -73,7 +73,9 @@ def modes(run: FinishedRun) -> float:
 @quantity("Singular vectors of the displacement for an error of", parameter=WITHIN, applies=on_rods)
 def svd_modes_displacement(run: FinishedRun, at: float) -> float:
     """Singular vectors that leave an error, in the substructure that needs most."""
-    return max(part.modes_for(at) for part in decompositions(run.iterate, "displacement"))
+    displacement = run.iterate.boundary_displacement
+    parts = decompositions(run.problem, displacement, is_force=False)
+    return max(part.modes_for(at) for part in parts)
 
 
 @quantity(
@@ -81,7 +83,8 @@ def svd_modes_displacement(run: FinishedRun, at: float) -> float:
 )
 def svd_modes_force(run: FinishedRun, at: float) -> float:
     """Singular vectors that leave an error, in the substructure that needs most."""
-    return max(part.modes_for(at) for part in decompositions(run.iterate, "friction_force"))
+    parts = decompositions(run.problem, run.iterate.boundary_force, is_force=True)
+    return max(part.modes_for(at) for part in parts)
 
 
 @quantity(

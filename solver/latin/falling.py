@@ -1,4 +1,4 @@
-"""How much the contact force of a run still changes, and what of it is still to come."""
+"""How the numbers of a run fall: changes of the contact force, and indicators."""
 
 from __future__ import annotations
 
@@ -98,3 +98,55 @@ def _change(problem: Problem, change: Array, force: Array, least: float) -> Chan
 
     hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
     return Change(max(share(normal, hidden), share(~normal, hidden)), share(slice(None), least))
+
+
+SHARE = 8
+"""What may be low enough is computed again at the latest after this part of the iterations."""
+
+
+class Look:
+    """The next iteration at which a number that falls is worth computing.
+
+    Half way to where its last two values, over what is low enough, would have it fall to 1; while
+    it does not fall, after half of the longest wait. So it is missed by little, and only if it
+    falls suddenly.
+    """
+
+    def __init__(self) -> None:
+        self.next, self._last = 0, (0, math.nan)
+
+    def saw(self, iteration: int, value: float) -> None:
+        """Take in a value."""
+        (before, last), left = self._last, 0.0
+        self._last = iteration, value
+        if 1.0 < value < last and iteration > before:
+            left = 0.5 * math.log(value) / math.log(last / value) * (iteration - before)
+        least = 0 if value <= 1.0 else iteration // (2 * SHARE)
+        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)
+
+
+WINDOW = 200
+"""Iterations without a lower indicator after which a run is called stalled."""
+FACTOR = 0.99
+"""A lower indicator is one below this part of the lowest so far."""
+SELDOM = 16
+"""Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
+
+
+class Lowest:
+    """The lowest LATIN indicator of a run so far."""
+
+    def __init__(self) -> None:
+        self.indicator, self._number, self._k = math.inf, 0, np.zeros(0)
+
+    def has_stalled(self, iterate: Iterate) -> bool:
+        """Whether the indicator has stopped falling."""
+        number = iterate.number
+        if iterate.k is not self._k:
+            # It is measured by k: to look for the lowest begins anew.
+            self.indicator, self._number, self._k = math.inf, number, iterate.k
+        if number % SELDOM and number - self._number < WINDOW:
+            return False
+        if iterate.indicator < FACTOR * self.indicator:
+            self.indicator, self._number = iterate.indicator, number
+        return number - self._number >= WINDOW
