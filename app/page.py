@@ -99,7 +99,7 @@ class Page:
             self._supervisor.begin()
             self.state.run()
 
-    def _go_on(self, *change: Any) -> None:
+    def _go_on(self, name: str, old: int, new: int) -> None:
         """Go on once the first picture is on the screen: a search is seen from its beginning.
 
         What changes while the browser still mounts the widgets some of them would not show.
