@@ -80,7 +80,7 @@ class ContactForce(View):
         self.fill("place", x=self.x([] if selection.place is None else [selection.place]))
         self.draw("exact", *joined([(c.across, c.up[:, column]) for c in exact]))
         past = None
-        if ghost is not None and (ghost.run.settings.kind == "plane") == is_plane:
+        if ghost is not None:
             other = selection.interface_of(ghost.run)
             past = ghost.contact.get(other)
             places = ghost.run.interfaces[other].positions

@@ -94,7 +94,7 @@ class Scene(View):
         for name, columns in picture.columns(with_status=self.shows_status).items():
             self.fill(name, **columns)
         past: dict[str, Any] = {"x": [], "y": []}
-        if ghost is not None and ghost.run.settings.scene == run.settings.scene:
+        if ghost is not None:
             past = picture.ghost(ghost, ghost.run.column(selection.phase))
         if run.mechanism is not None and run.instants[picture.column] >= run.collapses_at:
             past = picture.mechanism(run.mechanism)
