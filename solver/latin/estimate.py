@@ -6,8 +6,8 @@ import math
 import time
 
 from solver.latin.cost import WAIT, Costs, costs_of
-from solver.latin.falling import ForceChanges
 from solver.latin.iterate import Iterate
+from solver.latin.progress import ForceChanges
 from solver.latin.status import JUMPS, Status, collapses
 from solver.latin.status_step import Certificate, states_of, status_step
 from solver.reference.condensation import NoReferenceError

@@ -12,9 +12,9 @@ import numpy as np
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
-from solver.latin.falling import Look, Lowest
 from solver.latin.iterate import Iterate
 from solver.latin.pgd import PGD
+from solver.latin.progress import NextCheck, StallCheck
 from solver.latin.status import (
     BELOW,
     EXPECTED,
@@ -107,8 +107,8 @@ class StopState:
         self._asks_accuracy = math.isfinite(self._stop.accuracy)
         accuracy = self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY
         self.estimate = ErrorEstimate(accuracy, needs_proof=isinstance(latin.linear, PGD))
-        self._on_goal, self._on_sufficient = Look(), Look()
-        self._lowest = Lowest()
+        self._on_goal, self._on_sufficient = NextCheck(), NextCheck()
+        self._stall = StallCheck()
 
     def judge(self, iterate: Iterate) -> Decision:
         """Whether the run ends after an iterate, and how."""
@@ -151,11 +151,12 @@ class StopState:
             status = PROVEN
         elif is_due:
             status = self._converged(iterate, error)
-        looks = stop.sufficient > 0.0 and (is_last or number >= self._on_sufficient.next)
-        if status is None and looks and self._is_low(iterate, stop.sufficient, self._on_sufficient):
-            status = BELOW
-        if status is None and self._lowest.has_stalled(iterate):
-            status = stalled(self._latin, self._lowest.indicator)
+        if status is None and stop.sufficient > 0.0:
+            check = self._on_sufficient
+            if (is_last or number >= check.next) and self._is_low(iterate, stop.sufficient, check):
+                status = BELOW
+        if status is None and self._stall.has_stalled(iterate):
+            status = stalled(self._latin, self._stall.indicator)
         gives_up = is_last if status is None else status.ending is not Ending.CONVERGED
         if gives_up and self._may_finish and not estimate.is_proven:
             # Whatever it costs, where a run that may end with it would give up.
@@ -171,10 +172,10 @@ class StopState:
         stop, estimate, number = self._stop, self.estimate, iterate.number
         if self._asks_accuracy:
             value = error / stop.accuracy
-            self._on_goal.saw(number, value if estimate.is_proven else math.nan)
+            self._on_goal.update(number, value if estimate.is_proven else math.nan)
             if not value <= 1.0:
                 return None
-            # The indicator says when to look again.
+            # The indicator says when to check again.
             self._on_goal.next = number + 1
         asks_tolerance = math.isfinite(stop.tolerance)
         if asks_tolerance and not self._is_low(iterate, stop.tolerance, self._on_goal):
@@ -187,14 +188,14 @@ class StopState:
         counts = not (estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT))
         return EXPECTED if counts else None
 
-    def _is_low(self, iterate: Iterate, tolerance: float, look: Look) -> bool:
+    def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
         """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.
 
         The LATIN indicator alone can be fooled: a search direction that is far from the stiffness
         in play makes it as small as one likes (solver/README.md, 4). The k-free one is a share of
         what contact carries, which is nothing where all contacts open.
         """
-        look.saw(iterate.number, iterate.indicator / tolerance)
+        check.update(iterate.number, iterate.indicator / tolerance)
         if iterate.indicator > tolerance:
             return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)

@@ -1,4 +1,4 @@
-"""How the numbers of a run fall: changes of the contact force, and indicators."""
+"""Progress of a run: changes of the contact force, the next check of a number, and stalling."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ SHARE = 8
 """What may be low enough is computed again at the latest after this part of the iterations."""
 
 
-class Look:
+class NextCheck:
     """The next iteration at which a number that falls is worth computing.
 
     Half way to where its last two values, over what is low enough, would have it fall to 1; while
@@ -115,7 +115,7 @@ class Look:
     def __init__(self) -> None:
         self.next, self._last = 0, (0, math.nan)
 
-    def saw(self, iteration: int, value: float) -> None:
+    def update(self, iteration: int, value: float) -> None:
         """Take in a value."""
         (before, last), left = self._last, 0.0
         self._last = iteration, value
@@ -133,14 +133,14 @@ SELDOM = 16
 """Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
 
 
-class Lowest:
-    """The lowest LATIN indicator of a run so far."""
+class StallCheck:
+    """Whether the LATIN indicator has stalled, and the lowest so far."""
 
     def __init__(self) -> None:
         self.indicator, self._number, self._k = math.inf, 0, np.zeros(0)
 
     def has_stalled(self, iterate: Iterate) -> bool:
-        """Whether the indicator has stopped falling."""
+        """Whether it has stopped falling."""
         number = iterate.number
         if iterate.k is not self._k:
             # It is measured by k: to look for the lowest begins anew.
