@@ -25,12 +25,14 @@ MOVES = 11
 REST = 700.0
 """Milliseconds between two moves, in which nothing is painted any more."""
 NEXT = f"""() => {{
-  const before = {PULSE}.painted
+  const pulse = {PULSE}
   window.moved = new Promise((resolve) => addEventListener("pointermove", () => {{
     const began = performance.now()
-    const look = () => {PULSE}.painted > before
-      ? resolve(performance.now() - began) : requestAnimationFrame(look)
-    look()
+    const see = () => {{
+      pulse.disconnect(pulse.properties.painted.change, see)
+      resolve(performance.now() - began)
+    }}
+    pulse.connect(pulse.properties.painted.change, see)
   }}, {{once: true, capture: true}}))
 }}"""
 

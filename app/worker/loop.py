@@ -18,7 +18,7 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
 
-NICENESS, NICEST = 5, 15
+NICENESS, NICEST = 5, 19
 """Of a worker that is alone, so that pages stay alive (at 10 its first picture waits 0.1 s), and
 beside ten others or more: thirty at 5 would leave the server a fifth of a processor."""
 UNSEEN = 30.0
