@@ -1,0 +1,57 @@
+"""A page begins its run for whoever sees it, and is told nothing of other pages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+
+import panel as pn
+import pytest
+from bokeh.document import Document
+from panel.io.state import set_curdoc
+from panel.util import edit_readonly
+
+import app.supervisor
+from app.messages import WHOLE, Order, Pace, Start
+from app.page import Page
+from app.state import PageState, default_settings
+
+
+@pytest.fixture
+def orders(monkeypatch: pytest.MonkeyPatch) -> list[Order]:
+    """What a page's worker is told."""
+    told: list[Order] = []
+    worker = SimpleNamespace(send=told.append, end=lambda: None, hangs=False)
+    monkeypatch.setattr(app.supervisor, "Worker", lambda on_report, others: worker)
+    return told
+
+
+@pytest.fixture
+def document() -> Iterator[Document]:
+    """A document whose page is being made."""
+    made = Document()
+    with set_curdoc(made):
+        yield made
+
+
+def test_a_first_run_goes_on_once_its_first_picture_is_painted(
+    orders: list[Order], document: Document
+) -> None:
+    page = Page(PageState(default_settings("bar")))
+    (start,) = (order for order in orders if isinstance(order, Start))
+    assert (start.pace, start.steps) == (0.0, 1)
+    page.loaded()
+    assert not any(isinstance(order, Pace) for order in orders)
+    pulse = document.get_model_by_name("pulse")
+    pulse.painted = 1
+    pulse.painted = 2
+    assert [order for order in orders if isinstance(order, Pace)] == [Pace(WHOLE)]
+
+
+@pytest.mark.usefixtures("orders", "document")
+def test_a_page_does_not_follow_how_busy_the_server_is() -> None:
+    page = Page(PageState(default_settings("bar")))
+    with edit_readonly(pn.state):
+        pn.state.busy = True
+        assert not page.template.busy
+        pn.state.busy = False
