@@ -62,9 +62,6 @@ def add_reports(commands: Any) -> None:
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
     parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
     parser.add_argument("--fields", action="store_true", help="keep the fields of every run")
-    parser.add_argument(
-        "--adaptive", type=int, metavar="N", help="no more than N runs, where the answer bends"
-    )
     parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
 
 
@@ -143,13 +140,12 @@ def _sweep(chosen: argparse.Namespace) -> int:
     plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
-    size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
     print_tables(tables)
     warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
         try:
-            _run(plan, rows, size, chosen)
+            _run(plan, rows, chosen)
         except (KeyboardInterrupt, BrokenExecutor) as end:
             why = f"slipfront: {end}" if str(end) else "Stopped"
             print(f"{why}; the same command goes on from here.", file=sys.stderr)
@@ -158,10 +154,10 @@ def _sweep(chosen: argparse.Namespace) -> int:
         write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
     print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
     print_files(f"{TABLE} and {PAGE}", chosen.out)
-    return 0 if len(rows) >= size and all(row.holds for row in by_number) else 1
+    return 0 if len(rows) == plan.size and all(row.holds for row in by_number) else 1
 
 
-def _run(plan: Plan, rows: dict[int, SweepRow], size: int, chosen: argparse.Namespace) -> None:
+def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> None:
     """Run what of a plan has no row yet, append its rows to the table, and print how far it is."""
     fields = None
     known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
@@ -171,11 +167,6 @@ def _run(plan: Plan, rows: dict[int, SweepRow], size: int, chosen: argparse.Name
         fields = str(folder)
         known = {n: row for n, row in known.items() if (folder / field_file(n)).exists()}
     options: dict[str, Any] = {"limit": chosen.limit, "fields": fields, "warm": not chosen.cold}
-    if chosen.adaptive is not None:
-        # Here and not above: it takes a sixth of a second, for which other commands need not wait.
-        from solver.study.sweep.adaptive import Chooser
-
-        options |= {"following": Chooser(plan, chosen.adaptive, known), "warm": False}
     table = chosen.out / TABLE
     with opened(chosen.on, patience(chosen.limit)) as executor:
         # As a whole, in case that its last line was cut off
@@ -189,7 +180,7 @@ def _run(plan: Plan, rows: dict[int, SweepRow], size: int, chosen: argparse.Name
                 lines.flush()
                 now, done = time.monotonic(), len(known)
                 if now - printed > OFTEN:
-                    left = (now - began) / (done - before) * (size - done)
-                    line = f"{done} of {size} runs, {left:.0f} s left"
+                    left = (now - began) / (done - before) * (plan.size - done)
+                    line = f"{done} of {plan.size} runs, {left:.0f} s left"
                     print(line, file=sys.stderr, flush=True)
                     printed = now

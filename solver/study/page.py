@@ -117,8 +117,6 @@ class Map:
     ----------
     scale, z
         Its values, shape (len(y_values), len(x_values)); NaN where there is none.
-    is_sampled
-        Whether a few runs stand for all, and values between them are of facets.
     """
 
     title: str
@@ -129,7 +127,6 @@ class Map:
     scale: PanelAxis
     z: Array
     runs: Runs
-    is_sampled: bool = False
 
 
 Chart = Panel | Map

@@ -18,16 +18,9 @@ DECADES = 30.0
 """Ratio of the largest to the smallest value from which a chart is logarithmic."""
 MARGIN = 0.06
 """Share of an axis that lies beyond the values on either side."""
-SAMPLED = 0.5
-"""Share of the points up to which runs are few."""
 NEVER, NONE = "never", "none: a run with these settings has no such value"
 Text = Callable[[float, str], str]
 """A value and its unit as a text."""
-
-
-def charts(plan: Plan, rows: Sequence[Row]) -> list[Chart]:
-    """Charts of all readings, of runs to which no others are to come."""
-    return [_filled(chart_of(plan, rows, place)) for place in range(len(plan.of))]
 
 
 def plainly(value: float, unit: str) -> str:
@@ -51,9 +44,11 @@ def chart_of(
     quantity, runs = plan.readings[place], _runs(plan, rows, place, text)
     z = _measure(plan, place)[0] * grid(plan, rows, place).T
     known = z[np.isfinite(z)] if is_map(plan) else runs.y[np.isfinite(runs.y)]
-    wide = is_wide(known) if logarithmic is None else logarithmic
-    # Nothing that is zero or less stands on a logarithmic axis.
-    wide = wide and bool((known > 0.0).any())
+    if logarithmic is None:
+        wide = bool(known.size and 0.0 < DECADES * known.min() < known.max())
+    else:
+        # Nothing that is zero or less stands on a logarithmic axis.
+        wide = logarithmic and bool((known > 0.0).any())
     scale = PanelAxis(quantity.title, _measure(plan, place)[1], wide)
     axes = [PanelAxis(of.title, of.unit, of.logarithmic, names=of.names) for of in plan.axes]
     if is_map(plan):
@@ -90,29 +85,6 @@ def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
         if row.holds and math.isfinite(row.values[place]):
             good[row.number] = row.values[place]
     return good.reshape(plan.shape)
-
-
-def is_wide(values: Array) -> bool:
-    """Whether finite values go over so many decades that a chart of them is logarithmic."""
-    return bool(values.size and values.min() > 0.0 and values.max() > DECADES * values.min())
-
-
-def _filled(chart: Chart) -> Chart:
-    """Map of few runs that enclose the others, with what lies on the facets between them."""
-    if not isinstance(chart, Map):
-        return chart
-    known = np.isfinite(chart.z)
-    # Those of a stopped sweep enclose nothing.
-    if known.sum() >= SAMPLED * known.size or not known[[0, 0, -1, -1], [0, -1, 0, -1]].all():
-        return chart
-    # Here and not above: every page would load it, and none samples.
-    from scipy.interpolate import LinearNDInterpolator
-
-    shape, places = chart.z.shape, np.argwhere(known)
-    to, back = (np.log, np.exp) if chart.scale.logarithmic else (np.asarray, np.asarray)
-    facets = LinearNDInterpolator(places / shape, to(chart.z[tuple(places.T)]))
-    filled = back(facets(np.moveaxis(np.indices(shape), 0, -1) / shape))
-    return replace(chart, z=filled, is_sampled=True)
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:

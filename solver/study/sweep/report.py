@@ -18,7 +18,7 @@ from solver.checked import dump
 from solver.definitions import SettingError
 from solver.study.page import PlotSection, Section, bullets, html_table, text_of
 from solver.study.quantities.quantity import Quantity
-from solver.study.sweep.chart import charts, grid
+from solver.study.sweep.chart import chart_of, grid
 from solver.study.sweep.plan import Plan, Row, Varied
 
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
@@ -88,11 +88,12 @@ def title_of(plan: Plan) -> str:
 
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
     """Page of some rows, in the order of their points."""
-    drawn, laws = charts(plan, rows), growth(plan, rows)
+    laws = growth(plan, rows)
+    charts = [chart_of(plan, rows, place) for place in range(len(plan.of))]
     table = [heads(plan), *([text_of(cell, 6) for cell in cells(plan, row)] for row in rows)]
     return [
         f"<p><b>{escape(counts(plan, rows))}</b></p>",
-        PlotSection(f"Charts of {len(rows)} runs", drawn),
+        PlotSection(f"Charts of {len(rows)} runs", charts),
         *([] if all(row.holds for row in rows) else [f'<p class="caption">{CAPTION}</p>']),
         *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
         f"<h2>Every run</h2>\n{html_table(table)}",

@@ -124,13 +124,12 @@ def sweep(
     executor: Executor,
     *,
     done: Collection[int] = (),
-    following: Callable[[int], Sequence[int]] | None = None,
     limit: float = math.inf,
     fields: str | None = None,
     warm: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Iterator[Row]:
-    """Run points of a plan.
+    """Run points of a plan, from neighbour to neighbour.
 
     Parameters
     ----------
@@ -138,9 +137,6 @@ def sweep(
         What to run, and where.
     done
         Numbers of the points to leave out.
-    following
-        Next points to run, by how many are under way, asked for after each row until there are
-        none; without it all are run, from neighbour to neighbour.
     limit
         Seconds that a run may take.
     fields
@@ -164,12 +160,11 @@ def sweep(
     """
     warm = warm and not any(reading.is_of_course for reading in plan.readings)
     call = partial(run, plan, limit, fields, warm, uuid.uuid4().hex, versions())
-    path = deque(() if following else (n for n in snake(plan.shape) if n not in done))
+    path = deque(number for number in snake(plan.shape) if number not in done)
     under_way: dict[Future[Row], int] = {}
     tries = Counter[int]()
     try:
         while not cancelled():
-            path.extend(following(len(under_way)) if following else ())
             while path and len(under_way) < AHEAD:
                 number = path.popleft()
                 under_way[executor.submit(call, number)] = number
