@@ -14,20 +14,20 @@ from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import scene_settings, settings_from_command
-from solver.study.cases.case import case_from_file
-from solver.study.figures.modes import paper_figures
-from solver.study.figures.paper import FILE, paper_runs, write_figures
+from solver.study import proof
+from solver.study import stability_report as stability
+from solver.study import study_report as study
+from solver.study.measured_times import error_against_time, times_at_sizes
 from solver.study.page import aligned, head_of, line_of, write_page
-from solver.study.proof import report as proof
-from solver.study.speed import study_report as study
-from solver.study.speed.measured_times import error_against_time, times_at_sizes
-from solver.study.stability import report as stability
-from solver.study.stability.draws import random_cases
-from solver.study.stability.stability_case import Row, extreme_cases, judged_runs, passed
+from solver.study.paper_modes import paper_figures
+from solver.study.paper_runs import FILE, paper_runs, write_figures
+from solver.study.random_runs import random_cases
+from solver.study.stability_case import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
 from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
 from solver.study.sweep.run import field_file, patience, sweep
+from solver.study.trade_case import case_from_file
 
 TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
 LIMIT = 600.0

@@ -18,9 +18,8 @@ from solver.reference.distance import kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.finished import BROKEN, REFUSED
-from solver.study.stability.draws import draw, random_case
-from solver.study.stability.report import COLUMNS, counts, last_lines
-from solver.study.stability.stability_case import (
+from solver.study.random_runs import draw, random_case
+from solver.study.stability_case import (
     AT_ROUNDING,
     METHODS,
     Outcome,
@@ -31,6 +30,7 @@ from solver.study.stability.stability_case import (
     judged_runs,
     row_of,
 )
+from solver.study.stability_report import COLUMNS, counts, last_lines
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,

@@ -18,9 +18,8 @@ from solver.cli import main
 from solver.executors import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.study.page import NO_CHARTS
-from solver.study.speed import measured_times as measuring
-from solver.study.speed.measured_times import (
+from solver.study import measured_times as measuring
+from solver.study.measured_times import (
     FACTORS,
     INCREMENTAL,
     LEVELS,
@@ -28,7 +27,8 @@ from solver.study.speed.measured_times import (
     forms_of,
     times_at_sizes,
 )
-from solver.study.speed.study_report import sizes_table, table
+from solver.study.page import NO_CHARTS
+from solver.study.study_report import sizes_table, table
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1"]

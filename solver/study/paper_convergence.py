@@ -6,8 +6,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.reference.distance import Fields
-from solver.study.figures.paper import EARLY, LONG, Finding, PaperFigure, PaperRuns, paper_figure
 from solver.study.page import Line, Panel, PanelAxis, PanelCurve
+from solver.study.paper_runs import EARLY, LONG, Finding, PaperFigure, PaperRuns, paper_figure
 
 SHOWN = 300
 """Iterations that Fig. 3 shows."""

@@ -19,12 +19,12 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.cases.case import Case, all_cases
+from solver.study import known_numbers
+from solver.study.known_numbers import Answer, Number
 from solver.study.mesh import size_of
 from solver.study.page import html_table, text_of, write_csv, write_page
-from solver.study.proof import known_numbers
-from solver.study.proof.known_numbers import Answer, Number
 from solver.study.quantities.finished import FinishedRun
+from solver.study.trade_case import Case, all_cases
 
 PARTS = CLOSED_FORMS, PUBLISHED, TRADE = "Closed forms", "Published numbers", "Cases of the trade"
 """Parts of the report, by where what is known is from; cases of the trade are solved by LATIN."""
@@ -38,7 +38,7 @@ Row = dict[str, Any]
 HOLDS, FAILS = "holds", "FAILS"
 NUMBERS = "holds", "quantity", "unit", "known", "solver", "ours", "deviation", "allowed"
 """Columns of the page."""
-CASES = Path(__file__).with_name("cases.toml")
+CASES = Path(__file__).with_name("known_numbers.toml")
 FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
 """Where the page is served by default; links of the report open runs there."""

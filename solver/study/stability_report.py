@@ -11,7 +11,7 @@ from pathlib import Path
 from statistics import median_high
 
 from solver.study.page import aligned, bullets, html_table, line_of, text_of, write_csv, write_page
-from solver.study.stability.stability_case import MEANING, Row, Verdict, passed
+from solver.study.stability_case import MEANING, Row, Verdict, passed
 
 FILES = "stability.csv", "stability.html"
 COLUMNS = (

@@ -1,4 +1,4 @@
-"""Numbers that are known of runs, beside those of an answer: functions of `cases.toml`."""
+"""Numbers that are known of runs, beside those of an answer: functions of `known_numbers.toml`."""
 
 from __future__ import annotations
 

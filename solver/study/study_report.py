@@ -12,6 +12,14 @@ import numpy as np
 from solver.definitions import about
 from solver.executors import machine
 from solver.settings import Settings
+from solver.study.measured_times import (
+    GOAL,
+    INCREMENTAL,
+    LEVELS,
+    MOST_ITERATIONS,
+    ErrorCurve,
+    TimesAtSize,
+)
 from solver.study.page import (
     Panel,
     PanelAxis,
@@ -23,14 +31,6 @@ from solver.study.page import (
     text_of,
     write_csv,
     write_page,
-)
-from solver.study.speed.measured_times import (
-    GOAL,
-    INCREMENTAL,
-    LEVELS,
-    MOST_ITERATIONS,
-    ErrorCurve,
-    TimesAtSize,
 )
 
 FILES = "curves.csv", "levels.csv", "map.csv", "study.html"

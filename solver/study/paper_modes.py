@@ -8,9 +8,9 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.reduction.svd import Decomposition, against_front, front_decay
-from solver.study.figures.convergence import figure_3, figure_4
-from solver.study.figures.paper import Finding, PaperFigure, PaperRuns, paper_figure
 from solver.study.page import Panel, PanelAxis, PanelCurve
+from solver.study.paper_convergence import figure_3, figure_4
+from solver.study.paper_runs import Finding, PaperFigure, PaperRuns, paper_figure
 
 ALIKE = 0.9
 """Correlation from which two modes count as alike."""

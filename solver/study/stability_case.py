@@ -21,7 +21,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run, known_reference
 
-CASES = Path(__file__).with_name("cases.toml")
+CASES = Path(__file__).with_name("stability_cases.toml")
 
 
 class Verdict(StrEnum):

@@ -74,8 +74,8 @@ def case_from_file(path: Path) -> Case:
 
 
 def all_cases() -> list[Case]:
-    """Read all cases of this folder, in their order."""
-    found = map(case_from_file, Path(__file__).parent.glob("*.toml"))
+    """Read all cases of the folder `cases`, in their order."""
+    found = map(case_from_file, Path(__file__).with_name("cases").glob("*.toml"))
     return sorted(found, key=lambda case: case.order)
 
 

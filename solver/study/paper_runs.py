@@ -13,12 +13,11 @@ from solver.reduction.svd import Decomposition, decompositions
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import discretise
-from solver.scenes.bar import BarSettings
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.page import Panel, PlotSection, Section, bullets, write_page
 
-WORDS = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
+WORDS = tomllib.loads(Path(__file__).with_name("paper_figures.toml").read_text(encoding="utf-8"))
 LOAD = (
     "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of 900 N, "
     "relaxation 0.8, all else as in Table 1."
@@ -65,7 +64,7 @@ class PaperRuns:
 
 def paper_runs() -> PaperRuns:
     """Solve and decompose all of them."""
-    settings = BarSettings.checked({"method": "paper", "load": "sine", "peak": 900.0})
+    settings = CATALOGUE["bar"].checked({"method": "paper", "load": "sine", "peak": 900.0})
     reference = reference_of(discretise(settings))
 
     def run(**changes: object) -> Solution:
