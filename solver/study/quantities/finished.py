@@ -37,7 +37,7 @@ TINY: dict[str, dict[str, object]] = {
     "bar": {"elements": 4, "substructures": 2, "instants": 3},
     "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
 }
-"""Runs that go before others: to bring in code is no part of a run's memory, nor of its time."""
+"""Runs that go before others: to bring in code is no part of a run's time."""
 ALONE = 60
 """Iterations that take as long as a run of its own, with all beside them. A status step from a
 neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
