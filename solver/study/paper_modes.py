@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array
-from solver.reduction.svd import Decomposition, against_front, front_decay
+from solver.reduction.svd import Decomposition, front_decay
 from solver.study.page import Panel, PanelAxis, PanelCurve
 from solver.study.paper_convergence import figure_3, figure_4
 from solver.study.paper_runs import Finding, PaperFigure, PaperRuns, paper_figure
@@ -49,8 +49,7 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
             ("Those that the front sweeps", (1e-2, 1.5), curves[2:], []),
         )
     )
-    counts, decay = _mode_counts(parts, noise * largest), _as_a_front(parts[2:])
-    return paper_figure(5, panels, counts, decay, noise=noise)
+    return paper_figure(5, panels, _mode_counts(parts, noise * largest), noise=noise)
 
 
 def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
@@ -68,17 +67,6 @@ def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
         f"Modes that leave at most 10/1/0.1 % of a substructure's friction force: {words}. All "
         f"would be {len(parts[0].values)}.",
         3 * max(one_percent[:2]) <= min(one_percent[2:]),
-    )
-
-
-def _as_a_front(parts: Sequence[Decomposition]) -> Finding:
-    """The decay in the swept substructures beside that of a constant-speed front."""
-    ratios = np.array([against_front(part.values)[:5] for part in parts])
-    low, high = float(ratios.min()), float(ratios.max())
-    return Finding(
-        f"In substructures 3 to 5 the singular values 1 to 5, over the first, are {low:.2f} to "
-        f"{high:.2f} times 1/(2n − 1), that of a front of constant speed.",
-        low >= 0.5 and high <= 1.5,
     )
 
 
@@ -159,11 +147,13 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
             ("PGD modes as the iteration keeps them", kept),
         )
     )
-    likeness = (
+    return paper_figure(
+        8,
+        panels,
         _correlation(exact, sorted_, "orthonormalised in order"),
         _correlation(exact, kept, "as the iteration keeps them"),
+        last=last.number,
     )
-    return paper_figure(8, panels, *likeness, _reduced_errors(runs), last=last.number)
 
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
@@ -185,21 +175,4 @@ def _correlation(exact: Decomposition, modes: Array, words: str) -> Finding:
     return Finding(
         f"Correlation of PGD with SVD modes 1, 2, 3, {words}: {shown}.",
         bool(values.min() >= ALIKE),
-    )
-
-
-def _reduced_errors(runs: PaperRuns) -> Finding:
-    """Size of the bases, and what they miss, at the end of the run with PGD."""
-    last = runs.five_reduced.records[-1]
-    modes = [basis.n_modes for basis in runs.five_reduced.iterate.bases]
-    best, best_force = (
-        "/".join(str(part.modes_for(share)) for share in SHARES)
-        for part in (runs.displacements[-1], runs.friction_forces[-1])
-    )
-    return Finding(
-        f"The PGD keeps {', '.join(map(str, modes))} modes in substructures 1 to {len(modes)}; the "
-        f"displacement is then {last.error_displacement:.1%} wrong, the friction force "
-        f"{last.error_force:.1%}. In substructure {len(modes)} an SVD takes {best} modes for "
-        f"10/1/0.1 % of the displacement alone, {best_force} for the friction force alone.",
-        last.error_displacement <= 0.01,
     )
