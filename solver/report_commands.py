@@ -14,15 +14,14 @@ from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import scene_settings, settings_from_command
-from solver.study import proof
-from solver.study import stability_report as stability
+from solver.study import proof, stability
 from solver.study import study_report as study
 from solver.study.measured_times import error_against_time, times_at_sizes
 from solver.study.page import aligned, head_of, line_of, write_page
 from solver.study.paper_modes import paper_figures
 from solver.study.paper_runs import FILE, paper_runs, write_figures
 from solver.study.random_runs import random_cases
-from solver.study.stability_case import Row, extreme_cases, judged_runs, passed
+from solver.study.stability import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
 from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
@@ -101,10 +100,8 @@ def _stability(chosen: argparse.Namespace) -> int:
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
     cases = extreme_cases(scenes, quick=chosen.quick)
-    title, notes = stability.TITLE, stability.NOTES
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
-        title, notes = stability.RANDOM_TITLE, stability.RANDOM_NOTES
     runs: list[Row] = []
     with writing(chosen.out, *stability.FILES):
         print(head_of(stability.SHOWN))
@@ -113,8 +110,8 @@ def _stability(chosen: argparse.Namespace) -> int:
                 print(line_of(run, stability.SHOWN), flush=True)
                 runs.append(run)
         finally:  # what is done by then is written
-            stability.write_stability(runs, title, notes, chosen.out)
-            print("\n".join(stability.last_lines(runs, notes)))
+            stability.write_stability(runs, chosen.out)
+            print("\n".join(stability.last_lines(runs)))
             print(f"{len(stability.FILES)} files in {chosen.out}")
     return 0 if all(map(passed, runs)) else 1
 

@@ -19,7 +19,7 @@ from solver.arrays import Array
 from solver.definitions import CurveParameter, SettingError, about, is_logarithmic
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.stability_case import NOT_WRONG, StabilityCase
+from solver.study.stability import NOT_WRONG, StabilityCase
 
 LARGEST_FIELD = 6_000
 """Nodes times instants of a run, at most: a thousand iterations then stay within seconds; a matter
