@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from collections import Counter
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
 import numpy as np
-from scipy.special import stdtrit
 
-from solver.arrays import Array
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.study.page import PlotSection, Section, bullets, html_table, text_of
@@ -23,14 +20,13 @@ from solver.study.sweep.plan import Plan, Row, Varied
 
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN, NEIGHBOURS = "own", "neighbour's"
-CONFIDENCE = 0.95
 CAPTION = (
     "Hollow points and hatched cells are of runs that have not converged, crosses of runs without "
     "a value."
 )
 GROWTH = (
-    "Powers by least squares of the logarithms, with their margins at 95 % where there are more "
-    "than two runs; small sizes, at which other things cost, make them lower."
+    "Powers by least squares of the logarithms; small sizes, at which other things cost, make them "
+    "lower."
 )
 
 
@@ -50,31 +46,12 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
     for place, name in enumerate(plan.of):
         curves = grid(plan, rows, place).T.reshape(len(which), -1)
         for words, curve in zip(which, curves, strict=True):
-            power, margin, count = exponent_of(along.values, curve)
-            law = f"{power:.2f}" + (f" ± {margin:.2f}" if count > 2 else "")
-            if count > 1:
-                lines.append(f"{name}{words}: {along.name}^({law}), of {count} runs")
+            is_known = curve > 0.0
+            if (count := is_known.sum()) > 1:
+                size, value = np.log([np.array(along.values)[is_known], curve[is_known]])
+                power = np.polyfit(size, value, 1)[0]
+                lines.append(f"{name}{words}: {along.name}^{power:.2f}, of {count} runs")
     return lines
-
-
-def exponent_of(x: Sequence[float], y: Sequence[float] | Array) -> tuple[float, float, int]:
-    """Power with which y grows with x, by least squares of the logarithms of positive numbers.
-
-    Returns
-    -------
-    The power, NaN below two points; the margin to both sides of it, with 95 % confidence if points
-    scatter at random about a power law, NaN for two points; the number of points.
-    """
-    # Here and not above: it takes a third of a second, and few sweeps ask.
-    from scipy.stats import linregress
-
-    points = np.array([x, y], dtype=float)
-    points = points[:, (np.isfinite(points) & (points > 0.0)).all(axis=0)]
-    if (count := points.shape[1]) < 2:
-        return math.nan, math.nan, count
-    fitted = linregress(*np.log(points))
-    quantile = float(stdtrit(count - 2, 0.5 + 0.5 * CONFIDENCE)) if count > 2 else math.nan
-    return float(fitted.slope), quantile * float(fitted.stderr), count
 
 
 def title_of(plan: Plan) -> str:
