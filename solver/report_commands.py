@@ -25,10 +25,10 @@ from solver.study.stability import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
 from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
-from solver.study.sweep.run import field_file, patience, sweep
+from solver.study.sweep.run import patience, sweep
 from solver.study.trade_case import case_from_file
 
-TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
+TABLE, PAGE = "sweep.csv", "sweep.html"
 LIMIT = 600.0
 """Seconds that a run may take, unless somebody says otherwise."""
 OFTEN = 3.0
@@ -60,7 +60,6 @@ def add_reports(commands: Any) -> None:
     parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
     parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
-    parser.add_argument("--fields", action="store_true", help="keep the fields of every run")
     parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
 
 
@@ -156,14 +155,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
 
 def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> None:
     """Run what of a plan has no row yet, append its rows to the table, and print how far it is."""
-    fields = None
     known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
-    if chosen.fields:
-        folder = (chosen.out / FIELDS).resolve()
-        folder.mkdir(exist_ok=True)
-        fields = str(folder)
-        known = {n: row for n, row in known.items() if (folder / field_file(n)).exists()}
-    options: dict[str, Any] = {"limit": chosen.limit, "fields": fields, "warm": not chosen.cold}
     table = chosen.out / TABLE
     with opened(chosen.on, patience(chosen.limit)) as executor:
         # As a whole, in case that its last line was cut off
@@ -171,7 +163,8 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
         with table.open("a", encoding="utf-8", newline="") as lines:
             before, began = len(known), time.monotonic()
             printed = began
-            for row in sweep(plan, executor, done=set(known), **options):
+            runs = sweep(plan, executor, done=set(known), limit=chosen.limit, warm=not chosen.cold)
+            for row in runs:
                 rows[row.number] = known[row.number] = row
                 lines.write(lines_of(plan, [row]))
                 lines.flush()

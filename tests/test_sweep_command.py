@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable
 from contextlib import nullcontext
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -134,16 +132,6 @@ def test_a_table_of_something_else_is_not_overwritten(tmp_path: Path) -> None:
     (tmp_path / "sweep.csv").write_text("a,b\n1,2\n", encoding="utf-8")
     assert command(tmp_path) == 2
     assert (tmp_path / "sweep.csv").read_text(encoding="utf-8") == "a,b\n1,2\n"
-
-
-@pytest.mark.usefixtures("here")
-def test_fields_can_be_kept(tmp_path: Path) -> None:
-    assert command(tmp_path) == 0
-    assert command(tmp_path, "--fields") == 0
-    fields = sorted((tmp_path / "fields").iterdir())
-    assert len(fields) == 4
-    with np.load(fields[2]) as found:
-        assert json.loads(str(found["settings"]))["peak"] == 700.0
 
 
 @pytest.mark.parametrize(

@@ -20,12 +20,10 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import cache, partial
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 
 from solver.definitions import SettingError
-from solver.files import save_result
 from solver.latin import Ending
 from solver.reference.rules import States
 from solver.refusal import RefusedError
@@ -54,14 +52,7 @@ def versions() -> str:
     return ", ".join([*(f"{name} {version(name)}" for name in names), platform.python_version()])
 
 
-def field_file(number: int) -> str:
-    """Name of the file of a point's fields."""
-    return f"run-{number:05d}.npz"
-
-
-def run(
-    plan: Plan, limit: float, fields: str | None, warm: bool, sweep: str, asked_by: str, number: int
-) -> Row:
+def run(plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number: int) -> Row:
     """Row of a point of a plan, with options of `sweep` and a name that no other sweep has.
 
     `asked_by` are the versions of who asks; others are refused, as a result would be that of other
@@ -77,9 +68,6 @@ def run(
         try:
             finished = _from_nearest(plan, sweep, number, warm, began + limit)
             values = tuple(float(reading(finished)) for reading in plan.readings)
-            if fields is not None:
-                file = Path(fields) / field_file(number)
-                save_result(file, finished.settings, finished.solution)
             status, iterations = finished.solution.status, finished.iterate.number
             ending, reason = str(status.ending), status.advice
             if status.ending is Ending.CANCELLED:
@@ -125,26 +113,13 @@ def sweep(
     *,
     done: Collection[int] = (),
     limit: float = math.inf,
-    fields: str | None = None,
     warm: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Iterator[Row]:
-    """Run points of a plan, from neighbour to neighbour.
+    """Run points of a plan, from neighbour to neighbour, but for those that are done.
 
-    Parameters
-    ----------
-    plan, executor
-        What to run, and where.
-    done
-        Numbers of the points to leave out.
-    limit
-        Seconds that a run may take.
-    fields
-        Folder for the fields of every run, which all processes share; None keeps none.
-    warm
-        Whether runs may start from their neighbours, where no reading is of how they went.
-    cancelled
-        Asked several times a second whether to end it.
+    A run may take `limit` seconds, and starts, if `warm`, from the nearest one where no reading is
+    of how it went. `cancelled` is asked several times a second whether to end the sweep.
 
     Yields
     ------
@@ -159,7 +134,7 @@ def sweep(
         Where the executor does no more calls; the same sweep can go on in another.
     """
     warm = warm and not any(reading.is_of_course for reading in plan.readings)
-    call = partial(run, plan, limit, fields, warm, uuid.uuid4().hex, versions())
+    call = partial(run, plan, limit, warm, uuid.uuid4().hex, versions())
     path = deque(number for number in snake(plan.shape) if number not in done)
     under_way: dict[Future[Row], int] = {}
     tries = Counter[int]()
