@@ -8,7 +8,7 @@ the time step alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from solver.definitions import SettingError
@@ -89,32 +89,25 @@ class Refinement:
         return most / abs(self.limit) if self.limit else math.inf if most else 0.0
 
 
-def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
-    """Three meshes, each twice as fine as the one before, and the place of a run's own.
+def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], int]:
+    """Settings with three sizes, each twice as fine as the one before, and the place of their own.
 
-    That is the middle one, or the first where its numbers of elements cannot be halved.
+    That is the middle one, or the first where the sizes cannot be halved. Names are those of the
+    mesh, or `instants`, of which the steps are counted.
 
     Raises
     ------
     SettingError
-        Where the finest has more elements than a scene takes.
+        Where the finest has more than a scene takes.
     """
-    return _three(settings, {name: getattr(settings, name) for name in settings.MESH}, 0)
-
-
-def instants_around(settings: Settings) -> tuple[list[Settings], int]:
-    """Three numbers of instants on a run's own mesh, as `meshes_around` has three of elements."""
-    return _three(settings, {"instants": settings.values()["instants"] - 1}, 1)
-
-
-def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[list[Settings], int]:
-    """Settings with multiples of counts, more added, and the place of those as they are."""
 
     def refined(factor: float) -> Settings:
-        sizes = {name: factor * count + more for name, count in counts.items()}
-        return settings.replace(
-            **{name: int(size) if size == int(size) else size for name, size in sizes.items()}
-        )
+        sizes = {}
+        for name in names:
+            first = 1 if name == "instants" else 0
+            size = factor * (settings.values()[name] - first) + first
+            sizes[name] = int(size) if size == int(size) else size
+        return settings.replace(**sizes)
 
     try:
         return [refined(factor) for factor in (0.5, 1, 2)], 1
@@ -146,23 +139,23 @@ def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
     limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
-    own = (
-        f"This run is within {_share(refinement)} of that."
-        if refinement.limit
-        else "That is nothing."
-    )
+    own = f"This run is within {_share(refinement)} of that." if refinement.limit else ""
     order = refinement.order
     if order is None:
-        return f"It follows no power of {size}: {limit} is all that is known. {own}"
-    if order < LEAST_ORDER:
-        return (
-            f"It changes with the power {order:.2f} of {size}, which shows no limit: "
-            f"{limit}, if there is one. {own}"
+        told = f"It follows no power of {size}: {limit} is all that is known."
+    elif order < LEAST_ORDER:
+        told = (
+            f"It changes with the power {order:.2f} of {size}, which shows no limit: {limit}, if "
+            "there is one."
         )
-    if order > LARGEST_ORDER:
-        return f"It hardly changes any more with {size}: {limit}. {own}"
-    goes = f"Its error goes with the power {order:.2f} of {size}"
-    return f"{goes}, and with ever smaller ones it becomes {limit}. {own}"
+    elif order > LARGEST_ORDER:
+        told = f"It hardly changes any more with {size}: {limit}."
+    else:
+        told = (
+            f"Its error goes with the power {order:.2f} of {size}, and with ever smaller ones it "
+            f"becomes {limit}."
+        )
+    return f"{told} {own}".rstrip()
 
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:
