@@ -76,14 +76,9 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class ComparedRun:
-    """A run beside a measured loop.
+    """A run beside a measured loop, with the values of the settings that are fitted, (p,), in SI.
 
-    Attributes
-    ----------
-    values
-        Of the settings that are fitted, shape (p,), in SI.
-    differences
-        Of what it finds to every row; shares of the measured range.
+    Differences are of what it finds to every row, as shares of the measured range.
     """
 
     values: Array

@@ -43,18 +43,10 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 
 @dataclass(frozen=True, eq=False)
 class MeasuredLoop:
-    """A measured loop, in SI.
+    """A measured loop, in SI and the units of the loop of its scene, and what was read of the file.
 
-    Attributes
-    ----------
-    displacement, force
-        Of every row, shape (n_rows,).
-    times
-        Same shape, s; None where rows are matched along the path.
-    units
-        Of both, as the loop of its scene has them.
-    message
-        What was understood of the file.
+    Displacement, force and times, s, have shape (n_rows,); without times rows are matched along the
+    path.
     """
 
     displacement: Array
@@ -132,14 +124,8 @@ def loop_in(table: Table, source: str, axes: Axes) -> MeasuredLoop:
 class LoopComparison:
     """A measured loop beside the runs of one problem.
 
-    Attributes
-    ----------
-    finds_force
-        Whether displacement is given and force is compared, or the other way round.
-    quantity, given
-        Titles of what is compared, and of what is given.
-    counted
-        Which rows are compared, shape (n_rows,).
+    Where `finds_force`, displacement is given and force is compared, else the other way round;
+    `quantity` and `given` are their titles. The rows in `counted`, (n_rows,), are compared.
     """
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:

@@ -67,13 +67,9 @@ Clock = Callable[[], float]
 class ErrorCurve:
     """What a method reaches, and when.
 
-    Attributes
-    ----------
-    steps, seconds
-        Iterations done, or Newton steps of the incremental solver, and the time from settings to
-        there, medians of the passes, s; shape (n,).
-    error_displacement, error_force
-        Relative L2 distances to the incremental reference, same shape; 0 for itself.
+    Steps are iterations done, or Newton steps of the incremental solver; seconds the time from
+    settings to there, medians of the passes; errors the relative L2 distances to the incremental
+    reference, 0 for itself. All have shape (n,).
     """
 
     method: str

@@ -34,12 +34,7 @@ EQUAL = 1e-6
 class Refinement:
     """A quantity on three meshes, each with elements or steps of half the size of the one before.
 
-    Attributes
-    ----------
-    values
-        Coarse first.
-    own
-        The place of the one that is asked about.
+    The coarse one is first; `own` is the place of the one that is asked about.
     """
 
     values: tuple[float, float, float]

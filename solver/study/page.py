@@ -38,14 +38,8 @@ Line = Literal["solid", "dashed", "dotted", "points"]
 class PanelAxis:
     """A quantity, its unit (empty for a pure number), and whether decades are evenly spaced.
 
-    Attributes
-    ----------
-    limits
-        What is shown; all of the curves without it.
-    whole
-        Whether only whole numbers have a meaning.
-    names
-        What stands at 0, 1, ... where these are no numbers.
+    Without limits all of the curves is shown. On a whole one only whole numbers have a meaning;
+    names stand at 0, 1, ... where these are no numbers.
     """
 
     quantity: str
@@ -78,16 +72,10 @@ class PanelCurve:
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Points of a chart that each stand for a run, in the order in which they came.
+    """Points of a chart that each stand for a run, n of them in the order in which they came.
 
-    Attributes
-    ----------
-    numbers, x, y
-        Of the runs, and where they stand, shape (n,); in a panel y is NaN where a run has no value.
-    hues, holds
-        Of the curve to which each belongs, and whether it is an answer, same shape.
-    said
-        What each is and came to, in words, n of them.
+    Each belongs to the curve of its hue; in a panel y is NaN where a run has no value. `holds` is
+    whether it is an answer, and `said` what it is and came to, in words.
     """
 
     numbers: Indices
@@ -113,10 +101,7 @@ class Panel:
 class Map:
     """A quantity over two settings, whose values ascend.
 
-    Attributes
-    ----------
-    scale, z
-        Its values, shape (len(y_values), len(x_values)); NaN where there is none.
+    Its values z have shape (len(y_values), len(x_values)), NaN where there is none.
     """
 
     title: str

@@ -38,18 +38,11 @@ REDUCED = 100
 
 @dataclass(frozen=True, eq=False)
 class PaperRuns:
-    """The friction bar of Table 1 under a sine, decomposed and solved in several ways.
+    """The friction bar of Table 1 under a sine, and its incremental solution.
 
-    Attributes
-    ----------
-    reference
-        The incremental solution; how the bar is decomposed makes no difference to it.
-    multiscale, monoscale, early
-        Ten substructures with the coarse problem and without, and iterate `EARLY` of both.
-    five, five_reduced
-        Five substructures, converged, and with the PGD at its default settings.
-    friction_forces, displacements
-        The converged fields, decomposed in each of five substructures.
+    Ten substructures with the coarse problem and without, and iterate `EARLY` of both; five,
+    converged, and with the PGD at its default settings; the converged fields, decomposed in each of
+    the five.
     """
 
     reference: Reference

@@ -91,18 +91,10 @@ NOTES = (
 
 @dataclass(frozen=True)
 class StabilityCase:
-    """A run that is to be made, and what may come of it.
+    """A run that is to be made, by what is extreme about it, and what may come of it.
 
-    Attributes
-    ----------
-    title
-        What is extreme about it; or which one it is of random ones.
-    values
-        Settings that differ from the scene's own.
-    expected
-        A key of `PASSING`.
-    error_force, error_displacement
-        Errors up to which the answer is right.
+    Its values are settings that differ from the scene's own; what is expected is a key of
+    `PASSING`, and errors are those up to which the answer is right.
     """
 
     title: str

@@ -63,13 +63,9 @@ class LoadCycles:
     ----------
     ends
         Instants at which they begin, and the last one ends, n_cycles + 1 of them.
-    slip
-        That of every point in each, all to and fro added up while it is in contact, shape
-        (n_points, n_cycles), m.
-    net
-        How much farther a point stands at the end of each, same shape, m.
-    work
-        What friction takes at every point in each, same shape, J.
+    slip, net, work
+        Of every point in each, shape (n_points, n_cycles): slip to and fro added up while it is in
+        contact, m; how much farther it stands at the end, m; what friction takes, J.
     before
         Slip before the first, as `slip`, shape (n_points,), m.
     is_repeated

@@ -52,14 +52,9 @@ EQUAL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """A run from its settings to its end.
+    """A run from its settings to its end, from another run if it was warm.
 
-    Attributes
-    ----------
-    was_warm
-        Whether it started from another run.
-    made_loop
-        Its loop, where that is at hand: in the plane it takes a while to make one.
+    `made_loop` is its loop, where that is at hand: in the plane it takes a while to make one.
     """
 
     settings: Settings
@@ -136,10 +131,7 @@ def largest_load(run: FinishedRun) -> int:
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """A number of a run at an instant, in SI, by the names of scripts and of people.
-
-    The unit is empty for a share, and chosen by the size of the largest value in the run.
-    """
+    """A number of a run at an instant, and the largest in the run, in SI; a share has no unit."""
 
     name: str
     title: str

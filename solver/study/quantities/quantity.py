@@ -13,16 +13,10 @@ from solver.study.quantities.finished import FinishedRun
 
 @dataclass(frozen=True)
 class Parameter:
-    """The number that a quantity may be asked with.
+    """The number that a quantity may be asked with, or has to, if it is needed.
 
-    Attributes
-    ----------
-    words
-        What it adds to the title, with a place for the number.
-    bounds
-        Smallest and largest, integers where only whole numbers have a meaning.
-    needed
-        Whether the quantity has no meaning without it.
+    `words` is what it adds to the title, with a place for the number; the smallest and the largest
+    are integers where only whole numbers have a meaning.
     """
 
     words: str

@@ -73,13 +73,7 @@ def is_map(plan: Plan) -> bool:
 
 
 def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
-    """Values of a reading over the points of a plan.
-
-    Returns
-    -------
-    Values of the runs that have converged, of the plan's shape; NaN elsewhere, and for what is
-    infinite.
-    """
+    """Finite values of a reading of runs that have converged, of the plan's shape; else NaN."""
     good = np.full(plan.size, np.nan)
     for row in rows:
         if row.holds and math.isfinite(row.values[place]):

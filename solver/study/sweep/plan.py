@@ -122,7 +122,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one point.
+    """What came of one point; it was warm if it started from the run nearest to it.
 
     Attributes
     ----------
@@ -134,9 +134,7 @@ class Row:
         Of the readings of the plan, in their units: NaN where the run has none, infinity for
         never. Those of a run that has not converged are what it had come to.
     seconds
-        That the whole of it took, with its problem, its reference and its readings.
-    was_warm
-        Whether it started from the run nearest to it.
+        With its problem, its reference and its readings.
     """
 
     number: int
