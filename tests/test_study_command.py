@@ -71,7 +71,7 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
         "study.html",
     }
     page = (folder / "study.html").read_text(encoding="utf-8")
-    assert page.count("data-root-id") == 3
+    assert page.count("data-root-id") == 2
     assert not re.search(r"<link|<script src|<img|@import", page)
     cells = {f">{cell}</td>" for row in table(curves)[1:] for cell in row}
     for words in (*forms_of(BarSettings()), INCREMENTAL, "BLAS threads: 1", *cells):

@@ -44,7 +44,7 @@ CAPTION = (
     "A line is a form of LATIN, iteration by iteration; the dashed line is when the incremental "
     "solver is done. Errors below the lower edge are drawn on it."
 )
-SIZES, TIMES = "Who is first where", "LATIN / incremental solver"
+TIMES = "LATIN / incremental solver"
 BILLED = (
     "The time of a method is all that it takes from settings to result: discretisation, "
     "factorisation, the coarser mesh, iterations. Imports and the computation of errors are not "
@@ -142,22 +142,6 @@ def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
     return panels
 
 
-def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
-    """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
-    curves = []
-    for hue, instants in enumerate(sorted({times.instants for times in measured}), start=1):
-        own = sorted((each.size, each.ratio) for each in measured if each.instants == instants)
-        sizes, ratios = np.array(own).T
-        curves.append(PanelCurve(f"{instants} instants", sizes, ratios, hue, "points"))
-    ends = np.array([curves[0].x[0], curves[0].x[-1]])
-    return Panel(
-        f"Time of {TIMES}",
-        PanelAxis(_titles(settings)[0], logarithmic=True, whole=True),
-        PanelAxis(TIMES, logarithmic=True),
-        (*curves, PanelCurve("both take as long", ends, np.ones(2), 0, "dashed")),
-    )
-
-
 def write_curves(curves: Sequence[ErrorCurve], folder: Path) -> None:
     """Write `curves.csv` and `levels.csv` (s; errors as fractions)."""
     points, levels = [], []
@@ -190,8 +174,7 @@ def write_study(
         f"<h2>Time to an error of the friction force</h2>\n{html_table(table(curves))}\n"
         f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(curves)),
-        f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
-        PlotSection(SIZES, [ratio_panel(settings, measured)]),
+        f"<p>{CAPTION}</p>\n<h2>Who is first where</h2>\n"
         f"{html_table(sizes_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
     ]
