@@ -58,14 +58,12 @@ def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Stab
 
 def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
     """Case of settings that were drawn; right are errors of its force within its accuracy."""
-    own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
-    method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
     return StabilityCase(
         f"row {row} of seed {seed}",
         settings.scene,
         settings.changed(),
         NOT_WRONG,
-        "pgd" if settings.linear_stage == "pgd" else method,
+        settings.method,
         error_force=settings.accuracy,
         error_displacement=math.inf,
     )

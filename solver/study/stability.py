@@ -138,8 +138,6 @@ class Outcome:
     ----------
     ending, advice
         Its status; `REFUSED` or `BROKEN`, and why.
-    error_displacement, error_force
-        Relative distance to the reference; absolute (m, N) where reference and load are zero.
     residual, floor
         Of a certified run by `kkt_residual`, and, where it is above rounding, of the reference,
         below which rounding lets nobody come: layers of 5000 times their thickness have 3e-7.

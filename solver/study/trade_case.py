@@ -24,21 +24,7 @@ from solver.study.quantities.quantity import Quantity
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case as its file says, whose name it has.
-
-    Attributes
-    ----------
-    known, tolerance
-        The quantity of the run, and how far this may be from it, as a share.
-    formula, how
-        What it follows from, and how it is known.
-    change, controls
-        What to change first, and the names of its settings.
-    picture
-        By which it is found; without one that of the scene.
-    views
-        Names of the plots that come to the front.
-    """
+    """A case as its file says, whose name it has (`cases/README.md` says what each is)."""
 
     name: str
     order: int

@@ -72,10 +72,10 @@ class Quantity:
         """Value of a run."""
         if not self.applies(run.settings):
             return math.nan
-        if self.when is not None:
-            instant = self.when(run) if self.parameter is None else self.when(run, self.at)
-            return float(self.of(run, instant))
-        return float(self.of(run) if self.parameter is None else self.of(run, self.at))
+        given = () if self.parameter is None else (self.at,)
+        if self.when is None:
+            return float(self.of(run, *given))
+        return float(self.of(run, self.when(run, *given)))
 
 
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:

@@ -67,7 +67,7 @@ def run(plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number:
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
             finished = _from_nearest(plan, sweep, number, warm, began + limit)
-            values = tuple(float(reading(finished)) for reading in plan.readings)
+            values = tuple(reading(finished) for reading in plan.readings)
             status, iterations = finished.solution.status, finished.iterate.number
             ending, reason = str(status.ending), status.advice
             if status.ending is Ending.CANCELLED:
