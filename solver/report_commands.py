@@ -18,7 +18,7 @@ from solver.study import proof, stability
 from solver.study import study_report as study
 from solver.study.measured_times import error_against_time, times_at_sizes
 from solver.study.page import aligned, head_of, line_of, write_page
-from solver.study.paper_modes import paper_figures
+from solver.study.paper_figures import paper_figures
 from solver.study.paper_runs import FILE, paper_runs, write_figures
 from solver.study.random_runs import random_cases
 from solver.study.stability import Row, extreme_cases, judged_runs, passed

@@ -22,7 +22,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.study.paper_modes import figure_5, figure_6, figure_8, paper_figures
+from solver.study.paper_figures import figure_5, figure_6, figure_8, paper_figures
 from solver.study.paper_runs import PaperRuns, paper_runs
 
 NUMBERS = (3, 4, 5, 6, 7, 8)
