@@ -112,7 +112,7 @@ def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], 
 
 def decides(settings: Settings, asked: Quantity) -> bool:
     """Whether a mesh decides a quantity: not how a run went, but what it came to."""
-    return not asked.is_of_course and asked.applies(settings)
+    return asked.reads is None and asked.applies(settings)
 
 
 def value_on(settings: Settings, asked: Quantity) -> float:

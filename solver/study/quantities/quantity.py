@@ -45,13 +45,11 @@ class Quantity:
     parameter, at
         What it may be asked with, and what it is asked with.
     reads
-        What the records must hold for it, which takes its time: distances to a reference, or the
-        indicators of every iteration.
+        What of how the run went it follows from, so that a run that starts elsewhere has another:
+        distances to a reference or the indicators of every iteration, which take their time, or
+        neither of them. None where it is of what the run came to.
     is_share
         Whether it is a share of a whole, which is told in per cent.
-    is_of_course
-        Whether it follows from how the run went, not only from what it came to: then a run that
-        starts elsewhere has another.
     applies
         Whether runs of these settings may have it; others have NaN.
     """
@@ -62,9 +60,8 @@ class Quantity:
     of: Callable[..., float]
     when: Callable[..., int] | None = None
     parameter: Parameter | None = None
-    reads: Literal["errors", "indicators"] | None = None
+    reads: Literal["errors", "indicators", "course"] | None = None
     is_share: bool = False
-    is_of_course: bool = False
     applies: Callable[[Settings], bool] = lambda settings: True
     at: float | None = None
 

@@ -62,7 +62,7 @@ def products_in(clips: Clips) -> Sizes:
 
 @quantity(
     "Modes of the largest separated basis",
-    is_of_course=True,
+    reads="course",
     applies=lambda settings: settings.applies("pgd_modes"),
 )
 def modes(run: FinishedRun) -> float:

@@ -22,9 +22,7 @@ def _record(
             records = [entry for entry in records if entry.iteration == at]
         return float(getattr(records[-1], column)) if records else math.nan
 
-    return Quantity(
-        column, title, "", of, None, ITERATION, reads=reads, is_share=is_share, is_of_course=True
-    )
+    return Quantity(column, title, "", of, None, ITERATION, reads=reads, is_share=is_share)
 
 
 def _until(column: str, title: str, unit: str, field: str, words: str) -> Quantity:
@@ -41,16 +39,16 @@ def _until(column: str, title: str, unit: str, field: str, words: str) -> Quanti
 
     name = f"{'iterations' if column == 'iteration' else column}_to_{field}"
     full = f"{title} to an error of the {words} of"
-    return Quantity(name, full, unit, of, None, WITHIN, reads="errors", is_of_course=True)
+    return Quantity(name, full, unit, of, None, WITHIN, reads="errors")
 
 
-@quantity("Iterations", is_of_course=True)
+@quantity("Iterations", reads="course")
 def iterations(run: FinishedRun) -> float:
     """Number of iterations."""
     return run.iterate.iterations
 
 
-@quantity("Run time", "s", is_of_course=True)
+@quantity("Run time", "s", reads="course")
 def seconds(run: FinishedRun) -> float:
     """Time of the whole run, s."""
     records = run.solution.records

@@ -60,7 +60,7 @@ def run(plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number:
     """
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
-    if any(reading.is_of_course for reading in plan.readings):
+    if any(reading.reads for reading in plan.readings):
         settle()
     began, nothing = time.perf_counter(), (math.nan,) * len(plan.of)
     # A run that diverges is told by its status.
@@ -133,7 +133,7 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
     """
-    warm = warm and not any(reading.is_of_course for reading in plan.readings)
+    warm = warm and not any(reading.reads for reading in plan.readings)
     call = partial(run, plan, limit, warm, uuid.uuid4().hex, versions())
     path = deque(number for number in snake(plan.shape) if number not in done)
     under_way: dict[Future[Row], int] = {}
