@@ -17,8 +17,8 @@ from sweeps import tiny
 from app.charts import contours, in_units, keys, overlay, render
 from solver.study import page
 from solver.study.page import Chart, Panel, PanelAxis, PanelCurve, PlotSection, write_page
-from solver.study.sweep.chart import chart_of
 from solver.study.sweep.plan import Row
+from solver.study.sweep.report import chart_of
 
 X = np.array([1.0, 2.0, 3.0])
 PANEL = Panel(

@@ -19,8 +19,8 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
 from solver.study.page import Map, write_page
-from solver.study.sweep.chart import chart_of
 from solver.study.sweep.plan import Row, axis_of, plan_of
+from solver.study.sweep.report import chart_of
 from solver.study.sweep.run import snake
 
 SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
