@@ -139,13 +139,7 @@ class ComparedRuns:
         return np.where(self.in_decades, values, self._size)
 
     def run(self, z: Array) -> ComparedRun:
-        """Run at a place.
-
-        Raises
-        ------
-        RefusedError
-            For settings that do not fit together, or a run that does not converge.
-        """
+        """Run at a place; `RefusedError` where settings do not fit or it does not converge."""
         changes = self.changes(z)
         settings = self._settings.replace(**changes)
         finished = finished_run(settings, errors=False, indicators=False, before=self._before)

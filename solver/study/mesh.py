@@ -88,12 +88,7 @@ def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], 
     """Settings with three sizes, each twice as fine as the one before, and the place of their own.
 
     That is the middle one, or the first where the sizes cannot be halved. Names are those of the
-    mesh, or `instants`, of which the steps are counted.
-
-    Raises
-    ------
-    SettingError
-        Where the finest has more than a scene takes.
+    mesh, or `instants`, of which the steps are counted. What a scene does not take is refused.
     """
 
     def refined(factor: float) -> Settings:

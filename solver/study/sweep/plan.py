@@ -152,13 +152,7 @@ class Row:
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` (quantities) take them.
-
-    Raises
-    ------
-    SettingError
-        For whatever of it cannot be run.
-    """
+    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` take them, or `SettingError`."""
     if not 1 <= len(vary) <= 2:
         raise SettingError("--vary", list(vary), f"one or two of {FORM}", "vary one or two")
     if not of:
