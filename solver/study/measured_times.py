@@ -60,7 +60,6 @@ REPEATS = 3
 SLOW = 1.0
 """Seconds from which one run is enough."""
 INCREMENTAL, FAST = "incremental solver", "LATIN fast"
-Clock = Callable[[], float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +154,7 @@ def _append_times(passes: list[list[float]], settings: Settings, number: int) ->
     passes.append([decision.seconds for _, decision in decisions])
 
 
-def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
+def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.process_time) -> float:
     """Time of some work, s; of the processor unless another clock is given."""
     return timeit(work, timer=clock, number=1)
 

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
-from solver.discrete.structure import LoopFields
-from solver.latin import Ending, Solution, solve
+from solver.latin import Ending, solve
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -84,13 +83,14 @@ def rows_of(case: KnownCase) -> Iterator[Row]:
     settings = case.settings
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
-    answers: list[tuple[str, bool, LoopFields, Solution | None]]
-    answers = [("LATIN", solution.status.ending is Ending.CONVERGED, solution.iterate, solution)]
+    has_converged = solution.status.ending is Ending.CONVERGED
+    answers = {"LATIN": (has_converged, Answer(settings, problem, solution.iterate, solution))}
     if case.part != TRADE:
         reference = reference_of(problem)
-        answers.append(("incremental", bool(reference.converged.all()), reference, None))
-    for solver, has_ended, fields, run in answers:
-        for quantity, unit, known, ours in case.numbers(Answer(settings, problem, fields, run)):
+        is_found = bool(reference.converged.all())
+        answers["incremental"] = is_found, Answer(settings, problem, reference)
+    for solver, (has_ended, answer) in answers.items():
+        for quantity, unit, known, ours in case.numbers(answer):
             deviation = float(abs(ours - known) / abs(known))
             holds = has_ended and deviation <= case.allowed
             yield {

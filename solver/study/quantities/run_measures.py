@@ -25,7 +25,7 @@ def _record(
     return Quantity(column, title, "", of, None, ITERATION, reads=reads, is_share=is_share)
 
 
-def _until(column: str, title: str, unit: str, field: str, words: str) -> Quantity:
+def _until(spent: str, field: str, words: str) -> Quantity:
     """What a run spends until an error is as small as it is asked to be."""
 
     def of(run: FinishedRun, at: float | None) -> float:
@@ -34,12 +34,12 @@ def _until(column: str, title: str, unit: str, field: str, words: str) -> Quanti
             return math.nan
         for entry, error in errors:
             if error <= (at or 0.0) and not entry.is_answer:
-                return float(getattr(entry, column))
+                return float(entry.seconds if spent == "seconds" else entry.iteration)
         return math.inf
 
-    name = f"{'iterations' if column == 'iteration' else column}_to_{field}"
-    full = f"{title} to an error of the {words} of"
-    return Quantity(name, full, unit, of, None, WITHIN, reads="errors")
+    title, unit = ("Run time", "s") if spent == "seconds" else ("Iterations", "")
+    title = f"{title} to an error of the {words} of"
+    return Quantity(f"{spent}_to_{field}", title, unit, of, None, WITHIN, reads="errors")
 
 
 @quantity("Iterations", reads="course")
@@ -64,10 +64,7 @@ error_displacement = _record(
     "error_displacement", "Error of the displacement", "errors", is_share=True
 )
 error_force = _record("error_force", "Error of the contact force", "errors", is_share=True)
-_FIELDS = ("displacement", "displacement"), ("force", "contact force")
-iterations_to_displacement, iterations_to_force = (
-    _until("iteration", "Iterations", "", *field) for field in _FIELDS
-)
-seconds_to_displacement, seconds_to_force = (
-    _until("seconds", "Run time", "s", *field) for field in _FIELDS
-)
+iterations_to_displacement = _until("iterations", "displacement", "displacement")
+iterations_to_force = _until("iterations", "force", "contact force")
+seconds_to_displacement = _until("seconds", "displacement", "displacement")
+seconds_to_force = _until("seconds", "force", "contact force")
