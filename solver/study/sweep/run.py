@@ -6,7 +6,7 @@ import math
 import platform
 import time
 import uuid
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -16,10 +16,10 @@ from concurrent.futures import (
     Future,
     wait,
 )
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import cache, partial
 from importlib.metadata import version
+from itertools import islice
 
 import numpy as np
 
@@ -37,8 +37,6 @@ KEPT = 500
 scenes as they are each takes 5 to 30 kB."""
 _kept: dict[str, deque[tuple[tuple[float, ...], States]]] = {}
 """Places of the runs of this process, of the last sweep, and what stuck, slipped and opened."""
-TRIES = 3
-"""Times that a run is submitted again because processes were ended while they did nothing."""
 AHEAD = 500
 """Runs under way at once, done and waiting: more than there are workers, soon asked for."""
 PATIENCE = 0.2
@@ -135,27 +133,16 @@ def sweep(
     """
     warm = warm and not any(reading.reads for reading in plan.readings)
     call = partial(run, plan, limit, warm, uuid.uuid4().hex, versions())
-    path = deque(number for number in snake(plan.shape) if number not in done)
+    path = (number for number in snake(plan.shape) if number not in done)
     under_way: dict[Future[Row], int] = {}
-    tries = Counter[int]()
     try:
         while not cancelled():
-            while path and len(under_way) < AHEAD:
-                number = path.popleft()
+            for number in islice(path, AHEAD - len(under_way)):
                 under_way[executor.submit(call, number)] = number
             if not under_way:
                 return
             for future in wait(under_way, PATIENCE, FIRST_COMPLETED).done:
-                number = under_way.pop(future)
-                try:
-                    row = _row(future, number, len(plan.of))
-                except BrokenProcessPool:
-                    tries[number] += 1
-                    if tries[number] > TRIES:
-                        raise
-                    path.appendleft(number)
-                else:
-                    yield row
+                yield _row(future, under_way.pop(future), len(plan.of))
     finally:
         for future in under_way:
             future.cancel()
