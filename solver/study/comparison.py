@@ -66,8 +66,8 @@ class OtherResults:
 def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
     """Read results of another program for a scene, of a table, bytes or text.
 
-    Its head names the columns x (m), t (s), and friction force or displacement, in any order and
-    with units if they are others; further columns are passed over, and rows may have any order.
+    Its head names the columns x (m), t (s), and friction force or displacement, with units if they
+    are others; further columns are passed over, and rows may have any order.
 
     Raises
     ------

@@ -237,12 +237,10 @@ def known_reference(
 
 
 def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
-    """Try a status step from what stuck, slipped and opened in a run of like settings.
+    """Solution by a status step from what stuck, slipped and opened in a run of like settings.
 
-    It counts only if it finds the one solution of the discrete problem, which does not depend on
-    the start. Iterations of the method in between better no states that are as near as these
-    (solver/study/README.md, 7). A run on separated bases is its own, as it is asked for these too.
-    None where it is not found soon.
+    It counts only if it is the one of the discrete problem, which does not depend on the start;
+    None where it is not found soon. A run on separated bases is its own, as it has these too.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
