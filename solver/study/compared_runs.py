@@ -14,6 +14,7 @@ from scipy.optimize import least_squares
 from solver.arrays import Array
 from solver.definitions import SettingError, about, is_logarithmic
 from solver.latin import Ending
+from solver.latin.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.settings import Settings
@@ -148,7 +149,7 @@ class ComparedRuns:
         if status.ending is not Ending.CONVERGED:
             values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", values, "one that converges", status.advice)
-        self._before = finished.states
+        self._before = states_of(finished.iterate)
         beside = LoopComparison(self._measured, finished.loop, finished.problem)
         differences, _ = beside.differences(finished.displacement, finished.force)
         return ComparedRun(np.array(list(changes.values())), finished, beside, differences)

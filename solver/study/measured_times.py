@@ -5,8 +5,7 @@ pass without the clock finds the errors, and warms up; then timed passes run eve
 turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
 
 Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile: to collect it
-bills all that the process holds. On a machine that others use too, seconds of the
-processor say what seconds of the clock do not; what is set side by side is of one clock.
+bills all that the process holds. What is set side by side is of one clock, the processor's or not.
 """
 
 from __future__ import annotations

@@ -23,8 +23,6 @@ from solver.disk import whole_file, write
 
 GROUP = "slipfront.renderers"
 NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pip install slipfront"
-
-
 HUES = (
     *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"),
     *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#1F9AA0"),

@@ -204,12 +204,11 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     alike = fourth.correlations(fifth.space_modes)
     turned = fifth.space_modes * np.sign(alike)
     inside = fourth.positions - fourth.positions[0]
-    top = 1.1 * float(np.abs([fourth.space_modes[:, :5], turned[:, :5]]).max())
     panels = tuple(
         Panel(
             f"Mode {order}",
             PanelAxis("Position in the substructure", "m"),
-            PanelAxis(MODE.quantity, MODE.unit, limits=(-top, top)),
+            MODE,
             (
                 PanelCurve("substructure 4", inside, fourth.space_modes[:, order - 1], 4),
                 PanelCurve("substructure 5", inside, turned[:, order - 1], 5, "dashed"),

@@ -29,7 +29,6 @@ LAST = 3
 """Cycles from which one tells what becomes of slip, whatever came before them."""
 REPEATED = 1e-3
 """Share of its range by which a load may differ from a cycle to the next."""
-
 ALIKE = 0.02
 """Share by which the slip of the last cycles may differ where it counts as the same."""
 ONE_WAY = 0.05

@@ -19,7 +19,7 @@ from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.certified import finished
 from solver.latin.cost import costs_of
 from solver.latin.status import certified
-from solver.latin.status_step import states_of, status_step
+from solver.latin.status_step import status_step
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
@@ -42,8 +42,6 @@ ALONE = 60
 """Iterations that take as long as a run of its own, with all beside them. A status step from a
 neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
 takes 1 to 3 and 3 to 9 (measured)."""
-
-
 ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
@@ -76,11 +74,6 @@ class FinishedRun:
     def loop(self) -> Loop:
         """Loop that the scene shows."""
         return self.made_loop or self.settings.structure().loop(self.problem)
-
-    @property
-    def states(self) -> States:
-        """What sticks, slips and is open, from which a run of like settings may start."""
-        return states_of(self.iterate)
 
     @cached_property
     def _along_loop(self) -> tuple[Array, Array]:

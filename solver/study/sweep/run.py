@@ -25,6 +25,7 @@ import numpy as np
 
 from solver.definitions import SettingError
 from solver.latin import Ending
+from solver.latin.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run, settle
@@ -96,7 +97,7 @@ def _from_nearest(plan: Plan, sweep: str, number: int, warm: bool, end: float) -
         before=nearest and nearest[1],
     )
     if warm and finished.solution.status.ending is Ending.CONVERGED:
-        kept.append((place, finished.states))
+        kept.append((place, states_of(finished.iterate)))
     return finished
 
 
