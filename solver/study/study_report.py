@@ -108,13 +108,12 @@ def sizes_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row
 
 def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
     """What the sizes show, in sentences."""
-    _, *others = titles = _titles(settings)
     ratios = np.array([times.ratio for times in measured if not times.message])
     return [
         f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
         "settings to a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
-        *([f"What grows together: {' and '.join(titles).lower()}."] if others else []),
+        f"What grows, each by the same factor: {' and '.join(_titles(settings)).lower()}.",
     ]
 
 
