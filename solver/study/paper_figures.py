@@ -216,12 +216,10 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
         )
         for order in (1, 3, 5)
     )
-    values = [float(np.abs(alike[order - 1])) for order in (1, 3, 5)]
+    values = np.abs(alike[[0, 2, 4]])
     words = ", ".join(f"{value:.3f}" for value in values)
-    likeness = Finding(
-        f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}.",
-        min(values) >= ALIKE,
-    )
+    text = f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}."
+    likeness = Finding(text, bool(values.min() >= ALIKE))
     return paper_figure(6, panels, likeness, _sign_changes(fourth, fifth))
 
 
@@ -243,18 +241,16 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
     """The first three SVD modes of the displacement of substructure 5."""
     displacement, force = runs.displacements[-1], runs.friction_forces[-1]
     curves = tuple(
-        PanelCurve(
-            f"mode {order}", displacement.positions, displacement.space_modes[:, order - 1], order
-        )
-        for order in (1, 2, 3)
+        PanelCurve(f"mode {order}", displacement.positions, mode, order)
+        for order, mode in enumerate(displacement.space_modes.T[:3], start=1)
     )
-    left = {rank: float(displacement.errors[rank]) for rank in (1, 2, 3)}
+    left = displacement.errors
     counts = displacement.modes_for(0.01), force.modes_for(0.01)
     reducible = Finding(
         f"The first 1, 2, 3 modes leave {left[1]:.1%}, {left[2]:.2%}, {left[3]:.2%} of the "
         f"displacement; 1 % takes {counts[0]} modes, where the friction force takes {counts[1]} of "
         f"its {len(force.values)}.",
-        left[3] <= 0.01,
+        bool(left[3] <= 0.01),
     )
     panel = Panel("SVD of the converged displacement", PLACE, MODE, curves)
     return paper_figure(7, [panel], reducible)

@@ -261,7 +261,7 @@ def summary(runs: Sequence[Row]) -> str:
 def counts(runs: Sequence[Row]) -> list[list[str]]:
     """Numbers of runs by verdict, and what each means; with a head."""
     numbers = Counter(run["verdict"] for run in runs)
-    rows = ([name, str(numbers[Verdict(name)]), text] for name, text in MEANING.items())
+    rows = ([name, str(numbers[name]), text] for name, text in MEANING.items())
     return [["verdict", "runs", "what it means"], *rows]
 
 

@@ -159,9 +159,8 @@ def key_figures(
 def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
     """Key figures of a run where its force first is largest, and when that is, s."""
     instant = largest_load(run)
-    loop = run.displacement, run.force
-    energy = float(run.dissipated.sum())
-    figures = key_figures(run.loop.axes, loop, run.iterate.status, energy, instant)
+    status, energy = run.iterate.status, float(run.dissipated.sum())
+    figures = key_figures(run.loop.axes, (run.displacement, run.force), status, energy, instant)
     return figures, float(run.problem.instants[instant])
 
 
