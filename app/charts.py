@@ -231,16 +231,12 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         background_fill_color="#fff",
         background_fill_alpha=0.7,
     )
-    if chart.is_sampled:
-        dots = hv.Points(runs[holds], ["x", "y"], "said")
-        yield dots.opts(color="#fff", line_color="#444", size=4, **HOVER)
-    else:
-        # Over each run's cell, for its words; hatched where it is no answer.
-        hatched = runs.assign(hatch=np.where(holds, " ", "right_diagonal_line"))
-        hatch = {"glyph.hatch_pattern": {"field": "hatch"}}
-        hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
-        hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
-        yield _cells(chart, hatched).opts(**hollow, **HOVER)
+    # Over each run's cell, for its words; hatched where it is no answer.
+    hatched = runs.assign(hatch=np.where(holds, " ", "right_diagonal_line"))
+    hatch = {"glyph.hatch_pattern": {"field": "hatch"}}
+    hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
+    hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
+    yield _cells(chart, hatched).opts(**hollow, **HOVER)
 
 
 def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:

@@ -14,22 +14,21 @@ from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
 from solver.files import scene_settings, settings_from_command
-from solver.study.cases.case import case_from_file
-from solver.study.figures.modes import paper_figures
-from solver.study.figures.paper import FILE, paper_runs, write_figures
+from solver.study import proof, stability
+from solver.study import study_report as study
+from solver.study.measured_times import error_against_time, times_at_sizes
 from solver.study.page import aligned, head_of, line_of, write_page
-from solver.study.proof import report as proof
-from solver.study.speed import study_report as study
-from solver.study.speed.measured_times import error_against_time, times_at_sizes
-from solver.study.stability import report as stability
-from solver.study.stability.draws import random_cases
-from solver.study.stability.stability_case import Row, extreme_cases, judged_runs, passed
+from solver.study.paper_figures import paper_figures
+from solver.study.paper_runs import FILE, paper_runs, write_figures
+from solver.study.random_runs import random_cases
+from solver.study.stability import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
 from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
-from solver.study.sweep.run import field_file, patience, sweep
+from solver.study.sweep.run import patience, sweep
+from solver.study.trade_case import case_from_file
 
-TABLE, PAGE, FIELDS = "sweep.csv", "sweep.html", "fields"
+TABLE, PAGE = "sweep.csv", "sweep.html"
 LIMIT = 600.0
 """Seconds that a run may take, unless somebody says otherwise."""
 OFTEN = 3.0
@@ -61,10 +60,6 @@ def add_reports(commands: Any) -> None:
     parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
     parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
-    parser.add_argument("--fields", action="store_true", help="keep the fields of every run")
-    parser.add_argument(
-        "--adaptive", type=int, metavar="N", help="no more than N runs, where the answer bends"
-    )
     parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
 
 
@@ -104,10 +99,8 @@ def _stability(chosen: argparse.Namespace) -> int:
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
     cases = extreme_cases(scenes, quick=chosen.quick)
-    title, notes = stability.TITLE, stability.NOTES
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
-        title, notes = stability.RANDOM_TITLE, stability.RANDOM_NOTES
     runs: list[Row] = []
     with writing(chosen.out, *stability.FILES):
         print(head_of(stability.SHOWN))
@@ -116,8 +109,8 @@ def _stability(chosen: argparse.Namespace) -> int:
                 print(line_of(run, stability.SHOWN), flush=True)
                 runs.append(run)
         finally:  # what is done by then is written
-            stability.write_stability(runs, title, notes, chosen.out)
-            print("\n".join(stability.last_lines(runs, notes)))
+            stability.write_stability(runs, chosen.out)
+            print("\n".join(stability.last_lines(runs)))
             print(f"{len(stability.FILES)} files in {chosen.out}")
     return 0 if all(map(passed, runs)) else 1
 
@@ -143,13 +136,12 @@ def _sweep(chosen: argparse.Namespace) -> int:
     plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
-    size = plan.size if chosen.adaptive is None else min(plan.size, chosen.adaptive)
     print_tables(tables)
     warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
         try:
-            _run(plan, rows, size, chosen)
+            _run(plan, rows, chosen)
         except (KeyboardInterrupt, BrokenExecutor) as end:
             why = f"slipfront: {end}" if str(end) else "Stopped"
             print(f"{why}; the same command goes on from here.", file=sys.stderr)
@@ -158,24 +150,12 @@ def _sweep(chosen: argparse.Namespace) -> int:
         write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
     print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
     print_files(f"{TABLE} and {PAGE}", chosen.out)
-    return 0 if len(rows) >= size and all(row.holds for row in by_number) else 1
+    return 0 if len(rows) == plan.size and all(row.holds for row in by_number) else 1
 
 
-def _run(plan: Plan, rows: dict[int, SweepRow], size: int, chosen: argparse.Namespace) -> None:
+def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> None:
     """Run what of a plan has no row yet, append its rows to the table, and print how far it is."""
-    fields = None
     known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
-    if chosen.fields:
-        folder = (chosen.out / FIELDS).resolve()
-        folder.mkdir(exist_ok=True)
-        fields = str(folder)
-        known = {n: row for n, row in known.items() if (folder / field_file(n)).exists()}
-    options: dict[str, Any] = {"limit": chosen.limit, "fields": fields, "warm": not chosen.cold}
-    if chosen.adaptive is not None:
-        # Here and not above: it takes a sixth of a second, for which other commands need not wait.
-        from solver.study.sweep.adaptive import Chooser
-
-        options |= {"following": Chooser(plan, chosen.adaptive, known), "warm": False}
     table = chosen.out / TABLE
     with opened(chosen.on, patience(chosen.limit)) as executor:
         # As a whole, in case that its last line was cut off
@@ -183,13 +163,14 @@ def _run(plan: Plan, rows: dict[int, SweepRow], size: int, chosen: argparse.Name
         with table.open("a", encoding="utf-8", newline="") as lines:
             before, began = len(known), time.monotonic()
             printed = began
-            for row in sweep(plan, executor, done=set(known), **options):
+            runs = sweep(plan, executor, done=set(known), limit=chosen.limit, warm=not chosen.cold)
+            for row in runs:
                 rows[row.number] = known[row.number] = row
                 lines.write(lines_of(plan, [row]))
                 lines.flush()
                 now, done = time.monotonic(), len(known)
                 if now - printed > OFTEN:
-                    left = (now - began) / (done - before) * (size - done)
-                    line = f"{done} of {size} runs, {left:.0f} s left"
+                    left = (now - began) / (done - before) * (plan.size - done)
+                    line = f"{done} of {plan.size} runs, {left:.0f} s left"
                     print(line, file=sys.stderr, flush=True)
                     printed = now

@@ -35,9 +35,8 @@ from solver.study.mesh import (
     Refinement,
     answer,
     decides,
-    instants_around,
-    meshes_around,
     size_of,
+    three_of,
     value_on,
     which_to_refine,
 )
@@ -76,7 +75,8 @@ def _mesh(chosen: argparse.Namespace) -> int:
         raise SettingError("--of", chosen.of, can, "`python -m solver sweep` lists them")
     values: dict[str, float] = {}
     refinements = []
-    for runs, own in (meshes_around(settings), instants_around(settings)):
+    for names in (settings.MESH, ["instants"]):
+        runs, own = three_of(settings, names)
         for run in runs:
             size = size_of(run)
             if size not in values:

@@ -18,8 +18,8 @@ from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
-from solver.study.cases.case import Case
 from solver.study.quantities.finished import finished_run
+from solver.study.trade_case import Case
 
 each = pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))
 NAME = "lap-joint"

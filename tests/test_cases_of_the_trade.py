@@ -11,10 +11,10 @@ import pytest
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.scenes import CATALOGUE
-from solver.study.cases.case import all_cases, case_from_file
-from solver.study.proof import report
+from solver.study import proof
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
+from solver.study.trade_case import all_cases, case_from_file
 
 CASES = all_cases()
 OWN = """scene = "bar"
@@ -74,7 +74,7 @@ def test_the_first_change_does_what_a_case_says(name, changes, quantity, low, hi
 
 
 def test_they_join_the_proof() -> None:
-    assert {case.title for case in CASES} <= {known.title for known in report.cases()}
+    assert {case.title for case in CASES} <= {known.title for known in proof.cases()}
 
 
 def test_there_is_one_of_every_order_and_each_says_who_knows() -> None:

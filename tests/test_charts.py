@@ -17,8 +17,8 @@ from sweeps import tiny
 from app.charts import contours, in_units, keys, overlay, render
 from solver.study import page
 from solver.study.page import Chart, Panel, PanelAxis, PanelCurve, PlotSection, write_page
-from solver.study.sweep.chart import chart_of, charts
 from solver.study.sweep.plan import Row
+from solver.study.sweep.report import chart_of
 
 X = np.array([1.0, 2.0, 3.0])
 PANEL = Panel(
@@ -81,13 +81,6 @@ def test_a_map_has_a_cell_for_each_run_contours_their_values_and_a_scale() -> No
     assert "20" in data_of(figure, "text")[0]["text"]
     assert "(mm)" in figure.title.text
     assert len(figure.select({"type": ColorBar})) == 1
-
-
-def test_what_lies_between_few_runs_is_drawn_and_the_runs_upon_it() -> None:
-    (chart,) = charts(AREA, [CELLS[n] for n in (0, 8, 54, 62, 30)])
-    figure = draw(chart)
-    assert [len(data["left"]) for data in data_of(figure, "left")] == [AREA.size]
-    assert [len(data["said"]) for data in data_of(figure, "said")] == [5]
 
 
 def test_a_chart_that_fills_shows_what_is_new_in_the_same_figure() -> None:

@@ -15,7 +15,7 @@ from solver.reference.rules import rules_of
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
-from solver.study.stability.stability_case import Verdict, judge, run
+from solver.study.stability import Verdict, judge, run
 
 BLOCK = (
     "block gap=flat plane=stress poisson=0.499 length=0.01 height=0.321 elements=59 elements_up=5 "

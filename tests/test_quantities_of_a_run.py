@@ -126,13 +126,6 @@ def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     assert taken("iterations", run) == 40
 
 
-def test_more_instants_take_more_memory_and_a_field_of_them_is_the_least_of_it() -> None:
-    found = [taken("memory", ran("bar", elements=200, instants=instants)) for instants in (51, 801)]
-    field = 8.0 * 201 * (801 - 51)
-    assert found[1] - found[0] > 3.0 * field
-    assert found[1] < 1e3 * field
-
-
 def test_modes_are_those_of_the_largest_basis_and_a_smooth_field_needs_fewer() -> None:
     run = ran("bar", linear_stage="pgd", pgd_modes=4, max_iterations=20, **SMALL)
     assert taken("modes", run) == 4
@@ -193,8 +186,7 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
     scene: str, changes: dict[str, Any]
 ) -> None:
     run = ran(scene, errors=True, **{**SMALL, **changes})
-    # that of memory takes a process of its own
-    for name, quantity in (one for one in QUANTITIES.items() if one[0] != "memory"):
+    for name, quantity in QUANTITIES.items():
         needed = quantity.parameter is not None and quantity.parameter.needed
         value = taken(f"{name}@0.1" if needed else name, run)
         if not quantity.applies(run.settings):

@@ -14,8 +14,8 @@ import param
 import pytest
 
 from solver.scenes import CATALOGUE
-from solver.study.stability.draws import draw, log_uniform
-from solver.study.stability.stability_case import Verdict, judge, run
+from solver.study.random_runs import draw, log_uniform
+from solver.study.stability import Verdict, judge, run
 
 RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "8"))
 SMALLEST = 1e-12

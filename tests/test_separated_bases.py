@@ -12,6 +12,7 @@ from runs import assert_goes_on, distance_of, errors, sample, settings_of, solve
 from small_scenes import SMALL
 
 from solver.latin import Ending, Solution
+from solver.latin.status_step import states_of
 from solver.reduction.basis import SeparatedBasis
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
@@ -169,7 +170,7 @@ def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
 @pytest.mark.parametrize(("stage", "is_answered"), [("full", True), ("pgd", False)])
 def test_a_run_on_bases_is_not_answered_by_its_neighbour(stage: str, is_answered: bool) -> None:
     first = finished_run(small(linear_stage=stage), errors=False)
-    again = finished_run(small(linear_stage=stage), errors=False, before=first.states)
+    again = finished_run(small(linear_stage=stage), errors=False, before=states_of(first.iterate))
     assert again.was_warm is is_answered
     assert again.iterate.number == (1 if is_answered else first.iterate.number)
     assert np.allclose(again.force, first.force)

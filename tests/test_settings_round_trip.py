@@ -10,7 +10,7 @@ from solver.definitions import allowed, parse
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.study.stability.draws import draw
+from solver.study.random_runs import draw
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)

@@ -1,33 +1,27 @@
-"""Sweeps: the command, its plan, and adaptive ones."""
+"""Sweeps: the command, and its plan."""
 
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable
-from concurrent.futures import Executor, Future
 from contextlib import nullcontext
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import LinearNDInterpolator
 from sweeps import TINY, Here, rows_of, tiny
 
 from solver import report_commands
-from solver.arrays import Array
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
 from solver.study.page import Map, write_page
-from solver.study.sweep.adaptive import Chooser
-from solver.study.sweep.chart import chart_of
-from solver.study.sweep.plan import Plan, Row, axis_of, plan_of
-from solver.study.sweep.run import snake, sweep
+from solver.study.sweep.plan import Row, axis_of, plan_of
+from solver.study.sweep.report import chart_of
+from solver.study.sweep.run import snake
 
 SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
 
@@ -140,16 +134,6 @@ def test_a_table_of_something_else_is_not_overwritten(tmp_path: Path) -> None:
     assert (tmp_path / "sweep.csv").read_text(encoding="utf-8") == "a,b\n1,2\n"
 
 
-@pytest.mark.usefixtures("here")
-def test_fields_can_be_kept(tmp_path: Path) -> None:
-    assert command(tmp_path) == 0
-    assert command(tmp_path, "--fields") == 0
-    fields = sorted((tmp_path / "fields").iterdir())
-    assert len(fields) == 4
-    with np.load(fields[2]) as found:
-        assert json.loads(str(found["settings"]))["peak"] == 700.0
-
-
 @pytest.mark.parametrize(
     "more",
     [
@@ -157,7 +141,6 @@ def test_fields_can_be_kept(tmp_path: Path) -> None:
         ["--of", ""],
         ["--on", "threads"],
         ["--limit", "0"],
-        ["--adaptive", "3"],
         ["--vary", "peak=1:2:3"],
         ["--vary", "friction=-3"],
         ["--out", "/dev/null/sweep"],
@@ -272,99 +255,3 @@ def test_the_path_goes_through_every_point_once_from_neighbour_to_neighbour(
     for one, next_one in pairwise(path):
         places = [divmod(number, shape[-1]) for number in (one, next_one)]
         assert sum(abs(a - b) for a, b in zip(*places, strict=True)) == 1
-
-
-ES, LENGTH = 210e9 * 3.14e-6, 1.0
-
-
-def energy(peak: float, bound: float) -> float:
-    """Energy of a cycle of the bar; once it slides whole, as if all that is pulled further did."""
-    front = min(peak, bound * LENGTH)
-    return 2.0 * front**3 / (3.0 * ES * bound) + 1e-3 * max(peak - bound * LENGTH, 0.0)
-
-
-def energies(plan: Plan) -> Array:
-    found = []
-    for number in range(plan.size):
-        at = {"friction": 0.3, **plan.point(number)}
-        found.append(energy(at["peak"], 5000.0 * at["friction"]))
-    return np.array(found)
-
-
-class Known(Executor):
-    """Does no runs, but takes for each what is known of its point."""
-
-    def __init__(self, values: Array) -> None:
-        self._values = values
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        (number,) = args
-        future: Future[Any] = Future()
-        future.set_result(Row(number, "converged", "", (float(self._values[number]),)))
-        return future
-
-
-def sampled(plan: Plan, executor: Executor, most: int, rows: dict[int, Row]) -> list[int]:
-    """Take more samples besides some rows, and add theirs; the points of all."""
-    for row in sweep(plan, executor, following=Chooser(plan, most, rows)):
-        assert row.number not in rows
-        rows[row.number] = row
-    return list(rows)
-
-
-def error(plan: Plan, exact: Array, points: list[int]) -> float:
-    """Largest error of the logarithm between points, over its range."""
-    grid = np.stack(np.unravel_index(np.arange(plan.size), plan.shape), axis=1).astype(float)
-    height, at = np.log(exact), np.array(sorted(points))
-    if len(plan.shape) == 1:
-        drawn = np.interp(grid[:, 0], grid[at, 0], height[at])
-    else:
-        scaled = grid / (np.array(plan.shape) - 1.0)
-        drawn = LinearNDInterpolator(scaled[at], height[at])(scaled)
-    return float(np.abs(drawn - height).max() / np.ptp(height))
-
-
-def even(plan: Plan, along: int) -> list[int]:
-    lines = [np.linspace(0, count - 1, along).round().astype(int) for count in plan.shape]
-    places = np.meshgrid(*lines, indexing="ij")
-    return [int(number) for number in np.ravel_multi_index(tuple(places), plan.shape).ravel()]
-
-
-@pytest.mark.parametrize("runs", [20, 40])
-def test_the_energy_over_the_peak_takes_half_the_runs_of_a_grid(runs: int) -> None:
-    plan = tiny(["peak=300:2400:841"], ["dissipation@1"])
-    exact = energies(plan)
-    points = sampled(plan, Known(exact), runs, {})
-    assert len(points) == runs
-    assert error(plan, exact, points) < error(plan, exact, even(plan, 2 * runs))
-
-
-def test_a_map_is_sampled_where_it_bends() -> None:
-    plan = tiny(["peak=300:2400:29", "friction=0.2:0.4:29"], ["dissipation@1"])
-    exact = energies(plan)
-    points = sampled(plan, Known(exact), 64, {})
-    assert error(plan, exact, points) < error(plan, exact, even(plan, 8))
-
-
-def test_a_sweep_takes_no_more_runs_than_it_may_and_goes_on_from_those_it_has() -> None:
-    plan = tiny(["peak=300:900:61"], ["peak_displacement"])
-    executor, rows = Here(), dict[int, Row]()
-    assert {0, plan.size - 1} <= {*sampled(plan, executor, 9, rows)}
-    assert len(rows) == 9
-    assert len(sampled(plan, executor, 12, rows)) == 12
-    assert len(sampled(plan, executor, 12, rows)) == executor.calls == 12
-
-
-@pytest.mark.parametrize(
-    ("vary", "runs", "words"),
-    [
-        (["load=sine,ramp"], 9, "ranges of numbers"),
-        (["peak=1:9:9", "method=fast,paper"], 20, "ranges of numbers"),
-        (["peak=1:9:9", "friction=0.2"], 20, "ranges of numbers"),
-        (["peak=1:9:9"], 3, "at least 4 runs"),
-        (["peak=1:9:9", "friction=0.2:0.3:9"], 9, "at least 16 runs"),
-    ],
-)
-def test_what_cannot_be_sampled_is_refused(vary: list[str], runs: int, words: str) -> None:
-    with pytest.raises(SettingError, match=words):
-        Chooser(tiny(vary, ["iterations"]), runs, {})

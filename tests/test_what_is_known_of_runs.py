@@ -20,11 +20,11 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
-from solver.study.proof import report
-from solver.study.proof.known_numbers import Answer, Number
-from solver.study.proof.report import KnownCase
+from solver.study import proof
+from solver.study.known_numbers import Answer, Number
+from solver.study.proof import KnownCase
 
-CASES = report.cases()
+CASES = proof.cases()
 
 
 def read(folder: Path) -> list[dict[str, str]]:
@@ -66,7 +66,7 @@ def test_each_scene_is_proven() -> None:
 def test_a_wrong_number_fails_and_says_so(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(report, "cases", lambda: [CASES[number], wrong(CASES[number])])
+    monkeypatch.setattr(proof, "cases", lambda: [CASES[number], wrong(CASES[number])])
     assert main(["proof", "--out", str(tmp_path)]) == 1
     assert "FAILS" in capsys.readouterr().out
     verdicts = [row["holds"] for row in read(tmp_path)]

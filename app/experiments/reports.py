@@ -15,7 +15,7 @@ from app.state import PageState
 from app.widgets import button, changing_text, download, looks, wrapped
 from app.worker.references import has_reference
 from solver.checked import dump
-from solver.study.proof.report import PAGE
+from solver.study.proof import PAGE
 
 WORDS: dict[str, str] = TEXTS["reports"]
 FIGURES, STUDY, STABILITY, PROOF = "The paper's figures", "Study", "Stability", "Proof"

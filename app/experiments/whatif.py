@@ -34,9 +34,8 @@ from solver.settings import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart, Map
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.sweep.chart import chart_of, is_map
 from solver.study.sweep.plan import Plan
-from solver.study.sweep.report import counts, csv_of
+from solver.study.sweep.report import chart_of, counts, csv_of, is_map
 
 MESH = "Is the mesh fine enough?"
 SCALES = {"automatic": None, "linear": False, "logarithmic": True}

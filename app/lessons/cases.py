@@ -15,8 +15,8 @@ from app.units import number, unit_for
 from app.widgets import button, looks, mask_of
 from solver.definitions import about
 from solver.settings import Settings
-from solver.study.cases.case import Case
 from solver.study.quantities.quantity import Quantity
+from solver.study.trade_case import Case
 
 ANSWERS_STAY = "Decomposition", "Method", "Stop"
 """Groups of settings that leave what is known as it is."""

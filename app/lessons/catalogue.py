@@ -14,8 +14,8 @@ from app.views.catalogue import CARDS
 from app.views.view import View
 from solver.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.settings import Settings
-from solver.study.cases.case import Case, all_cases
 from solver.study.quantities import reading
+from solver.study.trade_case import Case, all_cases
 
 _READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
 LESSONS = {

@@ -33,7 +33,7 @@ from app.transport import Transport
 from app.views.view import View
 from app.widgets import button, dialog, download, looks
 from solver.lessons import SUBJECTS, Lesson
-from solver.study.cases.case import Case
+from solver.study.trade_case import Case
 
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""

@@ -117,17 +117,6 @@ def front_decay(count: int) -> Array:
     return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
 
 
-def against_front(values: Array) -> Array:
-    """Decay of singular values, descending, over that of a constant-speed front.
-
-    (2n - 1) sigma_n/sigma_1: 1 throughout for a constant-speed front, falling for a field that is
-    easier to reduce. Zero where all values are.
-    """
-    if values[0] == 0.0:
-        return np.zeros_like(values)
-    return np.asarray(values / values[0] / front_decay(len(values)))
-
-
 def _signs(modes: Array) -> Array:
     if not modes.size:  # of a substructure that does not rub
         return np.ones(modes.shape[1])

@@ -14,6 +14,7 @@ from scipy.optimize import least_squares
 from solver.arrays import Array
 from solver.definitions import SettingError, about, is_logarithmic
 from solver.latin import Ending
+from solver.latin.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.settings import Settings
@@ -76,14 +77,9 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class ComparedRun:
-    """A run beside a measured loop.
+    """A run beside a measured loop, with the values of the settings that are fitted, (p,), in SI.
 
-    Attributes
-    ----------
-    values
-        Of the settings that are fitted, shape (p,), in SI.
-    differences
-        Of what it finds to every row; shares of the measured range.
+    Differences are of what it finds to every row, as shares of the measured range.
     """
 
     values: Array
@@ -144,13 +140,7 @@ class ComparedRuns:
         return np.where(self.in_decades, values, self._size)
 
     def run(self, z: Array) -> ComparedRun:
-        """Run at a place.
-
-        Raises
-        ------
-        RefusedError
-            For settings that do not fit together, or a run that does not converge.
-        """
+        """Run at a place; `RefusedError` where settings do not fit or it does not converge."""
         changes = self.changes(z)
         settings = self._settings.replace(**changes)
         finished = finished_run(settings, errors=False, indicators=False, before=self._before)
@@ -159,7 +149,7 @@ class ComparedRuns:
         if status.ending is not Ending.CONVERGED:
             values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", values, "one that converges", status.advice)
-        self._before = finished.states
+        self._before = states_of(finished.iterate)
         beside = LoopComparison(self._measured, finished.loop, finished.problem)
         differences, _ = beside.differences(finished.displacement, finished.force)
         return ComparedRun(np.array(list(changes.values())), finished, beside, differences)

@@ -48,17 +48,10 @@ PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
 
 @dataclass(frozen=True, eq=False)
 class OtherResults:
-    """Results of another program, in SI.
+    """Results of another program for a scene, in SI, and what was understood of the file.
 
-    Attributes
-    ----------
-    quantity
-        `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane; or
-        `DISPLACEMENT`, m.
-    positions, times, values
-        Of every row, shape (n_rows,); m, s.
-    scene, message
-        That it is brought to, and what was understood of the file.
+    The quantity is `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane, or
+    `DISPLACEMENT`, m. Positions, m, times, s, and values are of every row, shape (n_rows,).
     """
 
     quantity: str
@@ -73,8 +66,8 @@ class OtherResults:
 def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
     """Read results of another program for a scene, of a table, bytes or text.
 
-    Its head names the columns x (m), t (s), and friction force or displacement, in any order and
-    with units if they are others; further columns are passed over, and rows may have any order.
+    Its head names the columns x (m), t (s), and friction force or displacement, with units if they
+    are others; further columns are passed over, and rows may have any order.
 
     Raises
     ------
@@ -141,14 +134,9 @@ def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refu
 
 
 class Comparison:
-    """Results of another program beside the runs of one problem.
+    """Results of another program beside the runs of one problem; both cover `counted` rows.
 
-    Attributes
-    ----------
-    interface
-        The one whose friction is compared; the first one if there is none of the given name.
-    counted
-        Number of rows that both cover.
+    Friction is that of the interface, or of the first one if there is none of its name.
     """
 
     def __init__(self, results: OtherResults, problem: Problem, interface: str = "") -> None:

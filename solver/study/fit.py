@@ -52,23 +52,18 @@ changes."""
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What a loop tells of some settings.
+    """What a loop tells of some settings: those of the nearest run, and the runs at start and end.
 
     Attributes
     ----------
-    settings
-        Of the nearest run, with all that was not fitted as it was.
-    names
-        Settings that were fitted, p of them; the runs have their values.
     errors
-        Standard errors, shape (p,); infinite where the loop does not tell a value alone.
+        Standard errors of the p settings that were fitted, shape (p,); infinite where the loop does
+        not tell a value alone.
     correlation
         Of the values, shape (p, p); NaN where there is none.
     together
         Combinations that are known of settings that are not: powers of settings by name, and the
         standard error of the logarithm of their product; NaN where some are not logarithmic.
-    first, nearest
-        The run at the start, and the nearest one.
     """
 
     settings: Settings

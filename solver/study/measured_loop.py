@@ -43,18 +43,10 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 
 @dataclass(frozen=True, eq=False)
 class MeasuredLoop:
-    """A measured loop, in SI.
+    """A measured loop, in SI and the units of the loop of its scene, and what was read of the file.
 
-    Attributes
-    ----------
-    displacement, force
-        Of every row, shape (n_rows,).
-    times
-        Same shape, s; None where rows are matched along the path.
-    units
-        Of both, as the loop of its scene has them.
-    message
-        What was understood of the file.
+    Displacement, force and times, s, have shape (n_rows,); without times rows are matched along the
+    path.
     """
 
     displacement: Array
@@ -86,14 +78,7 @@ def is_a_loop(data: bytes | str, source: str) -> bool:
 
 
 def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
-    """Read a measured loop of a table, bytes or text, for a loop of these titles and units.
-
-    Raises
-    ------
-    SettingError
-        For a table without these columns or in another unit, too large or too small, with what is
-        no finite number, or values that are all the same.
-    """
+    """Read a measured loop of a table, bytes or text, as `loop_in` does."""
     table = read_table(data, partial(SettingError, "the measured loop", source, CAN))
     return loop_in(table, source, axes)
 
@@ -114,7 +99,14 @@ def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColum
 
 
 def loop_in(table: Table, source: str, axes: Axes) -> MeasuredLoop:
-    """The loop in a table, which is refused as by `read_loop`."""
+    """The loop in a table, for a loop of these titles and units.
+
+    Raises
+    ------
+    SettingError
+        For a table without these columns or in another unit, too large or too small, with what is
+        no finite number, or values that are all the same.
+    """
     roles = zip(columns_of(table, axes), (("time", "s"), *axes), strict=True)
     used = {name: (column, unit) for column, (name, unit) in roles if column is not None}
     (*times, displacement, force), message = in_si(table, used)
@@ -132,14 +124,8 @@ def loop_in(table: Table, source: str, axes: Axes) -> MeasuredLoop:
 class LoopComparison:
     """A measured loop beside the runs of one problem.
 
-    Attributes
-    ----------
-    finds_force
-        Whether displacement is given and force is compared, or the other way round.
-    quantity, given
-        Titles of what is compared, and of what is given.
-    counted
-        Which rows are compared, shape (n_rows,).
+    Where `finds_force`, displacement is given and force is compared, else the other way round;
+    `quantity` and `given` are their titles. The rows in `counted`, (n_rows,), are compared.
     """
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:
@@ -190,14 +176,10 @@ class LoopComparison:
         }
 
     def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
-        """What is found, and what is given, of a run less the rows that are compared.
+        """What is found, and what is given, of a run less the rows that are compared, (n_counted,).
 
-        Both as shares of the measured range, shape (n_counted,).
-
-        Raises
-        ------
-        SettingError
-            If there are no branches of the run on which those of the table could lie.
+        Both are shares of the measured range. A table is refused whose branches are none of the
+        run's.
         """
         given, found = (displacement, force) if self.finds_force else (force, displacement)
         if self.measured.times is not None:

@@ -8,7 +8,7 @@ the time step alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from solver.definitions import SettingError
@@ -34,12 +34,7 @@ EQUAL = 1e-6
 class Refinement:
     """A quantity on three meshes, each with elements or steps of half the size of the one before.
 
-    Attributes
-    ----------
-    values
-        Coarse first.
-    own
-        The place of the one that is asked about.
+    The coarse one is first; `own` is the place of the one that is asked about.
     """
 
     values: tuple[float, float, float]
@@ -89,32 +84,20 @@ class Refinement:
         return most / abs(self.limit) if self.limit else math.inf if most else 0.0
 
 
-def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
-    """Three meshes, each twice as fine as the one before, and the place of a run's own.
+def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], int]:
+    """Settings with three sizes, each twice as fine as the one before, and the place of their own.
 
-    That is the middle one, or the first where its numbers of elements cannot be halved.
-
-    Raises
-    ------
-    SettingError
-        Where the finest has more elements than a scene takes.
+    That is the middle one, or the first where the sizes cannot be halved. Names are those of the
+    mesh, or `instants`, of which the steps are counted. What a scene does not take is refused.
     """
-    return _three(settings, {name: getattr(settings, name) for name in settings.MESH}, 0)
-
-
-def instants_around(settings: Settings) -> tuple[list[Settings], int]:
-    """Three numbers of instants on a run's own mesh, as `meshes_around` has three of elements."""
-    return _three(settings, {"instants": settings.values()["instants"] - 1}, 1)
-
-
-def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[list[Settings], int]:
-    """Settings with multiples of counts, more added, and the place of those as they are."""
 
     def refined(factor: float) -> Settings:
-        sizes = {name: factor * count + more for name, count in counts.items()}
-        return settings.replace(
-            **{name: int(size) if size == int(size) else size for name, size in sizes.items()}
-        )
+        sizes = {}
+        for name in names:
+            first = 1 if name == "instants" else 0
+            size = factor * (settings.values()[name] - first) + first
+            sizes[name] = int(size) if size == int(size) else size
+        return settings.replace(**sizes)
 
     try:
         return [refined(factor) for factor in (0.5, 1, 2)], 1
@@ -124,7 +107,7 @@ def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[li
 
 def decides(settings: Settings, asked: Quantity) -> bool:
     """Whether a mesh decides a quantity: not how a run went, but what it came to."""
-    return not asked.is_of_course and asked.applies(settings)
+    return asked.reads is None and asked.applies(settings)
 
 
 def value_on(settings: Settings, asked: Quantity) -> float:
@@ -146,23 +129,23 @@ def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
     limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
-    own = (
-        f"This run is within {_share(refinement)} of that."
-        if refinement.limit
-        else "That is nothing."
-    )
+    own = f"This run is within {_share(refinement)} of that." if refinement.limit else ""
     order = refinement.order
     if order is None:
-        return f"It follows no power of {size}: {limit} is all that is known. {own}"
-    if order < LEAST_ORDER:
-        return (
-            f"It changes with the power {order:.2f} of {size}, which shows no limit: "
-            f"{limit}, if there is one. {own}"
+        told = f"It follows no power of {size}: {limit} is all that is known."
+    elif order < LEAST_ORDER:
+        told = (
+            f"It changes with the power {order:.2f} of {size}, which shows no limit: {limit}, if "
+            "there is one."
         )
-    if order > LARGEST_ORDER:
-        return f"It hardly changes any more with {size}: {limit}. {own}"
-    goes = f"Its error goes with the power {order:.2f} of {size}"
-    return f"{goes}, and with ever smaller ones it becomes {limit}. {own}"
+    elif order > LARGEST_ORDER:
+        told = f"It hardly changes any more with {size}: {limit}."
+    else:
+        told = (
+            f"Its error goes with the power {order:.2f} of {size}, and with ever smaller ones it "
+            f"becomes {limit}."
+        )
+    return f"{told} {own}".rstrip()
 
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:

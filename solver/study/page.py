@@ -23,8 +23,6 @@ from solver.disk import whole_file, write
 
 GROUP = "slipfront.renderers"
 NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pip install slipfront"
-
-
 HUES = (
     *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"),
     *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#1F9AA0"),
@@ -38,14 +36,8 @@ Line = Literal["solid", "dashed", "dotted", "points"]
 class PanelAxis:
     """A quantity, its unit (empty for a pure number), and whether decades are evenly spaced.
 
-    Attributes
-    ----------
-    limits
-        What is shown; all of the curves without it.
-    whole
-        Whether only whole numbers have a meaning.
-    names
-        What stands at 0, 1, ... where these are no numbers.
+    Without limits all of the curves is shown. On a whole one only whole numbers have a meaning;
+    names stand at 0, 1, ... where these are no numbers.
     """
 
     quantity: str
@@ -78,16 +70,10 @@ class PanelCurve:
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Points of a chart that each stand for a run, in the order in which they came.
+    """Points of a chart that each stand for a run, n of them in the order in which they came.
 
-    Attributes
-    ----------
-    numbers, x, y
-        Of the runs, and where they stand, shape (n,); in a panel y is NaN where a run has no value.
-    hues, holds
-        Of the curve to which each belongs, and whether it is an answer, same shape.
-    said
-        What each is and came to, in words, n of them.
+    Each belongs to the curve of its hue; in a panel y is NaN where a run has no value. `holds` is
+    whether it is an answer, and `said` what it is and came to, in words.
     """
 
     numbers: Indices
@@ -113,12 +99,7 @@ class Panel:
 class Map:
     """A quantity over two settings, whose values ascend.
 
-    Attributes
-    ----------
-    scale, z
-        Its values, shape (len(y_values), len(x_values)); NaN where there is none.
-    is_sampled
-        Whether a few runs stand for all, and values between them are of facets.
+    Its values z have shape (len(y_values), len(x_values)), NaN where there is none.
     """
 
     title: str
@@ -129,7 +110,6 @@ class Map:
     scale: PanelAxis
     z: Array
     runs: Runs
-    is_sampled: bool = False
 
 
 Chart = Panel | Map

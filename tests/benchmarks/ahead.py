@@ -23,7 +23,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.speed.measured_times import incremental, latin, seconds_of
+from solver.study.measured_times import incremental, latin, seconds_of
 
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""

@@ -31,7 +31,7 @@ from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.speed.measured_times import seconds_of
+from solver.study.measured_times import seconds_of
 
 GOAL, FIRST = 0.01, 0.5
 """Error of the contact force, and the share of it in the first slab: that goes on into the next."""

@@ -21,9 +21,9 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of, rubs_on_supports
 from solver.scenes import discretise
 from solver.settings import Settings
+from solver.study.measured_times import error_against_time, seconds_of
 from solver.study.page import aligned
-from solver.study.speed.measured_times import error_against_time, seconds_of
-from solver.study.speed.study_report import conditions, table
+from solver.study.study_report import conditions, table
 
 
 def rows(settings: Settings, repeats: int) -> Iterator[list[str]]:

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 from sparse_newton import SparseNewton
+from whole_cost import resident
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
@@ -31,9 +32,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.measured_times import seconds_of
 from solver.study.quantities.finished import settle
-from solver.study.quantities.run_measures import resident
-from solver.study.speed.measured_times import seconds_of
 
 COURSES = (3, 5, 8, 12, 16, 32)
 """10, 27, 68, 150, 264, 1040 bricks."""

@@ -6,6 +6,7 @@ the error of the contact force at iteration 10.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import solver.study.quantities.contact_measures as contacts
@@ -42,7 +43,7 @@ def reading(text: object) -> Quantity:
     try:
         at = float(number)
     except ValueError:
-        raise SettingError("quantity", text, allowed, "write the parameter") from None
+        at = math.nan
     if not low <= at <= high or (is_counted and at != int(at)):
         raise SettingError("quantity", text, allowed, "mend the parameter")
     title = quantity.title + parameter.words.format(at)

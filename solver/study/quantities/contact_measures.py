@@ -162,22 +162,14 @@ def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
     return np.concatenate(list(lengths.values())), np.concatenate(status)
 
 
-@quantity("Largest von Mises stress", "Pa", applies=_in_the_plane)
-def peak_stress(run: FinishedRun) -> float:
-    """Largest von Mises stress at the centre of an element at any instant, Pa."""
-    return run.peak_stress[0]
+def _peak_stress(name: str, title: str, unit: str, place: int) -> Quantity:
+    """Largest von Mises stress at the centre of an element, or where that is; NaN without any."""
+    return Quantity(name, title, unit, lambda run: run.peak_stress[place], applies=_in_the_plane)
 
 
-@quantity("x of the largest stress", "m", applies=_in_the_plane)
-def peak_stress_x(run: FinishedRun) -> float:
-    """Place of the largest stress along the body, m; NaN without stress."""
-    return run.peak_stress[1]
-
-
-@quantity("y of the largest stress", "m", applies=_in_the_plane)
-def peak_stress_y(run: FinishedRun) -> float:
-    """Height of the largest stress above the lowest side, m; NaN without stress."""
-    return run.peak_stress[2]
+peak_stress = _peak_stress("peak_stress", "Largest von Mises stress", "Pa", 0)
+peak_stress_x = _peak_stress("peak_stress_x", "x of the largest stress", "m", 1)
+peak_stress_y = _peak_stress("peak_stress_y", "y of the largest stress", "m", 2)
 
 
 @quantity("Largest force in the spring", "N", applies=lambda settings: settings.features.has_spring)

@@ -88,14 +88,9 @@ def sliding_share(run: FinishedRun) -> float:
 
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
 def shakedown_factor(run: FinishedRun) -> float:
-    """Largest factor on the swing of the loads under which there is slip that stays.
+    """Largest factor on the swing about the mean of the last cycle under which slip can cease.
 
-    The swing is about the mean of the last cycle, as often as one likes. On rods the mean does not
-    matter, so that it is the factor on all loads, too, and slip ceases below it wherever it began.
-    In the plane all contacts have to stay closed; below it slip may cease, or not, by its start,
-    where slip changes what presses. Above it something slips, or opens, in every cycle.
-
-    NaN where none is known, or not even the mean keeps all contacts closed.
+    `solver/README.md`, 15; NaN where none is known, or not even the mean keeps all contacts closed.
     """
     try:
         if run.problem.opens:

@@ -29,7 +29,6 @@ LAST = 3
 """Cycles from which one tells what becomes of slip, whatever came before them."""
 REPEATED = 1e-3
 """Share of its range by which a load may differ from a cycle to the next."""
-
 ALIKE = 0.02
 """Share by which the slip of the last cycles may differ where it counts as the same."""
 ONE_WAY = 0.05
@@ -63,13 +62,9 @@ class LoadCycles:
     ----------
     ends
         Instants at which they begin, and the last one ends, n_cycles + 1 of them.
-    slip
-        That of every point in each, all to and fro added up while it is in contact, shape
-        (n_points, n_cycles), m.
-    net
-        How much farther a point stands at the end of each, same shape, m.
-    work
-        What friction takes at every point in each, same shape, J.
+    slip, net, work
+        Of every point in each, shape (n_points, n_cycles): slip to and fro added up while it is in
+        contact, m; how much farther it stands at the end, m; what friction takes, J.
     before
         Slip before the first, as `slip`, shape (n_points,), m.
     is_repeated

@@ -19,7 +19,7 @@ from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.certified import finished
 from solver.latin.cost import costs_of
 from solver.latin.status import certified
-from solver.latin.status_step import states_of, status_step
+from solver.latin.status_step import status_step
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
@@ -37,13 +37,11 @@ TINY: dict[str, dict[str, object]] = {
     "bar": {"elements": 4, "substructures": 2, "instants": 3},
     "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
 }
-"""Runs that go before others: to bring in code is no part of a run's memory, nor of its time."""
+"""Runs that go before others: to bring in code is no part of a run's time."""
 ALONE = 60
 """Iterations that take as long as a run of its own, with all beside them. A status step from a
 neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
 takes 1 to 3 and 3 to 9 (measured)."""
-
-
 ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
@@ -52,14 +50,9 @@ EQUAL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """A run from its settings to its end.
+    """A run from its settings to its end, from another run if it was warm.
 
-    Attributes
-    ----------
-    was_warm
-        Whether it started from another run.
-    made_loop
-        Its loop, where that is at hand: in the plane it takes a while to make one.
+    `made_loop` is its loop, where that is at hand: in the plane it takes a while to make one.
     """
 
     settings: Settings
@@ -81,11 +74,6 @@ class FinishedRun:
     def loop(self) -> Loop:
         """Loop that the scene shows."""
         return self.made_loop or self.settings.structure().loop(self.problem)
-
-    @property
-    def states(self) -> States:
-        """What sticks, slips and is open, from which a run of like settings may start."""
-        return states_of(self.iterate)
 
     @cached_property
     def _along_loop(self) -> tuple[Array, Array]:
@@ -136,10 +124,7 @@ def largest_load(run: FinishedRun) -> int:
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """A number of a run at an instant, in SI, by the names of scripts and of people.
-
-    The unit is empty for a share, and chosen by the size of the largest value in the run.
-    """
+    """A number of a run at an instant, and the largest in the run, in SI; a share has no unit."""
 
     name: str
     title: str
@@ -174,9 +159,8 @@ def key_figures(
 def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
     """Key figures of a run where its force first is largest, and when that is, s."""
     instant = largest_load(run)
-    loop = run.displacement, run.force
-    energy = float(run.dissipated.sum())
-    figures = key_figures(run.loop.axes, loop, run.iterate.status, energy, instant)
+    status, energy = run.iterate.status, float(run.dissipated.sum())
+    figures = key_figures(run.loop.axes, (run.displacement, run.force), status, energy, instant)
     return figures, float(run.problem.instants[instant])
 
 
@@ -245,12 +229,10 @@ def known_reference(
 
 
 def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
-    """Try a status step from what stuck, slipped and opened in a run of like settings.
+    """Solution by a status step from what stuck, slipped and opened in a run of like settings.
 
-    It counts only if it finds the one solution of the discrete problem, which does not depend on
-    the start. Iterations of the method in between better no states that are as near as these
-    (solver/study/README.md, 7). A run on separated bases is its own, as it is asked for these too.
-    None where it is not found soon.
+    It counts only if it is the one of the discrete problem, which does not depend on the start;
+    None where it is not found soon. A run on separated bases is its own, as it has these too.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)

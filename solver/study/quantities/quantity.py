@@ -13,16 +13,10 @@ from solver.study.quantities.finished import FinishedRun
 
 @dataclass(frozen=True)
 class Parameter:
-    """The number that a quantity may be asked with.
+    """The number that a quantity may be asked with, or has to, if it is needed.
 
-    Attributes
-    ----------
-    words
-        What it adds to the title, with a place for the number.
-    bounds
-        Smallest and largest, integers where only whole numbers have a meaning.
-    needed
-        Whether the quantity has no meaning without it.
+    `words` is what it adds to the title, with a place for the number; the smallest and the largest
+    are integers where only whole numbers have a meaning.
     """
 
     words: str
@@ -51,13 +45,11 @@ class Quantity:
     parameter, at
         What it may be asked with, and what it is asked with.
     reads
-        What the records must hold for it, which takes its time: distances to a reference, or the
-        indicators of every iteration.
+        What of how the run went it follows from, so that a run that starts elsewhere has another:
+        distances to a reference or the indicators of every iteration, which take their time, or
+        neither of them. None where it is of what the run came to.
     is_share
         Whether it is a share of a whole, which is told in per cent.
-    is_of_course
-        Whether it follows from how the run went, not only from what it came to: then a run that
-        starts elsewhere has another.
     applies
         Whether runs of these settings may have it; others have NaN.
     """
@@ -68,9 +60,8 @@ class Quantity:
     of: Callable[..., float]
     when: Callable[..., int] | None = None
     parameter: Parameter | None = None
-    reads: Literal["errors", "indicators"] | None = None
+    reads: Literal["errors", "indicators", "course"] | None = None
     is_share: bool = False
-    is_of_course: bool = False
     applies: Callable[[Settings], bool] = lambda settings: True
     at: float | None = None
 
@@ -78,10 +69,10 @@ class Quantity:
         """Value of a run."""
         if not self.applies(run.settings):
             return math.nan
-        if self.when is not None:
-            instant = self.when(run) if self.parameter is None else self.when(run, self.at)
-            return float(self.of(run, instant))
-        return float(self.of(run) if self.parameter is None else self.of(run, self.at))
+        given = () if self.parameter is None else (self.at,)
+        if self.when is None:
+            return float(self.of(run, *given))
+        return float(self.of(run, self.when(run, *given)))
 
 
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:

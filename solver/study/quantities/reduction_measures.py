@@ -12,7 +12,7 @@ from solver.reduction.sizes import Sizes, of_clips, of_products
 from solver.reduction.svd import decompose, decompositions
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
-from solver.study.quantities.quantity import WITHIN, quantity
+from solver.study.quantities.quantity import WITHIN, Quantity, quantity
 
 LOADED = "right x"
 """The side at which rods are pulled."""
@@ -62,7 +62,7 @@ def products_in(clips: Clips) -> Sizes:
 
 @quantity(
     "Modes of the largest separated basis",
-    is_of_course=True,
+    reads="course",
     applies=lambda settings: settings.applies("pgd_modes"),
 )
 def modes(run: FinishedRun) -> float:
@@ -70,21 +70,20 @@ def modes(run: FinishedRun) -> float:
     return max((basis.n_modes for basis in run.iterate.bases), default=math.nan)
 
 
-@quantity("Singular vectors of the displacement for an error of", parameter=WITHIN, applies=on_rods)
-def svd_modes_displacement(run: FinishedRun, at: float) -> float:
+def _svd_modes(field: str, words: str) -> Quantity:
     """Singular vectors that leave an error, in the substructure that needs most."""
-    displacement = run.iterate.boundary_displacement
-    parts = decompositions(run.problem, displacement, is_force=False)
-    return max(part.modes_for(at) for part in parts)
+
+    def of(run: FinishedRun, at: float) -> float:
+        values = getattr(run.iterate, f"boundary_{field}")
+        parts = decompositions(run.problem, values, is_force=field == "force")
+        return max(part.modes_for(at) for part in parts)
+
+    title = f"Singular vectors of the {words} for an error of"
+    return Quantity(f"svd_modes_{field}", title, "", of, parameter=WITHIN, applies=on_rods)
 
 
-@quantity(
-    "Singular vectors of the friction force for an error of", parameter=WITHIN, applies=on_rods
-)
-def svd_modes_force(run: FinishedRun, at: float) -> float:
-    """Singular vectors that leave an error, in the substructure that needs most."""
-    parts = decompositions(run.problem, run.iterate.boundary_force, is_force=True)
-    return max(part.modes_for(at) for part in parts)
+svd_modes_displacement = _svd_modes("displacement", "displacement")
+svd_modes_force = _svd_modes("force", "friction force")
 
 
 @quantity(

@@ -122,7 +122,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one point.
+    """What came of one point; it was warm if it started from the run nearest to it.
 
     Attributes
     ----------
@@ -134,9 +134,7 @@ class Row:
         Of the readings of the plan, in their units: NaN where the run has none, infinity for
         never. Those of a run that has not converged are what it had come to.
     seconds
-        That the whole of it took, with its problem, its reference and its readings.
-    was_warm
-        Whether it started from the run nearest to it.
+        With its problem, its reference and its readings.
     """
 
     number: int
@@ -154,13 +152,7 @@ class Row:
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` (quantities) take them.
-
-    Raises
-    ------
-    SettingError
-        For whatever of it cannot be run.
-    """
+    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` take them, or `SettingError`."""
     if not 1 <= len(vary) <= 2:
         raise SettingError("--vary", list(vary), f"one or two of {FORM}", "vary one or two")
     if not of:

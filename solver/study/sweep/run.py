@@ -6,7 +6,7 @@ import math
 import platform
 import time
 import uuid
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -16,17 +16,16 @@ from concurrent.futures import (
     Future,
     wait,
 )
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import cache, partial
 from importlib.metadata import version
-from pathlib import Path
+from itertools import islice
 
 import numpy as np
 
 from solver.definitions import SettingError
-from solver.files import save_result
 from solver.latin import Ending
+from solver.latin.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run, settle
@@ -39,8 +38,6 @@ KEPT = 500
 scenes as they are each takes 5 to 30 kB."""
 _kept: dict[str, deque[tuple[tuple[float, ...], States]]] = {}
 """Places of the runs of this process, of the last sweep, and what stuck, slipped and opened."""
-TRIES = 3
-"""Times that a run is submitted again because processes were ended while they did nothing."""
 AHEAD = 500
 """Runs under way at once, done and waiting: more than there are workers, soon asked for."""
 PATIENCE = 0.2
@@ -54,14 +51,7 @@ def versions() -> str:
     return ", ".join([*(f"{name} {version(name)}" for name in names), platform.python_version()])
 
 
-def field_file(number: int) -> str:
-    """Name of the file of a point's fields."""
-    return f"run-{number:05d}.npz"
-
-
-def run(
-    plan: Plan, limit: float, fields: str | None, warm: bool, sweep: str, asked_by: str, number: int
-) -> Row:
+def run(plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number: int) -> Row:
     """Row of a point of a plan, with options of `sweep` and a name that no other sweep has.
 
     `asked_by` are the versions of who asks; others are refused, as a result would be that of other
@@ -69,17 +59,14 @@ def run(
     """
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
-    if any(reading.is_of_course for reading in plan.readings):
+    if any(reading.reads for reading in plan.readings):
         settle()
     began, nothing = time.perf_counter(), (math.nan,) * len(plan.of)
     # A run that diverges is told by its status.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
             finished = _from_nearest(plan, sweep, number, warm, began + limit)
-            values = tuple(float(reading(finished)) for reading in plan.readings)
-            if fields is not None:
-                file = Path(fields) / field_file(number)
-                save_result(file, finished.settings, finished.solution)
+            values = tuple(reading(finished) for reading in plan.readings)
             status, iterations = finished.solution.status, finished.iterate.number
             ending, reason = str(status.ending), status.advice
             if status.ending is Ending.CANCELLED:
@@ -110,7 +97,7 @@ def _from_nearest(plan: Plan, sweep: str, number: int, warm: bool, end: float) -
         before=nearest and nearest[1],
     )
     if warm and finished.solution.status.ending is Ending.CONVERGED:
-        kept.append((place, finished.states))
+        kept.append((place, states_of(finished.iterate)))
     return finished
 
 
@@ -124,31 +111,14 @@ def sweep(
     executor: Executor,
     *,
     done: Collection[int] = (),
-    following: Callable[[int], Sequence[int]] | None = None,
     limit: float = math.inf,
-    fields: str | None = None,
     warm: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Iterator[Row]:
-    """Run points of a plan.
+    """Run points of a plan, from neighbour to neighbour, but for those that are done.
 
-    Parameters
-    ----------
-    plan, executor
-        What to run, and where.
-    done
-        Numbers of the points to leave out.
-    following
-        Next points to run, by how many are under way, asked for after each row until there are
-        none; without it all are run, from neighbour to neighbour.
-    limit
-        Seconds that a run may take.
-    fields
-        Folder for the fields of every run, which all processes share; None keeps none.
-    warm
-        Whether runs may start from their neighbours, where no reading is of how they went.
-    cancelled
-        Asked several times a second whether to end it.
+    A run may take `limit` seconds, and starts, if `warm`, from the nearest one where no reading is
+    of how it went. `cancelled` is asked several times a second whether to end the sweep.
 
     Yields
     ------
@@ -162,30 +132,18 @@ def sweep(
     BrokenExecutor
         Where the executor does no more calls; the same sweep can go on in another.
     """
-    warm = warm and not any(reading.is_of_course for reading in plan.readings)
-    call = partial(run, plan, limit, fields, warm, uuid.uuid4().hex, versions())
-    path = deque(() if following else (n for n in snake(plan.shape) if n not in done))
+    warm = warm and not any(reading.reads for reading in plan.readings)
+    call = partial(run, plan, limit, warm, uuid.uuid4().hex, versions())
+    path = (number for number in snake(plan.shape) if number not in done)
     under_way: dict[Future[Row], int] = {}
-    tries = Counter[int]()
     try:
         while not cancelled():
-            path.extend(following(len(under_way)) if following else ())
-            while path and len(under_way) < AHEAD:
-                number = path.popleft()
+            for number in islice(path, AHEAD - len(under_way)):
                 under_way[executor.submit(call, number)] = number
             if not under_way:
                 return
             for future in wait(under_way, PATIENCE, FIRST_COMPLETED).done:
-                number = under_way.pop(future)
-                try:
-                    row = _row(future, number, len(plan.of))
-                except BrokenProcessPool:
-                    tries[number] += 1
-                    if tries[number] > TRIES:
-                        raise
-                    path.appendleft(number)
-                else:
-                    yield row
+                yield _row(future, under_way.pop(future), len(plan.of))
     finally:
         for future in under_way:
             future.cancel()

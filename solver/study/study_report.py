@@ -12,6 +12,14 @@ import numpy as np
 from solver.definitions import about
 from solver.executors import machine
 from solver.settings import Settings
+from solver.study.measured_times import (
+    GOAL,
+    INCREMENTAL,
+    LEVELS,
+    MOST_ITERATIONS,
+    ErrorCurve,
+    TimesAtSize,
+)
 from solver.study.page import (
     Panel,
     PanelAxis,
@@ -23,14 +31,6 @@ from solver.study.page import (
     text_of,
     write_csv,
     write_page,
-)
-from solver.study.speed.measured_times import (
-    GOAL,
-    INCREMENTAL,
-    LEVELS,
-    MOST_ITERATIONS,
-    ErrorCurve,
-    TimesAtSize,
 )
 
 FILES = "curves.csv", "levels.csv", "map.csv", "study.html"
@@ -44,7 +44,7 @@ CAPTION = (
     "A line is a form of LATIN, iteration by iteration; the dashed line is when the incremental "
     "solver is done. Errors below the lower edge are drawn on it."
 )
-SIZES, TIMES = "Who is first where", "LATIN / incremental solver"
+TIMES = "LATIN / incremental solver"
 BILLED = (
     "The time of a method is all that it takes from settings to result: discretisation, "
     "factorisation, the coarser mesh, iterations. Imports and the computation of errors are not "
@@ -108,13 +108,12 @@ def sizes_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row
 
 def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
     """What the sizes show, in sentences."""
-    _, *others = titles = _titles(settings)
     ratios = np.array([times.ratio for times in measured if not times.message])
     return [
         f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
         "settings to a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
-        *([f"What grows together: {' and '.join(titles).lower()}."] if others else []),
+        f"What grows, each by the same factor: {' and '.join(_titles(settings)).lower()}.",
     ]
 
 
@@ -140,22 +139,6 @@ def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
         )
         panels.append(Panel(title, *axes, (*latin, line)))
     return panels
-
-
-def ratio_panel(settings: Settings, measured: Sequence[TimesAtSize]) -> Panel:
-    """The ratio of times over the size, a curve for each number of instants, and where it is 1."""
-    curves = []
-    for hue, instants in enumerate(sorted({times.instants for times in measured}), start=1):
-        own = sorted((each.size, each.ratio) for each in measured if each.instants == instants)
-        sizes, ratios = np.array(own).T
-        curves.append(PanelCurve(f"{instants} instants", sizes, ratios, hue, "points"))
-    ends = np.array([curves[0].x[0], curves[0].x[-1]])
-    return Panel(
-        f"Time of {TIMES}",
-        PanelAxis(_titles(settings)[0], logarithmic=True, whole=True),
-        PanelAxis(TIMES, logarithmic=True),
-        (*curves, PanelCurve("both take as long", ends, np.ones(2), 0, "dashed")),
-    )
 
 
 def write_curves(curves: Sequence[ErrorCurve], folder: Path) -> None:
@@ -190,8 +173,7 @@ def write_study(
         f"<h2>Time to an error of the friction force</h2>\n{html_table(table(curves))}\n"
         f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(curves)),
-        f"<p>{CAPTION}</p>\n<h2>{SIZES}</h2>",
-        PlotSection(SIZES, [ratio_panel(settings, measured)]),
+        f"<p>{CAPTION}</p>\n<h2>Who is first where</h2>\n"
         f"{html_table(sizes_table(settings, measured))}\n{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
     ]

@@ -5,8 +5,7 @@ pass without the clock finds the errors, and warms up; then timed passes run eve
 turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
 
 Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile: to collect it
-bills all that the process holds. On a machine that others use too, seconds of the
-processor say what seconds of the clock do not; what is set side by side is of one clock.
+bills all that the process holds. What is set side by side is of one clock, the processor's or not.
 """
 
 from __future__ import annotations
@@ -60,20 +59,15 @@ REPEATS = 3
 SLOW = 1.0
 """Seconds from which one run is enough."""
 INCREMENTAL, FAST = "incremental solver", "LATIN fast"
-Clock = Callable[[], float]
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorCurve:
     """What a method reaches, and when.
 
-    Attributes
-    ----------
-    steps, seconds
-        Iterations done, or Newton steps of the incremental solver, and the time from settings to
-        there, medians of the passes, s; shape (n,).
-    error_displacement, error_force
-        Relative L2 distances to the incremental reference, same shape; 0 for itself.
+    Steps are iterations done, or Newton steps of the incremental solver; seconds the time from
+    settings to there, medians of the passes; errors the relative L2 distances to the incremental
+    reference, 0 for itself. All have shape (n,).
     """
 
     method: str
@@ -159,7 +153,7 @@ def _append_times(passes: list[list[float]], settings: Settings, number: int) ->
     passes.append([decision.seconds for _, decision in decisions])
 
 
-def seconds_of(work: Callable[[], object], clock: Clock = time.process_time) -> float:
+def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.process_time) -> float:
     """Time of some work, s; of the processor unless another clock is given."""
     return timeit(work, timer=clock, number=1)
 

@@ -13,18 +13,17 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
-from solver.discrete.structure import LoopFields
-from solver.latin import Ending, Solution, solve
+from solver.latin import Ending, solve
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.cases.case import Case, all_cases
+from solver.study import known_numbers
+from solver.study.known_numbers import Answer, Number
 from solver.study.mesh import size_of
 from solver.study.page import html_table, text_of, write_csv, write_page
-from solver.study.proof import known_numbers
-from solver.study.proof.known_numbers import Answer, Number
 from solver.study.quantities.finished import FinishedRun
+from solver.study.trade_case import Case, all_cases
 
 PARTS = CLOSED_FORMS, PUBLISHED, TRADE = "Closed forms", "Published numbers", "Cases of the trade"
 """Parts of the report, by where what is known is from; cases of the trade are solved by LATIN."""
@@ -38,7 +37,7 @@ Row = dict[str, Any]
 HOLDS, FAILS = "holds", "FAILS"
 NUMBERS = "holds", "quantity", "unit", "known", "solver", "ours", "deviation", "allowed"
 """Columns of the page."""
-CASES = Path(__file__).with_name("cases.toml")
+CASES = Path(__file__).with_name("known_numbers.toml")
 FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
 """Where the page is served by default; links of the report open runs there."""
@@ -84,13 +83,14 @@ def rows_of(case: KnownCase) -> Iterator[Row]:
     settings = case.settings
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
-    answers: list[tuple[str, bool, LoopFields, Solution | None]]
-    answers = [("LATIN", solution.status.ending is Ending.CONVERGED, solution.iterate, solution)]
+    has_converged = solution.status.ending is Ending.CONVERGED
+    answers = {"LATIN": (has_converged, Answer(settings, problem, solution.iterate, solution))}
     if case.part != TRADE:
         reference = reference_of(problem)
-        answers.append(("incremental", bool(reference.converged.all()), reference, None))
-    for solver, has_ended, fields, run in answers:
-        for quantity, unit, known, ours in case.numbers(Answer(settings, problem, fields, run)):
+        is_found = bool(reference.converged.all())
+        answers["incremental"] = is_found, Answer(settings, problem, reference)
+    for solver, (has_ended, answer) in answers.items():
+        for quantity, unit, known, ours in case.numbers(answer):
             deviation = float(abs(ours - known) / abs(known))
             holds = has_ended and deviation <= case.allowed
             yield {

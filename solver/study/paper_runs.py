@@ -13,12 +13,11 @@ from solver.reduction.svd import Decomposition, decompositions
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
-from solver.scenes import discretise
-from solver.scenes.bar import BarSettings
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.page import Panel, PlotSection, Section, bullets, write_page
 
-WORDS = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
+WORDS = tomllib.loads(Path(__file__).with_name("paper_figures.toml").read_text(encoding="utf-8"))
 LOAD = (
     "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of 900 N, "
     "relaxation 0.8, all else as in Table 1."
@@ -39,18 +38,11 @@ REDUCED = 100
 
 @dataclass(frozen=True, eq=False)
 class PaperRuns:
-    """The friction bar of Table 1 under a sine, decomposed and solved in several ways.
+    """The friction bar of Table 1 under a sine, and its incremental solution.
 
-    Attributes
-    ----------
-    reference
-        The incremental solution; how the bar is decomposed makes no difference to it.
-    multiscale, monoscale, early
-        Ten substructures with the coarse problem and without, and iterate `EARLY` of both.
-    five, five_reduced
-        Five substructures, converged, and with the PGD at its default settings.
-    friction_forces, displacements
-        The converged fields, decomposed in each of five substructures.
+    Ten substructures with the coarse problem and without, and iterate `EARLY` of both; five,
+    converged, and with the PGD at its default settings; the converged fields, decomposed in each of
+    the five.
     """
 
     reference: Reference
@@ -65,7 +57,7 @@ class PaperRuns:
 
 def paper_runs() -> PaperRuns:
     """Solve and decompose all of them."""
-    settings = BarSettings.checked({"method": "paper", "load": "sine", "peak": 900.0})
+    settings = CATALOGUE["bar"].checked({"method": "paper", "load": "sine", "peak": 900.0})
     reference = reference_of(discretise(settings))
 
     def run(**changes: object) -> Solution:

@@ -19,7 +19,7 @@ from solver.arrays import Array
 from solver.definitions import CurveParameter, SettingError, about, is_logarithmic
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.stability.stability_case import NOT_WRONG, StabilityCase
+from solver.study.stability import NOT_WRONG, StabilityCase
 
 LARGEST_FIELD = 6_000
 """Nodes times instants of a run, at most: a thousand iterations then stay within seconds; a matter
@@ -58,14 +58,12 @@ def random_cases(scenes: Sequence[str], number: int, seed: int) -> Iterator[Stab
 
 def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
     """Case of settings that were drawn; right are errors of its force within its accuracy."""
-    own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
-    method = f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
     return StabilityCase(
         f"row {row} of seed {seed}",
         settings.scene,
         settings.changed(),
         NOT_WRONG,
-        "pgd" if settings.linear_stage == "pgd" else method,
+        settings.method,
         error_force=settings.accuracy,
         error_displacement=math.inf,
     )

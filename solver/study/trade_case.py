@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from solver.definitions import SettingError
 from solver.files import (
@@ -24,21 +22,7 @@ from solver.study.quantities.quantity import Quantity
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case as its file says, whose name it has.
-
-    Attributes
-    ----------
-    known, tolerance
-        The quantity of the run, and how far this may be from it, as a share.
-    formula, how
-        What it follows from, and how it is known.
-    change, controls
-        What to change first, and the names of its settings.
-    picture
-        By which it is found; without one that of the scene.
-    views
-        Names of the plots that come to the front.
-    """
+    """A case as its file says, whose name it has (`cases/README.md` says what each is)."""
 
     name: str
     order: int
@@ -70,21 +54,18 @@ def case_from_file(path: Path) -> Case:
             raise SettingError("case", entries, "a table", "write [case] below the settings")
         settings = kind.checked(values)
         with placed("case"):
-            return _case(path.stem, settings, entries)
+            entries = {"picture": settings.icon._asdict(), **entries}
+            fields = fields_in(Case, entries, quantity=str, picture=dict)
+            tolerance, can = fields["tolerance"], "a share above 0 and below 1"
+            require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
+            check_controls(fields["controls"], settings)
+            check_keys(fields["picture"], dict.fromkeys(Icon._fields, str))
+            fields["quantity"] = reading(fields["quantity"])
+            fields["picture"] = Icon(**fields["picture"])
+        return Case(name=path.stem, settings=settings, **fields)
 
 
 def all_cases() -> list[Case]:
-    """Read all cases of this folder, in their order."""
-    found = map(case_from_file, Path(__file__).parent.glob("*.toml"))
-    return sorted(found, key=lambda case: case.order)
-
-
-def _case(name: str, settings: Settings, entries: Mapping[str, Any]) -> Case:
-    picture = {"picture": settings.icon._asdict(), **entries}["picture"]
-    values = fields_in(Case, {**entries, "picture": picture}, quantity=str, picture=dict)
-    tolerance, can = values["tolerance"], "a share above 0 and below 1"
-    require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
-    check_controls(values["controls"], settings)
-    check_keys(picture, dict.fromkeys(Icon._fields, str))
-    values |= {"quantity": reading(values["quantity"]), "picture": Icon(**picture)}
-    return Case(name=name, settings=settings, **values)
+    """Read all cases of the folder `cases`, in their order."""
+    cases = map(case_from_file, Path(__file__).with_name("cases").glob("*.toml"))
+    return sorted(cases, key=lambda case: case.order)

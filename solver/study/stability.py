@@ -1,4 +1,4 @@
-"""Stability cases: runs that are to be made, what they come to, and what that is worth."""
+"""Stability: runs that are to be made, what they come to, what that is worth, and its report."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import math
 import shlex
 import tomllib
 import warnings
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +21,10 @@ from solver.latin import Ending, Solution
 from solver.reference.distance import distance_to, kkt_residual
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
+from solver.study.page import aligned, bullets, html_table, line_of, text_of, write_csv, write_page
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run, known_reference
 
-CASES = Path(__file__).with_name("cases.toml")
+CASES = Path(__file__).with_name("stability_cases.toml")
 
 
 class Verdict(StrEnum):
@@ -63,22 +66,35 @@ RIGHT_UP_TO = 1e-6
 """Error of displacement and contact force up to which an answer is right."""
 Row = dict[str, Any]
 METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
+FILES = "stability.csv", "stability.html"
+COLUMNS = (
+    *("scene", "case", "method", "expected", "verdict", "passed", "status", "certified"),
+    *("iterations", "estimated_error", "error_displacement", "error_force", "residual"),
+    *("indicator", "behaviour", "seconds", "doubt", "advice", "settings"),
+)
+LONG = "doubt", "advice", "settings"
+"""Columns of words: beside numbers there is no room for them on a screen."""
+SHOWN = {
+    **{"passed": ("", 5), "verdict": ("", 8), "scene": ("scene", 7), "case": ("run", 44)},
+    **{"method": ("method", 12), "status": ("status", 10), "certified": ("certified", 9)},
+    **{"iterations": ("iter.", 5), "estimated_error": ("estimate", 8), "seconds": ("s", 6)},
+    **{"error_displacement": ("error W", 8), "error_force": ("error F", 8)},
+}
+"""Columns of a console."""
+NOTES = (
+    "A run passes if it comes to what is expected of it. Right are errors of at most 1e-6, and of "
+    "random runs errors of the contact force of at most the accuracy.",
+    "Errors: distance to the reference solution over space and time, as a share of it; where it is "
+    "zero, as a share of the load, or in m and N.",
+)
 
 
 @dataclass(frozen=True)
 class StabilityCase:
-    """A run that is to be made, and what may come of it.
+    """A run that is to be made, by what is extreme about it, and what may come of it.
 
-    Attributes
-    ----------
-    title
-        What is extreme about it; or which one it is of random ones.
-    values
-        Settings that differ from the scene's own.
-    expected
-        A key of `PASSING`.
-    error_force, error_displacement
-        Errors up to which the answer is right.
+    Its values are settings that differ from the scene's own; what is expected is a key of
+    `PASSING`, and errors are those up to which the answer is right.
     """
 
     title: str
@@ -122,8 +138,6 @@ class Outcome:
     ----------
     ending, advice
         Its status; `REFUSED` or `BROKEN`, and why.
-    error_displacement, error_force
-        Relative distance to the reference; absolute (m, N) where reference and load are zero.
     residual, floor
         Of a certified run by `kkt_residual`, and, where it is above rounding, of the reference,
         below which rounding lets nobody come: layers of 5000 times their thickness have 3e-7.
@@ -237,3 +251,40 @@ def passed(row: Row) -> bool:
 def judged_runs(cases: Iterable[StabilityCase]) -> Iterator[Row]:
     """Run cases, and yield each as soon as it is done."""
     return (row_of(case, run(case.scene, case.values)) for case in cases)
+
+
+def summary(runs: Sequence[Row]) -> str:
+    """How many runs came to what they have to."""
+    return f"{sum(map(passed, runs))} of {len(runs)} runs pass."
+
+
+def counts(runs: Sequence[Row]) -> list[list[str]]:
+    """Numbers of runs by verdict, and what each means; with a head."""
+    numbers = Counter(run["verdict"] for run in runs)
+    rows = ([name, str(numbers[name]), text] for name, text in MEANING.items())
+    return [["verdict", "runs", "what it means"], *rows]
+
+
+def last_lines(runs: Sequence[Row]) -> list[str]:
+    """What a console ends with; what did not pass, with the command that repeats it."""
+    lines = ["", summary(runs), aligned(counts(runs)), "", *NOTES]
+    for run in runs:
+        if not passed(run):
+            lines += ["", line_of(run, SHOWN), f"      {run['advice']}", f"      {run['command']}"]
+    return lines
+
+
+def write_stability(runs: Sequence[Row], folder: Path) -> None:
+    """Write `FILES` into an existing folder."""
+    short = [column for column in COLUMNS if column not in LONG]
+    cells, every = [], [[column.replace("_", " ") for column in short]]
+    for row in runs:
+        cells.append([row[column] for column in COLUMNS])
+        words = " · ".join(str(row[column]) for column in LONG if row[column])
+        every += [[text_of(row[column]) for column in short], [escape(words)]]
+    write_csv(folder / FILES[0], COLUMNS, cells)
+    sections = [
+        f"<p><b>{escape(summary(runs))}</b></p>\n{html_table(counts(runs))}\n{bullets(NOTES)}",
+        f"<h2>Every run</h2>\n{html_table(every)}",
+    ]
+    write_page(folder / FILES[1], "Stability on extreme or random runs", sections)

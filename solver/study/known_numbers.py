@@ -1,4 +1,4 @@
-"""Numbers that are known of runs, beside those of an answer: functions of `cases.toml`."""
+"""Numbers that are known of runs, beside those of an answer: functions of `known_numbers.toml`."""
 
 from __future__ import annotations
 
@@ -193,17 +193,16 @@ def _forces(answer: Answer) -> tuple[float, float]:
     return settings.pressure * settings.length, weight
 
 
-def sliding_pile(answer: Answer) -> Iterator[Number]:
-    """Shear force of a pile of bricks that slides."""
-    held = answer.settings.friction * sum(_forces(answer))
-    yield "shear force", "N/m", held, float(answer.loop.along(answer.fields)[1][-1])
+def pile(answer: Answer) -> Iterator[Number]:
+    """Shear force of a pile of bricks, which slides at its top, or tips about its toe.
 
-
-def tipping_pile(answer: Answer) -> Iterator[Number]:
-    """Moments about the toe: what presses, and the weight, have half a length."""
+    About the toe what presses, and the weight of the bricks, have half a length.
+    """
     settings, (pressed, brick) = answer.settings, _forces(answer)
-    held = 0.5 * settings.length * (pressed + 3.0 * brick) / (3.0 * settings.height)
-    yield "shear force", "N/m", held, float(answer.loop.along(answer.fields)[1][-1])
+    slides = settings.friction * (pressed + brick)
+    count = settings.courses
+    tips = 0.5 * settings.length * (pressed + count * brick) / (count * settings.height)
+    yield "shear force", "N/m", min(slides, tips), float(answer.loop.along(answer.fields)[1][-1])
 
 
 def weighed_wall(answer: Answer) -> Iterator[Number]:
