@@ -1,17 +1,14 @@
 """Frictional contact through time, each instant from the states of the one before.
 
-Where Newton's method cycles, springs lead loose bodies home (`solver.reference.proximal`), or
-following the solution down from large pressure finds it (`solver.reference.unloading`). Where
-friction softens an instant may have several solutions: the one that goes on from the instant before
-is followed while the load of the instant grows, in steps so small that between their ends no other
-branches off.
+Where friction softens an instant may have several solutions: the one that goes on from the instant
+before is followed while the load of the instant grows, in steps so small that between their ends no
+other branches off.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -20,7 +17,6 @@ from solver.arrays import Array, at_instant
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
-from solver.reference.proximal import approach
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, Starts, States
 
 PASSES = 30
@@ -126,7 +122,7 @@ class Instants:
 
     def _solved(self, sides: Sides, instant: int) -> InstantSolution | None:
         """Find the states of the jumps and the step, or None."""
-        condensed, rules, newton = self._condensed, self._rules, self._newton
+        rules, newton = self._rules, self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
         # or slips as a whole.
         given = [states for states in (self._guesses, self._at_rest) if states is not None]
@@ -142,8 +138,7 @@ class Instants:
         if solved is None and rules.is_curved:
             solved = self._in_parts(begin, sides, known, instant)
         elif solved is None and not self._is_lost and self._may_hold(instant):
-            steps = approach(condensed, self._states, sides, partial(newton.seek, near=begin))
-            solved = newton.follow(begin, sides, steps) or newton.unload(begin, sides)
+            solved = newton.follow(begin, sides, newton.approach(begin, sides))
         self._is_lost = self._is_lost or solved is None
         return solved
 
@@ -186,7 +181,7 @@ class Instants:
         for factor in chain(lefts, [last]):
             before, newton = at.states, self._newton.with_friction_left(factor)
             given = replace(sides, bound=sides.bound * factor[:, None])
-            slid = newton.follow(at, given, [before, *known]) or newton.unload(at, given)
+            slid = newton.follow(at, given, [before, *known])
             if slid is None:
                 return None
             at = slid

@@ -41,8 +41,6 @@ class LinearSystem:
     turned
         Whether the determinant of the last one is negative. That of a convex problem never is,
         and the signs at all solutions of an instant add up to one: so it has others.
-    singular
-        Whether the last one left a motion free; then its smallest solution is given.
     """
 
     def __init__(self, condensed: Condensation, stiffness: Array, gauge: Array) -> None:
@@ -62,7 +60,7 @@ class LinearSystem:
         self._states: States | None = None
         self._factors: Factors
         self.solutions = 0
-        self.unbalanced, self.turned, self.singular = 0.0, False, False
+        self.unbalanced, self.turned = 0.0, False
 
     def _forces_of_unknowns(self) -> Array:
         """Forces of all jumps by y and forces of jumps that follow from others, (n, n)."""
@@ -196,7 +194,7 @@ class LinearSystem:
             matrix = self._with_motions(matrix)
         least = LOOSE * float(self.unit.max(initial=0.0)) if self._is_plain else 0.0
         self._factors = Factors(matrix, least, scaled=not self._is_plain)
-        self.turned, self.singular = self._factors.turned, self._factors.singular
+        self.turned = self._factors.turned
 
     def _with_motions(self, forces: Array) -> Array:
         """All equations: what is in series comes to its end, and y is chosen."""

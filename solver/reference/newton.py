@@ -5,11 +5,17 @@ coupled to the normal force), and correct the states by what it shows (Alart and
 Methods Appl. Mech. Eng. 92, 1991). Exact once they repeat. The bound (r + mu f_n) g(s) of a slip s
 is taken by its tangent, which adds its growth per slip to the stiffness where contacts slip
 (solver/README.md, 14).
+
+From afar the states may cycle, above all where bodies hang loose, as they may go anywhere. With
+springs at all jumps that are relaxed where the last solution came to, none is loose: that is the
+proximal point method (Rockafellar, SIAM J. Control Optim. 14, 1976). Its steps are short, and where
+they come to rest the springs carry nothing. They are softened from step to step, until the states
+hold without them (solver/README.md, 6).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from copy import copy
 from dataclasses import replace
 
@@ -22,7 +28,6 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
-from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
 """Newton steps from one guess of the states; more than a dozen means that they cycle."""
@@ -30,6 +35,14 @@ CONVERGED = 1e-9
 """Relative KKT residual up to which an instant counts as solved, where rounding allows it."""
 SETTLED = 1e-12
 """Share of the largest force by which friction may differ from its law."""
+FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
+"""Springs, as shares of the stiffness of each jump alone."""
+SOFTER, STIFFER = 0.5, 10.0
+"""Factors on them after a step, and where Newton's method cycles in spite of them."""
+STEPS = 60
+"""Steps at most; up to 20 are seen where there is a solution."""
+MOST_JUMPS = 4000
+"""Jumps up to which springs are tried: that keeps two more matrices of their size."""
 _HELD, _OPEN = np.int8(HELD), np.int8(OPEN)
 
 
@@ -74,10 +87,30 @@ class Newton:
                 return reached
         return None
 
-    def unload(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
-        """Come down from large pressure, None where that leads nowhere."""
-        states = unload(self.system, self._rules, sides)
-        return None if states is None else self.seek(self.system, states, sides, at)
+    def approach(self, at: InstantSolution, sides: Sides) -> Iterator[States]:
+        """States that have come to rest with softer and softer springs, from those of a solution.
+
+        None where there are too many jumps.
+        """
+        condensed, states, share = self._condensed, at.states, FIRST
+        if len(condensed.stiffness) > MOST_JUMPS:
+            return
+        alone, moved = np.diagonal(condensed.stiffness), np.zeros_like(sides.load)
+        for _ in range(STEPS):
+            springs = share * alone[:, None]
+            held = condensed.elastic + np.diagflat(springs)
+            sprung = LinearSystem(condensed, held, condensed.gauge[:, :0])
+            pulled = replace(sides, load=sides.load + springs * moved)
+            solved = self.seek(sprung, states, pulled, at)
+            if solved is not None:
+                before, states, moved = states, solved.states, solved.step.strained
+                share = max(SOFTER * share, SOFTEST)
+                if np.array_equal(states, before):
+                    yield states
+            elif share < STIFFEST:
+                share *= STIFFER
+            else:
+                return
 
     def stable(self, near: InstantSolution, sides: Sides) -> InstantSolution | None:
         """The solution near what is none yet, or None where it is not stable."""
