@@ -169,13 +169,11 @@ def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Arra
     slip = np.diff(jumps, axis=1, prepend=0.0)
     bound = rules.bounds(forces, slip)
     forces[given] = (-bound * np.sign(slip))[given]
-    for number, strength in enumerate(rules.strengths):
-        springy = given & (rules.compliance > 0.0) & (rules.strength == number)
-        if not springy.any():
-            continue
+    springy = given & (rules.compliance > 0.0)
+    if springy.any():
         soft, jump = rules.compliance[springy, None], jumps[springy]
         reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[springy]
-        slider = play(jump, reach) if number == 0 else follow(jump, reach, strength)
+        slider = follow(jump, reach, rules.strength) if rules.ages else play(jump, reach)
         forces[springy] = (slider - jump) / soft
     return forces
 

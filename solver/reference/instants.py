@@ -176,8 +176,8 @@ class Instants:
         friction alone comes to is the last resort.
         """
         gone = self._newton.gone
-        lefts = (self._rules.factor(gone + np.abs(at.slip)) for _ in range(SLIDES))
-        last = self._rules.factor(np.full_like(gone, np.inf))
+        lefts = (self._rules.strength(gone + np.abs(at.slip)) for _ in range(SLIDES))
+        last = self._rules.strength(np.full_like(gone, np.inf))
         for factor in chain(lefts, [last]):
             before, newton = at.states, self._newton.with_friction_left(factor)
             given = replace(sides, bound=sides.bound * factor[:, None])

@@ -128,7 +128,7 @@ class Newton:
             if rules.is_curved:
                 slip = np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
                 tangent, is_capped = self._linearised(slip, force, sides)
-                piece += rules.segment(self.gone + slip).tobytes() + is_capped.tobytes()
+                piece += rules.strength.segment(self.gone + slip).tobytes() + is_capped.tobytes()
             if piece in pieces and not (rules.is_curved and piece == pieces[-1]):
                 return None
             pieces.append(piece)
@@ -150,8 +150,8 @@ class Newton:
         And where it is capped.
         """
         rules, most = self._rules, self._rules.before_slip(sides.bound, force)[:, 0]
-        is_capped, factor = most >= rules.cap, rules.factor(self.gone + slip)
-        grows = rules.growth(self.gone + slip) * most
+        is_capped, factor = most >= rules.cap, rules.strength(self.gone + slip)
+        grows = rules.strength.slope(self.gone + slip) * most
         self.system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
         bound = np.where(is_capped, rules.cap, sides.bound[:, 0]) * factor - grows * slip
         return replace(sides, bound=bound[:, None]), is_capped
@@ -165,7 +165,7 @@ class Newton:
         if not rules.is_curved:
             return True
         most = rules.before_slip(sides.bound, at.step.force)[:, 0]
-        wrong = np.abs(force + at.states * rules.factor(self.gone + np.abs(at.slip)) * most)
+        wrong = np.abs(force + at.states * rules.strength(self.gone + np.abs(at.slip)) * most)
         largest = max(self.largest, np.abs(force).max())
         return bool(wrong[np.abs(at.states) == 1].max(initial=0.0) <= SETTLED * largest)
 
@@ -180,7 +180,7 @@ class Newton:
         carried = [rules.before_slip(sides.bound, one.step.force)[:, 0] for one in (at, reached)]
         on_way = self.gone + np.minimum(begin, end), self.gone + np.maximum(begin, end)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        growth = np.where(slips, rules.lowest_growth(*on_way) * np.maximum(*carried), 0.0)
+        growth = np.where(slips, rules.strength.lowest_slope(*on_way) * np.maximum(*carried), 0.0)
         if not np.any(growth < 0.0):
             return True
         sprung = rules.compliance > 0.0

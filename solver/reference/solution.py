@@ -118,7 +118,7 @@ def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
     yield external_force(problem)
     yield from problem.prescribed
     yield from (getattr(rules, name) for name in OF_JUMPS)
-    yield from (np.array([strength.slips, strength.factors]) for strength in rules.strengths)
+    yield np.array([rules.strength.slips, rules.strength.factors])
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         matrix.sort_indices()
         yield from (matrix.indptr, matrix.indices, matrix.data)
