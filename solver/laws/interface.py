@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple, Protocol, Self
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy import sparse
@@ -98,15 +98,10 @@ class MacroPart(NamedTuple):
     load: Array | None = None
 
 
-class Rule(Protocol):
-    """A law that is ready for one k: it obeys in the local stage (paper, problem 2.1)."""
-
-    def __call__(self, incoming: Array, displacement: Array, instants: slice, /) -> None:
-        """Write W^ of the interface's rows; what is not of the interface stays.
-
-        From z = W - F/k of all rows, (n_rows, n) of n instants, which `instants` says; all of them
-        where the rule remembers.
-        """
+Rule = Callable[[Array, Array, slice], None]
+"""A law that is ready for one k, in the local stage (paper, problem 2.1): from z = W - F/k of all
+rows, (n_rows, n), it writes W^ of the interface's rows alone into the second, of the same shape.
+The last says which n instants these are; all of them where the law remembers."""
 
 
 class Gaps(NamedTuple):

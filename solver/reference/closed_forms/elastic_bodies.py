@@ -150,12 +150,6 @@ class TwoLeaves:
         stick = min(deflection, self.first_slip / stuck)
         return stick * stuck + (deflection - stick) * apart
 
-    def energy(self, peak: float) -> float:
-        """What friction takes in a cycle between -peak and peak of the force, J/m."""
-        stuck, apart = self.stiffnesses
-        slips = max(peak - self.first_slip, 0.0)
-        return 4.0 * self.first_slip * slips * (1.0 / apart - 1.0 / stuck)
-
 
 def leaf_spring(lengths: Array) -> float | None:
     """End force of graduated leaves for a unit of deflection, over that of the longest alone.
