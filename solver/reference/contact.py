@@ -1,9 +1,5 @@
 """The incremental reference where contacts open or two sides rub: instant by instant, exact.
 
-The structure is condensed onto the jumps of its contacts once, for all instants together. Then
-every instant seeks the states of the jumps (`solver.reference.instants`), and is judged by how far
-it is from equilibrium and laws.
-
 In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the laws of
 LATIN: friction opposes the increment of the tangential jump.
 """
@@ -27,9 +23,7 @@ from solver.reference.rules import Increment, Rules, States
 from solver.reference.solution import Interrupted, Reference
 
 MOST_JUMPS = 13_000
-"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB. 12 935 of
-200 wires, of which few slip at a time, take 18 s; 3700 of 20 layers, of which a third does, 30
-s."""
+"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB."""
 
 
 class IncrementalContact:
