@@ -157,8 +157,9 @@ class Contact(Interface):
     @property
     def kind(self) -> Hashable:
         """What interfaces have alike that may be treated as one."""
-        springs = self.normal is not None and self.normal.softness is not None
-        return self.tangential.strength, self.is_on_support, self.opens, springs
+        along, across = self.tangential, self.normal and self.normal.softness
+        has = [field is not None for field in (along.cap, along.softness, along.start, across)]
+        return along.strength, self.is_on_support, self.opens, *has
 
     @classmethod
     def concatenated(cls, laws: Sequence[Self]) -> Self:

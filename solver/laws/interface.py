@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
@@ -29,9 +30,8 @@ class Component(NamedTuple):
     @classmethod
     def concatenated(cls, components: Sequence[Component]) -> Component:
         """Rows put one after the other, all on supports, or none."""
-        below = [each.below for each in components if each.below is not None]
         above = np.concatenate([each.above for each in components])
-        return cls(above, np.concatenate(below) if below else None)
+        return cls(above, joined([each.below for each in components]))
 
     def jump(self, field: Array) -> Array:
         """A row field above minus that below, shape (n_pairs, ...)."""
@@ -153,6 +153,12 @@ class Interface(ABC):
     def acts(self) -> bool:
         """Whether anything is given here that is not zero: load, displacement, overlap."""
         return False
+
+
+def joined(fields: Sequence[NDArray[Any] | None]) -> NDArray[Any] | None:
+    """Fields of pairs put one after the other: of all interfaces, or None of any."""
+    some = [field for field in fields if field is not None]
+    return np.concatenate(some) if some else None
 
 
 def beyond(field: Array, noise: float) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction import Friction
-from solver.laws.interface import Component, Springs
+from solver.laws.interface import Component, Springs, joined
 from solver.laws.play import Play, follow
 
 
@@ -52,11 +52,10 @@ class Unilateral:
     @classmethod
     def concatenated(cls, laws: Sequence[Unilateral]) -> Unilateral:
         """Laws put one after the other, all on supports, or none; all with a spring, or none."""
-        softness = [law.softness for law in laws if law.softness is not None]
         return cls(
             component=Component.concatenated([law.component for law in laws]),
             gap=np.concatenate([law.gap for law in laws]),
-            softness=np.concatenate(softness) if softness else None,
+            softness=joined([law.softness for law in laws]),
         )
 
 
