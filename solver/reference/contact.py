@@ -37,11 +37,8 @@ class IncrementalContact:
     is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
     its motion; at rest it is taken as zero.
 
-    Raises
-    ------
-    NoReferenceError
-        If there are more than `MOST_JUMPS` jumps, or the structure can move with all contacts
-        closed and stuck.
+    NoReferenceError is raised if there are more than `MOST_JUMPS` jumps, or the structure can move
+    with all contacts closed and stuck.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -74,12 +71,7 @@ class IncrementalContact:
             Linear systems to solve; the instants that are not reached then do not move, and are
             not `converged`.
         stop
-            Called once per instant.
-
-        Raises
-        ------
-        Interrupted
-            As soon as `stop` returns True.
+            Called once per instant; `Interrupted` is raised as soon as it returns True.
         """
         problem, condensed = self._problem, self._condensed
         guesses = None if guess is None else guess[condensed.moving]

@@ -51,8 +51,7 @@ class IncrementalRod:
 
     A point whose displacement is prescribed may rub too. Where it moves, its friction force is
     -r sign(v). Where it stands still, only the sum of friction force and reaction is determinate:
-    the friction force is taken as zero. LATIN shares the sum in a way that depends on k and on
-    the decomposition (measured, once the whole bar slides), so compare no force there.
+    the friction force is taken as zero.
     """
 
     def __init__(self, problem: Problem) -> None:

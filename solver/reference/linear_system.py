@@ -25,8 +25,7 @@ FEW = 4
 class LinearSystem:
     """The linear system of given states; the last factorisation is kept.
 
-    It is that of a condensed structure, or of one that springs hold, with another stiffness and
-    gauge.
+    The stiffness and gauge are those of the condensed structure, or others where springs hold it.
 
     Attributes
     ----------

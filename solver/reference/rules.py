@@ -204,16 +204,10 @@ class Sides:
 
 
 class Increment(NamedTuple):
-    """What an instant adds to the one before, and the forces at its end.
+    """What an instant adds to the one before, and the forces at its end, scaled.
 
-    Attributes
-    ----------
-    jump
-        Of all jumps, with the new length of what is in series, shape (n, ...); as `Sides.held`.
-    force
-        Of all jumps, same shape.
-    strained, motion
-        Of y of the base, shape (n_base, ...), and of the rigid motions a, (n_motions, ...).
+    Jumps and forces are of all jumps, (n, ...), with the new length of what is in series, as
+    `Sides.held`; then follow y of the base, (n_base, ...), and the rigid motions, (n_motions, ...).
     """
 
     jump: Array
@@ -223,7 +217,7 @@ class Increment(NamedTuple):
 
 
 class InstantSolution(NamedTuple):
-    """States of an instant, what it adds, and (n,) slips of the jumps where friction changes."""
+    """States of an instant, what it adds, and slips (n,) of the jumps where friction changes."""
 
     states: States
     step: Increment

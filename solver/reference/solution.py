@@ -39,9 +39,8 @@ class Reference:
         Shape (n_points, n_instants), the points stacked interface by interface: -1 slip backward,
         0 stick, +1 slip forward, 2 open. The increment of a sticking point is zero.
     residual
-        Relative KKT residual, the maximum over the instants. Of `incremental`: distance of 0 from
-        the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|;
-        storing v in doubles costs as much.
+        Relative KKT residual, the maximum over the instants. Of rods: distance of 0 from the
+        subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|.
     unbalanced
         The same before it is divided, N.
     converged
@@ -55,8 +54,7 @@ class Reference:
         What rounding alone may leave of `unbalanced`, N.
     jumps_at
         First instant that has no solution that goes on from the instant before, as friction falls
-        with slip faster than the structure unloads: what follows, if anything is solved, is another
-        equilibrium. None where there is no such instant.
+        with slip faster than the structure unloads: what follows is another equilibrium, if any.
     is_lost
         Whether an instant that was tried is not solved.
     collapse
