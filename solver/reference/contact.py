@@ -85,7 +85,7 @@ class IncrementalContact:
             if most is not None and instants.system.solutions >= most:
                 break
             for field, values in zip(done, instants(instant), strict=True):
-                field[:, instant] = values[:, 0]
+                field[:, instant] = values
             turned[instant], reached[instant] = instants.system.turned, True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break

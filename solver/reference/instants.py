@@ -78,24 +78,24 @@ class Instants:
         condensed, rules = self._condensed, self._rules
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
-            return Increment(*(np.zeros((len(field), 1)) for field in still))
+            return Increment(*map(np.zeros_like, still))
         load = condensed.load[:, instant] - self._load - self.system.on_base(self._force)
         before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         held = before - np.where(rules.normal, self._opening, 0.0)
-        step = self._together(Sides(load[:, None], self._bound(instant), held[:, None]), instant)
+        step = self._together(Sides(load, self._bound(instant), held), instant)
         self._load, self._shift = condensed.load[:, instant], condensed.shift[:, instant]
-        slip, self._force = step.jump[:, 0] - before, step.force[:, 0]
+        slip, self._force = step.jump - before, step.force
         self._opening += slip
         self._newton.gone += np.abs(slip)
-        self._newton.strained += step.strained[:, 0]
-        self._motion += step.motion[:, 0]
+        self._newton.strained += step.strained
+        self._motion += step.motion
         opened = self._states[rules.partner[rules.bonds]] == OPEN
         self._intact[rules.bonds[opened]] = 0.0
-        return step._replace(jump=slip[:, None])
+        return step._replace(jump=slip)
 
     def _bound(self, instant: int) -> Array:
-        """Friction force that needs no pressing one, where no bond is broken yet, (n, 1)."""
-        return at_instant(self._rules.bound, instant) * self._intact[:, None]
+        """Friction force that needs no pressing one, where no bond is broken yet, (n,)."""
+        return at_instant(self._rules.bound, instant)[:, 0] * self._intact
 
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
@@ -105,18 +105,18 @@ class Instants:
             solved = self._solved(sides, instant)
             if solved is None:
                 # All contacts stay where they are.
-                held = sides.held + (self._rules.normal * self._opening)[:, None]
+                held = sides.held + self._rules.normal * self._opening
                 return self.system(np.full_like(self._states, HELD), replace(sides, held=held))
             self._states, step, _ = solved
             if not stresses.size:
                 break
             given = condensed.given[condensed.moving[condensed.base], instant]
             moved = self._newton.strained + condensed.gauge @ self._motion - given
-            moved += step.strained[:, 0] + condensed.gauge @ step.motion[:, 0]
+            moved += step.strained + condensed.gauge @ step.motion
             pull = condensed.tie * (stresses @ (stresses.T @ moved))
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest:
                 break
-            sides = replace(sides, load=sides.load - pull[:, None])
+            sides = replace(sides, load=sides.load - pull)
         self._starts.took(self.system.solutions - done, from_guess=from_guess)
         return step
 
@@ -132,8 +132,8 @@ class Instants:
         if self._guesses is not None and self._starts.from_guess and not rules.is_curved:
             guesses[:2] = guesses[1::-1]
         still = np.zeros_like(sides.held)
-        nothing = Increment(still, self._force[:, None], still[: len(sides.load)], still[:0])
-        begin = InstantSolution(self._states, nothing, still[:, 0])
+        nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
+        begin = InstantSolution(self._states, nothing, still)
         solved = newton.follow(begin, sides, guesses)
         if solved is None and rules.is_curved:
             solved = self._in_parts(begin, sides, known, instant)
@@ -149,8 +149,8 @@ class Instants:
         rules, force = self._rules, self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
         # Under these nothing is added to the instant before.
-        pulled = -self.system.on_base(force)[:, None]
-        begin = Sides(pulled, self._bound(max(instant - 1, 0)), held[:, None])
+        pulled = -self.system.on_base(force)
+        begin = Sides(pulled, self._bound(max(instant - 1, 0)), held)
         share, length = 0.0, 0.25
         while share < 1.0:
             target = min(share + length, 1.0)
@@ -180,7 +180,7 @@ class Instants:
         last = self._rules.strength(np.full_like(gone, np.inf))
         for factor in chain(lefts, [last]):
             before, newton = at.states, self._newton.with_friction_left(factor)
-            given = replace(sides, bound=sides.bound * factor[:, None])
+            given = replace(sides, bound=sides.bound * factor)
             slid = newton.follow(at, given, [before, *known])
             if slid is None:
                 return None

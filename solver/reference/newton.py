@@ -21,6 +21,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.linalg import LinAlgError
+from scipy import sparse
 from scipy.linalg import cholesky
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
@@ -97,7 +98,7 @@ class Newton:
             return
         alone, moved = np.diagonal(condensed.stiffness), np.zeros_like(sides.load)
         for _ in range(STEPS):
-            springs = share * alone[:, None]
+            springs = share * alone
             held = condensed.elastic + np.diagflat(springs)
             sprung = LinearSystem(condensed, held, condensed.gauge[:, :0])
             pulled = replace(sides, load=sides.load + springs * moved)
@@ -137,7 +138,7 @@ class Newton:
             self.system.solutions += system is not self.system
             corrected = self._corrected(states, step, tangent)
             if self._condensed.rules.is_curved:
-                slip = np.where(rules.normal, 0.0, (step.jump - sides.held)[:, 0])
+                slip = np.where(rules.normal, 0.0, step.jump - sides.held)
             force, reached = step.force, InstantSolution(states, step, slip)
             if np.array_equal(corrected, states) and self._obeys(system, reached, sides):
                 return reached
@@ -149,22 +150,22 @@ class Newton:
 
         And where it is capped.
         """
-        rules, most = self._rules, self._rules.before_slip(sides.bound, force)[:, 0]
+        rules, most = self._rules, self._rules.before_slip(sides.bound, force)
         is_capped, factor = most >= rules.cap, rules.strength(self.gone + slip)
         grows = rules.strength.slope(self.gone + slip) * most
         self.system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
-        bound = np.where(is_capped, rules.cap, sides.bound[:, 0]) * factor - grows * slip
-        return replace(sides, bound=bound[:, None]), is_capped
+        bound = np.where(is_capped, rules.cap, sides.bound) * factor - grows * slip
+        return replace(sides, bound=bound), is_capped
 
     def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides) -> bool:
         """Whether forces balance, and friction is what slip has left, not only by its tangent."""
         slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest, slack):
             return False
-        rules, force = self._rules, at.step.force[:, 0]
+        rules, force = self._rules, at.step.force
         if not rules.is_curved:
             return True
-        most = rules.before_slip(sides.bound, at.step.force)[:, 0]
+        most = rules.before_slip(sides.bound, force)
         wrong = np.abs(force + at.states * rules.strength(self.gone + np.abs(at.slip)) * most)
         largest = max(self.largest, np.abs(force).max())
         return bool(wrong[np.abs(at.states) == 1].max(initial=0.0) <= SETTLED * largest)
@@ -177,7 +178,7 @@ class Newton:
         """
         rules, condensed = self._rules, self._condensed
         begin, end = np.abs(at.slip), np.abs(reached.slip)
-        carried = [rules.before_slip(sides.bound, one.step.force)[:, 0] for one in (at, reached)]
+        carried = [rules.before_slip(sides.bound, one.step.force) for one in (at, reached)]
         on_way = self.gone + np.minimum(begin, end), self.gone + np.maximum(begin, end)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
         growth = np.where(slips, rules.strength.lowest_slope(*on_way) * np.maximum(*carried), 0.0)
@@ -192,12 +193,9 @@ class Newton:
         growth[presses] += 1.0 / rules.compliance[presses]
         is_free = slips | (at.states == OPEN) & (reached.states == OPEN) | sprung
         free = np.flatnonzero(is_free[condensed.base])
+        tied = condensed.ties[:, free]
         softened = condensed.elastic[np.ix_(free, free)]
-        if len(condensed.base) == len(growth):
-            softened[np.diag_indices_from(softened)] += growth[free]
-        else:
-            tied = condensed.ties[:, free].toarray()
-            softened += tied.T @ (growth[:, None] * tied)
+        softened += tied.T @ sparse.diags_array(growth) @ tied
         try:
             cholesky(softened, overwrite_a=True, check_finite=False)
         except LinAlgError:
@@ -209,7 +207,7 @@ class Newton:
 
         A held jump is the deformation less the rigid motion: rounding of that makes forces at all.
         """
-        inside = self.system.inside(self.strained + step.strained[:, 0])
+        inside = self.system.inside(self.strained + step.strained)
         slack = ROUNDING * (inside + self.largest)
         blur = self.system.blur(step.motion)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
@@ -217,13 +215,13 @@ class Newton:
 
     def _corrected(self, states: States, step: Increment, sides: Sides) -> States:
         """States that jump and force call for; what is up to rounding calls for none."""
-        rules, system, force = self._rules, self.system, step.force[:, 0]
-        moved = (system.unit * (step.jump - sides.held))[:, 0]
+        rules, system, force = self._rules, self.system, step.force
+        moved = system.unit * (step.jump - sides.held)
         slack, blur = self._rounding(states, step)
         held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
         carries = np.where(held, force[rules.partner], -moved[rules.partner])
-        most = sides.bound[:, 0] + np.maximum(system.friction * carries, 0.0) + slack * held
+        most = sides.bound + np.maximum(system.friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
         corrected = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
         corrected = np.where(np.abs(states) == 1, states * (states * moved >= -blur), corrected)

@@ -118,9 +118,9 @@ class Rules:
         return np.where(closed, slip, OPEN).astype(np.int8)
 
     def before_slip(self, bound: Array, force: Array) -> Array:
-        """Friction force r + mu f_n up to its cap, before slip changes it, (n, n_instants)."""
-        carried = self.friction[:, None] * force[self.partner]
-        return np.asarray(np.minimum(bound + np.maximum(carried, 0.0), self.cap[:, None]))
+        """Friction force r + mu f_n up to its cap, before slip changes it, (n, ...) all."""
+        carried = self.friction * force[self.partner].T
+        return np.asarray(np.minimum(bound.T + np.maximum(carried, 0.0), self.cap).T)
 
     def bounds(self, force: Array, slip: Array, opening: Array | None = None) -> Array:
         """Largest friction force, (n, n_instants), by force and slip per instant of all jumps.
@@ -175,17 +175,17 @@ def _components(law: Contact, first: int) -> list[Rules]:
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """Right sides of one instant; columns, where there are several, are solved together.
+    """Right sides of one instant.
 
     Attributes
     ----------
     load
-        q of the step from the instant before, shape (n_base, ...).
+        q of the step from the instant before, shape (n_base,).
     bound
-        Friction force r that needs no normal force, shape (n, ...).
+        Friction force r that needs no normal force, shape (n,).
     held
-        What held jumps come to in the step, shape (n, ...): minus the opening, or nothing; on top
-        of the length before of what is in series.
+        What held jumps come to in the step, shape (n,): minus the opening, or nothing; on top of
+        the length before of what is in series.
     """
 
     load: Array
@@ -206,8 +206,8 @@ class Sides:
 class Increment(NamedTuple):
     """What an instant adds to the one before, and the forces at its end, scaled.
 
-    Jumps and forces are of all jumps, (n, ...), with the new length of what is in series, as
-    `Sides.held`; then follow y of the base, (n_base, ...), and the rigid motions, (n_motions, ...).
+    Jumps and forces are of all jumps, (n,), with the new length of what is in series, as
+    `Sides.held`; then follow y of the base, (n_base,), and the rigid motions, (n_motions,).
     """
 
     jump: Array
