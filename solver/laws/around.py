@@ -148,7 +148,3 @@ class Bodies:
         spacing = length / max(len(law.positions) - 1, 1)
         resolved = min(self.depth / spacing, 1.0)
         return float(np.sqrt(min(SLENDER * self.depth / length * resolved, 1.0)))
-
-
-Around = Rod | Bodies
-"""What k depends on beside the interface itself."""

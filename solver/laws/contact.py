@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.laws.around import Around, Rod
+from solver.laws.around import Bodies, Rod
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
@@ -109,7 +109,7 @@ class Contact(Interface):
     weights: Array
     tangential: Friction
     normal: Unilateral | None = None
-    around: Around = field(default_factory=Rod)
+    around: Rod | Bodies = field(default_factory=Rod)
     macro: sparse.csr_array | None = None
 
     remembers = True

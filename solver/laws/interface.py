@@ -14,14 +14,9 @@ from solver.arrays import Array, Indices, as_slice
 
 
 class Component(NamedTuple):
-    """Rows of one component of the jump, shape (n_pairs,) each.
+    """Rows of one component of the jump, (n_pairs,): of the body above, and of that below.
 
-    Attributes
-    ----------
-    above
-        Of the body above.
-    below
-        Of the body below, each opposite its partner; None on a rigid support.
+    Each is opposite its partner; there are none below on a rigid support.
     """
 
     above: Indices
@@ -45,13 +40,7 @@ class Component(NamedTuple):
 
 
 class Springs:
-    """Search directions of a component: springs 1/k on both sides, in series.
-
-    Attributes
-    ----------
-    soft
-        Both added, shape (n_pairs, 1), scaled.
-    """
+    """Search directions of a component, springs of both sides: 1/k in all `soft`, (n_pairs, 1)."""
 
     def __init__(self, component: Component, k: Array) -> None:
         self._above = as_slice(component.above)
@@ -81,16 +70,10 @@ class Springs:
 
 
 class MacroPart(NamedTuple):
-    """Rows whose macro forces are in equilibrium (paper, eq. 1).
+    """Rows (n,) of both sides whose macro forces are in equilibrium (paper, eq. 1).
 
-    Attributes
-    ----------
-    rows
-        Of both sides, shape (n,).
-    basis
-        Shape (n, n_macro), dense or sparse.
-    load
-        Macro force from outside, shape (n_macro, n_instants); None is zero.
+    With their basis, (n, n_macro), and the macro force from outside, (n_macro, n_instants); None is
+    zero.
     """
 
     rows: Indices

@@ -38,11 +38,9 @@ class Unilateral:
     softness: Array | None = None
 
     def opening(self, displacement: Array, force: Array) -> Array:
-        """Distance of the two sides, the spring's compression added, from W and F of all rows.
+        """Distance of the sides and compression of the spring, (n_pairs, n_instants), scaled.
 
-        Returns
-        -------
-        Shape (n_pairs, n_instants), scaled.
+        From W and F of all rows, (n_rows, n_instants).
         """
         opening = self.component.jump(displacement) + self.gap[:, None]
         if self.softness is not None:

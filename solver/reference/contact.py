@@ -74,8 +74,8 @@ class IncrementalContact:
             Called once per instant; `Interrupted` is raised as soon as it returns True.
         """
         problem, condensed = self._problem, self._condensed
-        guesses = None if guess is None else guess[condensed.moving]
-        instants = Instants(condensed, problem.rest, guesses, self._may_hold)
+        own = None if guess is None else guess[condensed.moving]
+        instants = Instants(condensed, problem.rest, own, self._may_hold)
         sizes = (len(condensed.moving),) * 2 + condensed.gauge.shape
         done = Increment(*(np.zeros((size, problem.n_instants)) for size in sizes))
         turned, reached = np.zeros((2, problem.n_instants), dtype=bool)

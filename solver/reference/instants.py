@@ -32,9 +32,9 @@ SLIDES = 100
 class Instants:
     """Jumps and forces of a condensed structure, one instant after the other.
 
-    `rest` is a displacement from which contacts may
-    be guessed, (n_dofs, n_instants), and `guesses` are states to try, (n, n_instants). `may_hold`
-    says whether there may be an equilibrium at an instant, where none is found at once.
+    `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants), and `guess`
+    are states to try, (n, n_instants). `may_hold` says whether there may be an equilibrium at an
+    instant, where none is found at once.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Instants:
         self,
         condensed: Condensation,
         rest: Array | None,
-        guesses: States | None,
+        guess: States | None,
         may_hold: Callable[[int], bool],
     ) -> None:
         self._newton, rules = Newton(condensed), condensed.rules
@@ -59,12 +59,12 @@ class Instants:
         self._load, self._shift = np.zeros_like(self._newton.strained), np.zeros_like(rules.gap)
         self._motion, self._intact = np.zeros(condensed.gauge.shape[1]), np.ones_like(rules.gap)
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
-        self._guesses, self._starts = guesses, Starts()
-        if guesses is not None:
-            guesses[rules.smooth] = OPEN
-        self._at_rest: States | None = None
+        self._starts, self._has_guess = Starts(), guess is not None
+        self._guesses: list[States] = []
+        if guess is not None:
+            self._guesses.append(np.where(rules.smooth[:, None], OPEN, guess).astype(np.int8))
         if rest is not None:
-            self._at_rest = rules.states_at(condensed.jump(rest)[condensed.moving])
+            self._guesses.append(rules.states_at(condensed.jump(rest)[condensed.moving]))
         has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
         # Nothing has acted yet: then nothing moves, though a free body might.
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
@@ -125,11 +125,10 @@ class Instants:
         rules, newton = self._rules, self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
         # or slips as a whole.
-        given = [states for states in (self._guesses, self._at_rest) if states is not None]
-        known = [states[:, instant] for states in given]
+        known = [states[:, instant] for states in self._guesses]
         guesses = [self._states, *known]
         # Where there may be several solutions, the one that goes on from the instant before.
-        if self._guesses is not None and self._starts.from_guess and not rules.is_curved:
+        if self._has_guess and self._starts.from_guess and not rules.is_curved:
             guesses[:2] = guesses[1::-1]
         still = np.zeros_like(sides.held)
         nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
