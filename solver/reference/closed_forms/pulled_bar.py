@@ -123,10 +123,15 @@ def pulled_compliant_bar(
 ) -> tuple[float, float]:
     """End displacement of a bar whose support gives way before it slips, and its zone of slip, m.
 
-    With beta the root of the springs' density, N/m^2, over the stiffness ES, N, a zone of length s
-    at the end slips under F = q s + q / (beta tanh(beta (L - s))), and beyond it the bar stands on
-    springs (solver/README.md, 8). The force F, N, has grown from zero, to at most what a bar that
-    slips almost throughout carries; the bound is q = mu p, N/m, the length L, m.
+    With beta the root of the springs' density over ES, a zone of length s at the end slips under
+    F = q s + q / (beta tanh(beta (L - s))), and beyond it the bar stands on springs.
+
+    Parameters
+    ----------
+    force, length, stiffness
+        F, N, grown from zero, at most what a bar that slips almost throughout carries; L, m; ES, N.
+    bound, density
+        q = mu p, N/m; tangential stiffness of the support per length, N/m^2.
     """
     beta = np.sqrt(density / stiffness)
 
@@ -144,9 +149,15 @@ def pulled_changing_bar(
 ) -> float:
     """End displacement where friction changes with slip, under a force grown from zero, m.
 
-    With gamma as in solver/README.md, 14; of a force, N, less than what makes all of the bar slip,
-    and less than q / gamma where it softens. The bound is that before any slip, N/m, the ratio,
-    not 1, the last bound over it, from the slip length, m, on: more than what is returned.
+    Before any point has slipped as far as its friction changes (solver/README.md, 14).
+
+    Parameters
+    ----------
+    force, stiffness
+        F, N: less than what makes all of the bar slip, and than q / gamma where it softens; ES, N.
+    bound, ratio, slip_length
+        q before any slip, N/m; the last bound over it, not 1; and the slip from which on it is the
+        last, m: more than what is returned.
     """
     slope = bound * (ratio - 1.0) / slip_length
     gamma = np.sqrt(abs(slope) / stiffness)
