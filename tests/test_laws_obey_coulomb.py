@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 
 from solver.latin.blocks import Blocks
 from solver.latin.local_stage import LocalStage
-from solver.laws.play import WALK_FROM_POINTS, play
+from solver.laws.play import play
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -103,9 +103,8 @@ def test_without_reach_the_point_follows_and_with_infinite_reach_it_stays(target
     assert not play(target, nothing + np.inf).any()
 
 
-@pytest.mark.parametrize("n_points", [1, 7, WALK_FROM_POINTS - 1, WALK_FROM_POINTS, 200])
+@pytest.mark.parametrize("n_points", [1, 7, 200])
 def test_what_a_point_does_depends_on_no_other(n_points):
-    """Nor on whether its instants are scanned at once or walked through."""
     random = np.random.default_rng(n_points)
     target = random.normal(size=(n_points, 23)).cumsum(axis=1)
     reach = random.uniform(0.0, 2.0, size=n_points)

@@ -17,27 +17,26 @@ if TYPE_CHECKING:
 
 FRICTION_FACTOR = 2.0
 """k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h. Of
-sines and decaying cycles 1 % of friction force takes at most 23 iterations with 1.5 and 2, 19 with
-3, 28 with 1, 43 with 4; and 1e-6 the later the larger it is (measured)."""
+sines and decaying cycles 1 % of friction force takes at most 23 iterations with 2, 28 with 1, 43
+with 4 (measured)."""
 CONTACT_STIFFNESS = 7.0
 """k per area of a contact in the plane, times its length over E. 1 % of the contact force takes 8
-to 14 iterations, whatever the gap and height of the body and from 4 to 64 substructures; with twice
-as much up to 20 (measured)."""
+to 14 iterations, with twice as much up to 20 (measured)."""
 AT_A_POINT = 0.1
-"""k of a point where a spring pulls, over E, for a metre of thickness. On 14 blocks on slopes 1 %
-of the contact force takes 8 to 18 iterations, as many with 0.03, some 26 with 1, and 29 to more
-than 120 with the k of a contact, which keeps the body from sliding (measured)."""
+"""k of a point where a spring pulls, over E, for a metre of thickness. On blocks on slopes 1 % of
+the contact force takes 8 to 18 iterations, and 29 to more than 120 with the k of a contact, which
+keeps the body from sliding (measured)."""
 RESOLVED, FINER = 96.0, 1.0 / 3.0
 """Elements along a support from which its k grows with their number, and to which power: what is
-local is stiffer than the body as a whole. Block of 768 x 384 elements on a parabola: 1e-4 takes 52
-iterations, 104 with a constant k; flat, 53 instead of 62 (measured)."""
+local is stiffer than the body as a whole. Of 768 x 384 elements on a parabola 1e-4 takes 52
+iterations, 104 with a constant k (measured)."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
-"""The tangential k between two bodies over the normal one: layers slide on each other along their
-length. Measured as `SLENDER` is: at most 45 iterations; 76 with half as much, 67 with twice."""
+"""The tangential k between two bodies over the normal one: layers slide along their length. At most
+45 iterations on those of `SLENDER`, 76 with half as much, 67 with twice."""
 SLENDER = 40.0
 """How many times as long as thick two bodies in contact may be before k must be smaller. Of layers
-10 to 1000 times as long as thick 1 % of the contact force takes at most 45 iterations, 54 with
-half, 46 with twice, 82 with four times, more than 150 without (measured)."""
+10 to 1000 times as long as thick 1 % of the contact force takes at most 45 iterations, more than
+150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,12 +47,9 @@ class Rod:
     points. So k of a point is `FRICTION_FACTOR` times the geometric mean of ES/s and ES/h, for
     which neither end is slower than the other, and a row's share of it is by tributary length, so
     that cuts change nothing. Of the n contacts of a strand only those of the broken wire slide far:
-    s is a mean over all of them, and k grows by sqrt(n). For 1 % of the friction force that takes
-    31 iterations instead of 67 with 10 wires, 65 instead of 109 with 20, 147 instead of 191 with
-    40; half and twice as much k takes 49 and 49 with 10, 79 and 75 with 20 (measured, the middle
-    one broken, 40 elements). Where the section varies, ES is that around the point: with ten
-    thousand times more at the load than at the clamp, 1 % of friction force takes 45 iterations,
-    and more than 1500 with the mean.
+    s is a mean over all of them, and k grows by sqrt(n). For 1 % of the friction force of 20 wires
+    that takes 65 iterations instead of 109 (measured). Where the section varies, ES is that around
+    the point.
 
     Attributes
     ----------
@@ -69,8 +65,7 @@ class Rod:
 
     elsewhere: ClassVar[float] = 1.0
     on_cuts: ClassVar[float] = 10.0
-    """Measured with 1 to 50 substructures: 1 % of friction force takes 16 to 17 iterations with 10,
-    16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
+    """1 % of friction force takes 16 to 17 iterations, and 16 to 31 with 1 (measured)."""
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
         """Write the k of an interface into that of all rows, (n_rows,), scaled.
@@ -110,9 +105,7 @@ class Bodies:
     def choose(self, law: Contact, k: Array, parts: float) -> None:
         """Write the k of an interface, as `Rod.choose`.
 
-        A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d: 1 % of
-        the contact force takes 9 and 14 iterations where it is 100 and 1000 times as long as high,
-        15 and 67 without (measured).
+        A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d.
         """
         if len(law.positions) == 1:
             k[law.rows] = AT_A_POINT * self.moduli[0]
@@ -134,10 +127,9 @@ class Bodies:
         """Write the k of two bodies that nowhere slip on each other.
 
         They bend and stretch as one, but for what is as short as they are deep: which resists with
-        E / d per area of the softer, across and along. Layers 200, 500 and 1000 times as long as
-        thick that nowhere slip: 1 % of the contact force takes 13, 9 and 11 iterations with that k
-        from the start, 13, 16 and 16 with a tenth, 43, 53 and 55 with that of `choose`. With a
-        hundred times stiffer ones between them 21, and 59 if each has the k of its own (measured).
+        E / d per area of the softer, across and along. Of layers 200 to 1000 times as long as thick
+        1 % of the contact force takes 9 to 13 iterations, 43 to 55 with the k of `choose`
+        (measured).
         """
         if law.is_on_support:
             return
@@ -156,7 +148,3 @@ class Bodies:
         spacing = length / max(len(law.positions) - 1, 1)
         resolved = min(self.depth / spacing, 1.0)
         return float(np.sqrt(min(SLENDER * self.depth / length * resolved, 1.0)))
-
-
-Around = Rod | Bodies
-"""What k depends on beside the interface itself."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.laws.around import Around, Rod
+from solver.laws.around import Bodies, Rod
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
@@ -109,7 +109,7 @@ class Contact(Interface):
     weights: Array
     tangential: Friction
     normal: Unilateral | None = None
-    around: Around = field(default_factory=Rod)
+    around: Rod | Bodies = field(default_factory=Rod)
     macro: sparse.csr_array | None = None
 
     remembers = True
@@ -157,8 +157,9 @@ class Contact(Interface):
     @property
     def kind(self) -> Hashable:
         """What interfaces have alike that may be treated as one."""
-        springs = self.normal is not None and self.normal.softness is not None
-        return self.tangential.strength, self.is_on_support, self.opens, springs
+        along, across = self.tangential, self.normal and self.normal.softness
+        has = [field is not None for field in (along.cap, along.softness, along.start, across)]
+        return along.strength, self.is_on_support, self.opens, *has
 
     @classmethod
     def concatenated(cls, laws: Sequence[Self]) -> Self:

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array, in_rows
-from solver.laws.interface import Component
+from solver.laws.interface import Component, joined
 from solver.laws.play import Strength
 from solver.refusal import RefusedError, check_range
 
@@ -225,15 +225,15 @@ class Friction:
 
     @classmethod
     def concatenated(cls, laws: Sequence[Friction]) -> Friction:
-        """Laws of one strength put one after the other, all on supports, or none."""
+        """Laws that have the same fields put one after the other, all on supports, or none."""
         return replace(
             laws[0],
             component=Component.concatenated([law.component for law in laws]),
             bound=in_rows([law.bound for law in laws]),
             friction=np.concatenate([law.friction for law in laws]),
-            cap=_joined([law.cap for law in laws], laws, np.inf),
-            softness=_joined([law.softness for law in laws], laws, 0.0),
-            start=_joined([law.start for law in laws], laws, 0.0),
+            cap=joined([law.cap for law in laws]),
+            softness=joined([law.softness for law in laws]),
+            start=joined([law.start for law in laws]),
         )
 
 
@@ -242,16 +242,3 @@ def is_intact(opening: Array, pressing: Array) -> Array:
     noise = OPENED * float(np.abs(opening).max(initial=0.0))
     is_closed = (opening <= noise) | (pressing > 0.0)
     return np.asarray(np.logical_and.accumulate(is_closed, axis=1), dtype=float)
-
-
-def _joined(
-    values: Sequence[Array | None], laws: Sequence[Friction], missing: float
-) -> Array | None:
-    if all(value is None for value in values):
-        return None
-    return np.concatenate(
-        [
-            np.full(len(law.bound), missing) if value is None else value
-            for value, law in zip(values, laws, strict=True)
-        ]
-    )

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple, Protocol, Self
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 
 
 class Component(NamedTuple):
-    """Rows of one component of the jump, shape (n_pairs,) each.
+    """Rows of one component of the jump, (n_pairs,): of the body above, and of that below.
 
-    Attributes
-    ----------
-    above
-        Of the body above.
-    below
-        Of the body below, each opposite its partner; None on a rigid support.
+    Each is opposite its partner; there are none below on a rigid support.
     """
 
     above: Indices
@@ -29,9 +25,8 @@ class Component(NamedTuple):
     @classmethod
     def concatenated(cls, components: Sequence[Component]) -> Component:
         """Rows put one after the other, all on supports, or none."""
-        below = [each.below for each in components if each.below is not None]
         above = np.concatenate([each.above for each in components])
-        return cls(above, np.concatenate(below) if below else None)
+        return cls(above, joined([each.below for each in components]))
 
     def jump(self, field: Array) -> Array:
         """A row field above minus that below, shape (n_pairs, ...)."""
@@ -45,13 +40,7 @@ class Component(NamedTuple):
 
 
 class Springs:
-    """Search directions of a component: springs 1/k on both sides, in series.
-
-    Attributes
-    ----------
-    soft
-        Both added, shape (n_pairs, 1), scaled.
-    """
+    """Search directions of a component, springs of both sides: 1/k in all `soft`, (n_pairs, 1)."""
 
     def __init__(self, component: Component, k: Array) -> None:
         self._above = as_slice(component.above)
@@ -81,16 +70,10 @@ class Springs:
 
 
 class MacroPart(NamedTuple):
-    """Rows whose macro forces are in equilibrium (paper, eq. 1).
+    """Rows (n,) of both sides whose macro forces are in equilibrium (paper, eq. 1).
 
-    Attributes
-    ----------
-    rows
-        Of both sides, shape (n,).
-    basis
-        Shape (n, n_macro), dense or sparse.
-    load
-        Macro force from outside, shape (n_macro, n_instants); None is zero.
+    With their basis, (n, n_macro), and the macro force from outside, (n_macro, n_instants); None is
+    zero.
     """
 
     rows: Indices
@@ -98,15 +81,10 @@ class MacroPart(NamedTuple):
     load: Array | None = None
 
 
-class Rule(Protocol):
-    """A law that is ready for one k: it obeys in the local stage (paper, problem 2.1)."""
-
-    def __call__(self, incoming: Array, displacement: Array, instants: slice, /) -> None:
-        """Write W^ of the interface's rows; what is not of the interface stays.
-
-        From z = W - F/k of all rows, (n_rows, n) of n instants, which `instants` says; all of them
-        where the rule remembers.
-        """
+Rule = Callable[[Array, Array, slice], None]
+"""A law that is ready for one k, in the local stage (paper, problem 2.1): from z = W - F/k of all
+rows, (n_rows, n), it writes W^ of the interface's rows alone into the second, of the same shape.
+The last says which n instants these are; all of them where the law remembers."""
 
 
 class Gaps(NamedTuple):
@@ -158,6 +136,12 @@ class Interface(ABC):
     def acts(self) -> bool:
         """Whether anything is given here that is not zero: load, displacement, overlap."""
         return False
+
+
+def joined(fields: Sequence[NDArray[Any] | None]) -> NDArray[Any] | None:
+    """Fields of pairs put one after the other: of all interfaces, or None of any."""
+    some = [field for field in fields if field is not None]
+    return np.concatenate(some) if some else None
 
 
 def beyond(field: Array, noise: float) -> Array:

@@ -14,7 +14,7 @@ from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, squa
 
 @dataclass(frozen=True)
 class _Given(Interface):
-    """What is given at rows."""
+    """What is given at boundary rows, (n_rows,): values of (n_rows, n_instants), scaled."""
 
     rows: Indices
     values: Array
@@ -31,15 +31,7 @@ class _Given(Interface):
 
 @dataclass(frozen=True)
 class Dirichlet(_Given):
-    """Prescribed displacement.
-
-    Attributes
-    ----------
-    rows
-        Boundary rows, shape (n_rows,).
-    values
-        Displacements, shape (n_rows, n_instants), scaled.
-    """
+    """Prescribed displacement."""
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """W^ is the displacement that is prescribed."""
@@ -57,17 +49,7 @@ class Dirichlet(_Given):
 
 @dataclass(frozen=True)
 class Neumann(_Given):
-    """Prescribed force.
-
-    Attributes
-    ----------
-    rows
-        Boundary rows, shape (n_rows,).
-    values
-        Nodal forces on the body, shape (n_rows, n_instants), scaled.
-    macro
-        Macro basis of the interface, shape (n_rows, n_macro).
-    """
+    """Prescribed nodal forces on the body, with a macro basis of shape (n_rows, n_macro)."""
 
     macro: Array
 
@@ -92,15 +74,7 @@ class Neumann(_Given):
 
 @dataclass(frozen=True)
 class Perfect(Interface):
-    """A glued cut.
-
-    Attributes
-    ----------
-    first, second
-        Boundary rows of the two sides, point by point, shape (n_points,).
-    macro
-        Macro basis of the interface, shape (n_points, n_macro).
-    """
+    """A glued cut: rows of its two sides, (n_points,), and a macro basis, (n_points, n_macro)."""
 
     first: Indices
     second: Indices

@@ -1,8 +1,7 @@
 """The play operator: Coulomb friction pointwise, in closed form (solver/README.md, 2).
 
-A clip of a clip is a clip, so the recursion in time is an associative scan: for few points, blocks
-of instants are composed side by side; for many points, walking in time already keeps the processor
-busy and moves less memory. Where the reach changes with the slip that has gone by, time is walked.
+A clip of a clip is a clip, so the recursion in time is an associative scan: blocks of instants are
+composed side by side. Where the reach changes with the slip that has gone by, time is walked.
 """
 
 from __future__ import annotations
@@ -13,9 +12,6 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.refusal import RefusedError
-
-WALK_FROM_POINTS = 150
-"""From this many points on, the walk beats the scan (measured: between 60 and 211)."""
 
 
 def play(target: Array, reach: Array) -> Array:
@@ -37,45 +33,15 @@ def play(target: Array, reach: Array) -> Array:
     return result
 
 
-def Play(  # noqa: N802  # chooses a class, as one
-    n_points: int, n_times: int, start: Array | None = None
-) -> _Walk | _Scan:
-    """Prepare the play operator for a size: its memory is allocated once, here.
+class Play:
+    """The play operator for one size: compose inside all blocks, carry across, apply.
 
-    It begins at `start`, shape (n_points,), or at zero. Calling the result as `play(target,
-    reach)`, with reach of shape (n_points, n_times) or (n_points, 1), gives an array that the next
-    call overwrites.
-    """
-    few = n_points < WALK_FROM_POINTS and n_times > 1
-    first = 0.0 if start is None else start
-    return _Scan(n_points, n_times, first) if few else _Walk(n_points, n_times, first)
-
-
-class _Walk:
-    """One instant after the other."""
-
-    def __init__(self, n_points: int, n_times: int, start: Array | float) -> None:
-        self._low, self._high, self._position = np.zeros((3, n_times, n_points))
-        before = [start, *self._position[:-1]]
-        self._steps = list(zip(before, self._low, self._high, self._position, strict=True))
-
-    def __call__(self, target: Array, reach: Array) -> Array:
-        np.subtract(target, reach, out=self._low.T)
-        np.add(target, reach, out=self._high.T)
-        for before, low, high, position in self._steps:
-            np.maximum(before, low, out=position)
-            np.minimum(position, high, out=position)
-        return self._position.T
-
-
-class _Scan:
-    """Blocks of instants side by side: compose inside all blocks, carry across, apply.
-
-    `composed[j, 0]` and `composed[j, 1]` are the clip of the first j + 1 instants of every block:
-    what the block makes of a point that enters it far below, or far above.
+    It begins at `start`, shape (n_points,), or at zero. `composed[j, 0]` and `composed[j, 1]` are
+    the clip of the first j + 1 instants of every block: what the block makes of a point that enters
+    it far below, or far above.
     """
 
-    def __init__(self, n_points: int, n_times: int, start: Array | float) -> None:
+    def __init__(self, n_points: int, n_times: int, start: Array | None = None) -> None:
         size = max(2, round(0.5 * np.sqrt(n_times)))
         blocks = -(-n_times // size)
         self._limits = np.zeros((2, blocks, size, n_points))
@@ -87,7 +53,7 @@ class _Scan:
             for j in range(1, size)
         ]
         entry = np.zeros((blocks + 1, n_points))
-        entry[0] = start
+        entry[0] = 0.0 if start is None else start
         last_low, last_high = self._composed[-1]
         self._carries = list(zip(entry[:-1], last_low, last_high, entry[1:], strict=True))
         self._entry = entry[:-1, None]
@@ -95,6 +61,7 @@ class _Scan:
         self._result = self._position.reshape(-1, n_points)[:n_times]
 
     def __call__(self, target: Array, reach: Array) -> Array:
+        """Follow a target, with reach (n_points, n_times or 1); the next call overwrites it."""
         np.subtract(target, reach, out=self._low.T)
         np.add(target, reach, out=self._high.T)
         self._composed[0] = self._limits[:, :, 0]

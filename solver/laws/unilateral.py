@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction import Friction
-from solver.laws.interface import Component, Springs
+from solver.laws.interface import Component, Springs, joined
 from solver.laws.play import Play, follow
 
 
@@ -38,11 +38,9 @@ class Unilateral:
     softness: Array | None = None
 
     def opening(self, displacement: Array, force: Array) -> Array:
-        """Distance of the two sides, the spring's compression added, from W and F of all rows.
+        """Distance of the sides and compression of the spring, (n_pairs, n_instants), scaled.
 
-        Returns
-        -------
-        Shape (n_pairs, n_instants), scaled.
+        From W and F of all rows, (n_rows, n_instants).
         """
         opening = self.component.jump(displacement) + self.gap[:, None]
         if self.softness is not None:
@@ -52,11 +50,10 @@ class Unilateral:
     @classmethod
     def concatenated(cls, laws: Sequence[Unilateral]) -> Unilateral:
         """Laws put one after the other, all on supports, or none; all with a spring, or none."""
-        softness = [law.softness for law in laws if law.softness is not None]
         return cls(
             component=Component.concatenated([law.component for law in laws]),
             gap=np.concatenate([law.gap for law in laws]),
-            softness=np.concatenate(softness) if softness else None,
+            softness=joined([law.softness for law in laws]),
         )
 
 

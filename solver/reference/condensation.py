@@ -2,13 +2,9 @@
 
 With J the jumps of the displacement (above minus below), the structure answers to contact forces
 f by K u = F + J' f. Its displacement is u = T j + Z a (`solver.reference.glued`): with jumps j, and
-a of the structure glued at its contacts, which is in equilibrium whatever they are. So
-
-    S jump = f + q,    S = T' K T - T' K Z (Z' K Z)^-1 Z' K T,
-    q = T' (F - K Z (Z' K Z)^-1 Z' F),
-
-which needs no more than that the structure, glued at its contacts, is held. Jumps and forces are
-stacked as `Problem.sum_of_contact` says.
+a of the structure glued at its contacts. So S jump = f + q (solver/README.md, 6), which needs no
+more than that the structure, glued at its contacts, is held. Jumps and forces are stacked as
+`Problem.sum_of_contact` says.
 
 Three things are kept apart, as they may differ by any number of digits:
 
@@ -62,10 +58,7 @@ class NoReferenceError(ValueError):
 
 
 class Condensation:
-    """The structure between its contacts.
-
-    Jumps that follow from prescribed displacements alone are no unknowns: the forces there go
-    into the supports.
+    """The structure between its contacts, without jumps that prescribed displacements make alone.
 
     Attributes
     ----------
@@ -213,10 +206,9 @@ class Condensation:
     def rounding(self, deformation: Array, motion: Array, size: float) -> float:
         """Bound what rounding alone may leave out of balance at any instant, scaled.
 
-        The forces inside a slender body are far larger than what acts on it; and what they were
-        once stays in the places where its contacts stick. How far a body has moved says where a
-        spring ends, too, and what closes: but there rounding of the rigid motion deforms the body,
-        and where that makes more than a small share of the largest force, `size`, these are lost.
+        The forces inside a slender body are far larger than what acts on it. How far a body has
+        moved says where a spring ends, too, and what closes: there rounding of the rigid motion
+        deforms the body, by no more than a small share of the largest force, `size`.
         """
         inside = abs(self._whole) @ np.abs(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))

@@ -1,9 +1,5 @@
 """The incremental reference where contacts open or two sides rub: instant by instant, exact.
 
-The structure is condensed onto the jumps of its contacts once, for all instants together. Then
-every instant seeks the states of the jumps (`solver.reference.instants`), and is judged by how far
-it is from equilibrium and laws.
-
 In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the laws of
 LATIN: friction opposes the increment of the tangential jump.
 """
@@ -27,9 +23,7 @@ from solver.reference.rules import Increment, Rules, States
 from solver.reference.solution import Interrupted, Reference
 
 MOST_JUMPS = 13_000
-"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB. 12 935 of
-200 wires, of which few slip at a time, take 18 s; 3700 of 20 layers, of which a third does, 30
-s."""
+"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB."""
 
 
 class IncrementalContact:
@@ -43,11 +37,8 @@ class IncrementalContact:
     is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
     its motion; at rest it is taken as zero.
 
-    Raises
-    ------
-    NoReferenceError
-        If there are more than `MOST_JUMPS` jumps, or the structure can move with all contacts
-        closed and stuck.
+    NoReferenceError is raised if there are more than `MOST_JUMPS` jumps, or the structure can move
+    with all contacts closed and stuck.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -80,16 +71,11 @@ class IncrementalContact:
             Linear systems to solve; the instants that are not reached then do not move, and are
             not `converged`.
         stop
-            Called once per instant.
-
-        Raises
-        ------
-        Interrupted
-            As soon as `stop` returns True.
+            Called once per instant; `Interrupted` is raised as soon as it returns True.
         """
         problem, condensed = self._problem, self._condensed
-        guesses = None if guess is None else guess[condensed.moving]
-        instants = Instants(condensed, problem.rest, guesses, self._may_hold)
+        own = None if guess is None else guess[condensed.moving]
+        instants = Instants(condensed, problem.rest, own, self._may_hold)
         sizes = (len(condensed.moving),) * 2 + condensed.gauge.shape
         done = Increment(*(np.zeros((size, problem.n_instants)) for size in sizes))
         turned, reached = np.zeros((2, problem.n_instants), dtype=bool)
@@ -99,7 +85,7 @@ class IncrementalContact:
             if most is not None and instants.system.solutions >= most:
                 break
             for field, values in zip(done, instants(instant), strict=True):
-                field[:, instant] = values[:, 0]
+                field[:, instant] = values
             turned[instant], reached[instant] = instants.system.turned, True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
@@ -169,13 +155,11 @@ def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Arra
     slip = np.diff(jumps, axis=1, prepend=0.0)
     bound = rules.bounds(forces, slip)
     forces[given] = (-bound * np.sign(slip))[given]
-    for number, strength in enumerate(rules.strengths):
-        springy = given & (rules.compliance > 0.0) & (rules.strength == number)
-        if not springy.any():
-            continue
+    springy = given & (rules.compliance > 0.0)
+    if springy.any():
         soft, jump = rules.compliance[springy, None], jumps[springy]
         reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[springy]
-        slider = play(jump, reach) if number == 0 else follow(jump, reach, strength)
+        slider = follow(jump, reach, rules.strength) if rules.ages else play(jump, reach)
         forces[springy] = (slider - jump) / soft
     return forces
 

@@ -16,11 +16,9 @@ from solver.reference.rules import Rules, rules_of
 
 VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
-
-
 LEAST_SHARE = 0.01
-"""Share of pressure and friction together that each of them counts as, at least: a friction that is
-next to nothing beside the pressure that it comes from has no digits that a run could find."""
+"""Share of pressure and friction together that each of them counts as, at least: friction that is
+next to nothing beside pressure has no digits that a run could find."""
 ELASTIC = 1e-4
 """Share of the forces inside elements that counts like a contact force: they leave so much more
 rounding. In slender bodies they are 1e5 times what acts on them."""
@@ -42,18 +40,9 @@ class Distance:
     """Relative L2 distance over space and time to a reference on the same mesh and instants.
 
     Displacements are compared at interfaces. Where the reference field vanishes, the distance is
-    relative to `load` instead, and absolute if that vanishes too; contact forces vanish also if
-    they are but rounding beside what friction could carry and beside the load. Both are compared
-    where they are determinate.
-
-    Parameters
-    ----------
-    reference
-        The fields that count as true.
-    problem
-        Which they are of.
-    load
-        Forces that act on the structure, shape (n, n_instants), N.
+    relative to `load`, (n, n_instants), N, instead, and absolute if that vanishes too; contact
+    forces vanish also if they are but rounding beside what friction could carry and beside the
+    load. Both are compared where they are determinate.
 
     Attributes
     ----------
@@ -129,13 +118,7 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
 
     A body that contact alone holds may lie anywhere along a rigid motion that neither goes against
     a contact that presses nor rubs: without friction, on level ground. Until contacts first carry
-    anything it is at rest.
-
-    Parameters
-    ----------
-    problem, contact_force
-        The problem, and a solution of it: stacked as `Problem.sum_of_contact` says, of shape
-        (n_forces, n_instants), N.
+    anything it is at rest. Forces are stacked, (n_forces, n_instants), N.
     """
     held = np.ones(problem.n_instants, dtype=bool)
     if problem.motions is None:
@@ -179,19 +162,9 @@ def determinate_forces(problem: Problem) -> Flags:
 def kkt_residual(fields: Fields, problem: Problem) -> float:
     """Largest violation of equilibrium and laws, as a share of the forces in play.
 
-    By the equations alone, at every instant, however the fields were found.
-
-    Parameters
-    ----------
-    fields
-        Displacement and contact force, SI.
-    problem
-        Whose equations they should obey.
-
-    Returns
-    -------
-    Relative to the largest contact force, or to a small share of what the displacement alone makes
-    of forces inside elements, which rounding is a share of; and to the load where all vanish.
+    By the equations alone, at every instant, however the fields were found: relative to the largest
+    contact force, or to a small share of what the displacement makes of forces inside elements,
+    which rounding is a share of; and to the load where all vanish.
     """
     displacement = fields.displacement / problem.scales.displacement
     force = fields.contact_force / problem.scales.force

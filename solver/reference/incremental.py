@@ -51,8 +51,7 @@ class IncrementalRod:
 
     A point whose displacement is prescribed may rub too. Where it moves, its friction force is
     -r sign(v). Where it stands still, only the sum of friction force and reaction is determinate:
-    the friction force is taken as zero. LATIN shares the sum in a way that depends on k and on
-    the decomposition (measured, once the whole bar slides), so compare no force there.
+    the friction force is taken as zero.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -149,7 +148,7 @@ class IncrementalRod:
             least.increment[self._fixed] = move
             if rules.ages:
                 slipped = gone + np.abs(least.increment)
-                bound *= self._on_dofs(rules.factor(slipped[self._dofs]))
+                bound *= self._on_dofs(rules.strength(slipped[self._dofs]))
             least.pull[self._fixed] = bound[self._fixed] * np.sign(move)
         return least
 
@@ -164,15 +163,17 @@ class IncrementalRod:
         """
         rules, movable, dofs, end = self._rules, self._movable, self._dofs, gone
         for _ in range(TRIALS):
-            factor, slope = rules.factor(end[dofs]), rules.growth(end[dofs])
+            factor, slope = rules.strength(end[dofs]), rules.strength.slope(end[dofs])
             slope = first * self._on_dofs(slope) * movable
             bound = (first * self._on_dofs(factor) - slope * (end - gone)) * movable
             search = Search(self._stiffness.stiffened(slope), bound, movable)
             try:
                 least = search(force, status * search.rubs)
                 reached = gone + np.abs(least.increment)
-                if np.array_equal(rules.segment(end[dofs]), rules.segment(reached[dofs])):
-                    growth = self._on_dofs(rules.lowest_growth(gone[dofs], reached[dofs]))
+                if np.array_equal(
+                    rules.strength.segment(end[dofs]), rules.strength.segment(reached[dofs])
+                ):
+                    growth = self._on_dofs(rules.strength.lowest_slope(gone[dofs], reached[dofs]))
                     softest = self._stiffness.stiffened(first * growth * movable)
                     slips = movable * (least.increment != 0.0)
                     softest.solve_kept(slips, np.zeros_like(force))

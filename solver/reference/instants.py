@@ -1,17 +1,14 @@
 """Frictional contact through time, each instant from the states of the one before.
 
-Where Newton's method cycles, springs lead loose bodies home (`solver.reference.proximal`), or
-following the solution down from large pressure finds it (`solver.reference.unloading`). Where
-friction softens an instant may have several solutions: the one that goes on from the instant before
-is followed while the load of the instant grows, in steps so small that between their ends no other
-branches off.
+Where friction softens an instant may have several solutions: the one that goes on from the instant
+before is followed while the load of the instant grows, in steps so small that between their ends no
+other branches off.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -20,7 +17,6 @@ from solver.arrays import Array, at_instant
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
-from solver.reference.proximal import approach
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, Starts, States
 
 PASSES = 30
@@ -36,9 +32,9 @@ SLIDES = 100
 class Instants:
     """Jumps and forces of a condensed structure, one instant after the other.
 
-    `rest` is a displacement from which contacts may
-    be guessed, (n_dofs, n_instants), and `guesses` are states to try, (n, n_instants). `may_hold`
-    says whether there may be an equilibrium at an instant, where none is found at once.
+    `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants), and `guess`
+    are states to try, (n, n_instants). `may_hold` says whether there may be an equilibrium at an
+    instant, where none is found at once.
 
     Attributes
     ----------
@@ -52,7 +48,7 @@ class Instants:
         self,
         condensed: Condensation,
         rest: Array | None,
-        guesses: States | None,
+        guess: States | None,
         may_hold: Callable[[int], bool],
     ) -> None:
         self._newton, rules = Newton(condensed), condensed.rules
@@ -63,12 +59,12 @@ class Instants:
         self._load, self._shift = np.zeros_like(self._newton.strained), np.zeros_like(rules.gap)
         self._motion, self._intact = np.zeros(condensed.gauge.shape[1]), np.ones_like(rules.gap)
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
-        self._guesses, self._starts = guesses, Starts()
-        if guesses is not None:
-            guesses[rules.smooth] = OPEN
-        self._at_rest: States | None = None
+        self._starts, self._has_guess = Starts(), guess is not None
+        self._guesses: list[States] = []
+        if guess is not None:
+            self._guesses.append(np.where(rules.smooth[:, None], OPEN, guess).astype(np.int8))
         if rest is not None:
-            self._at_rest = rules.states_at(condensed.jump(rest)[condensed.moving])
+            self._guesses.append(rules.states_at(condensed.jump(rest)[condensed.moving]))
         has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
         # Nothing has acted yet: then nothing moves, though a free body might.
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
@@ -82,24 +78,24 @@ class Instants:
         condensed, rules = self._condensed, self._rules
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
-            return Increment(*(np.zeros((len(field), 1)) for field in still))
+            return Increment(*map(np.zeros_like, still))
         load = condensed.load[:, instant] - self._load - self.system.on_base(self._force)
         before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         held = before - np.where(rules.normal, self._opening, 0.0)
-        step = self._together(Sides(load[:, None], self._bound(instant), held[:, None]), instant)
+        step = self._together(Sides(load, self._bound(instant), held), instant)
         self._load, self._shift = condensed.load[:, instant], condensed.shift[:, instant]
-        slip, self._force = step.jump[:, 0] - before, step.force[:, 0]
+        slip, self._force = step.jump - before, step.force
         self._opening += slip
         self._newton.gone += np.abs(slip)
-        self._newton.strained += step.strained[:, 0]
-        self._motion += step.motion[:, 0]
+        self._newton.strained += step.strained
+        self._motion += step.motion
         opened = self._states[rules.partner[rules.bonds]] == OPEN
         self._intact[rules.bonds[opened]] = 0.0
-        return step._replace(jump=slip[:, None])
+        return step._replace(jump=slip)
 
     def _bound(self, instant: int) -> Array:
-        """Friction force that needs no pressing one, where no bond is broken yet, (n, 1)."""
-        return at_instant(self._rules.bound, instant) * self._intact[:, None]
+        """Friction force that needs no pressing one, where no bond is broken yet, (n,)."""
+        return at_instant(self._rules.bound, instant)[:, 0] * self._intact
 
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
@@ -109,41 +105,39 @@ class Instants:
             solved = self._solved(sides, instant)
             if solved is None:
                 # All contacts stay where they are.
-                held = sides.held + (self._rules.normal * self._opening)[:, None]
+                held = sides.held + self._rules.normal * self._opening
                 return self.system(np.full_like(self._states, HELD), replace(sides, held=held))
             self._states, step, _ = solved
             if not stresses.size:
                 break
             given = condensed.given[condensed.moving[condensed.base], instant]
             moved = self._newton.strained + condensed.gauge @ self._motion - given
-            moved += step.strained[:, 0] + condensed.gauge @ step.motion[:, 0]
+            moved += step.strained + condensed.gauge @ step.motion
             pull = condensed.tie * (stresses @ (stresses.T @ moved))
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest:
                 break
-            sides = replace(sides, load=sides.load - pull[:, None])
+            sides = replace(sides, load=sides.load - pull)
         self._starts.took(self.system.solutions - done, from_guess=from_guess)
         return step
 
     def _solved(self, sides: Sides, instant: int) -> InstantSolution | None:
         """Find the states of the jumps and the step, or None."""
-        condensed, rules, newton = self._condensed, self._rules, self._newton
+        rules, newton = self._rules, self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
         # or slips as a whole.
-        given = [states for states in (self._guesses, self._at_rest) if states is not None]
-        known = [states[:, instant] for states in given]
+        known = [states[:, instant] for states in self._guesses]
         guesses = [self._states, *known]
         # Where there may be several solutions, the one that goes on from the instant before.
-        if self._guesses is not None and self._starts.from_guess and not rules.is_curved:
+        if self._has_guess and self._starts.from_guess and not rules.is_curved:
             guesses[:2] = guesses[1::-1]
         still = np.zeros_like(sides.held)
-        nothing = Increment(still, self._force[:, None], still[: len(sides.load)], still[:0])
-        begin = InstantSolution(self._states, nothing, still[:, 0])
+        nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
+        begin = InstantSolution(self._states, nothing, still)
         solved = newton.follow(begin, sides, guesses)
         if solved is None and rules.is_curved:
             solved = self._in_parts(begin, sides, known, instant)
         elif solved is None and not self._is_lost and self._may_hold(instant):
-            steps = approach(condensed, self._states, sides, partial(newton.seek, near=begin))
-            solved = newton.follow(begin, sides, steps) or newton.unload(begin, sides)
+            solved = newton.follow(begin, sides, newton.approach(begin, sides))
         self._is_lost = self._is_lost or solved is None
         return solved
 
@@ -154,8 +148,8 @@ class Instants:
         rules, force = self._rules, self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
         # Under these nothing is added to the instant before.
-        pulled = -self.system.on_base(force)[:, None]
-        begin = Sides(pulled, self._bound(max(instant - 1, 0)), held[:, None])
+        pulled = -self.system.on_base(force)
+        begin = Sides(pulled, self._bound(max(instant - 1, 0)), held)
         share, length = 0.0, 0.25
         while share < 1.0:
             target = min(share + length, 1.0)
@@ -181,12 +175,12 @@ class Instants:
         friction alone comes to is the last resort.
         """
         gone = self._newton.gone
-        lefts = (self._rules.factor(gone + np.abs(at.slip)) for _ in range(SLIDES))
-        last = self._rules.factor(np.full_like(gone, np.inf))
+        lefts = (self._rules.strength(gone + np.abs(at.slip)) for _ in range(SLIDES))
+        last = self._rules.strength(np.full_like(gone, np.inf))
         for factor in chain(lefts, [last]):
             before, newton = at.states, self._newton.with_friction_left(factor)
-            given = replace(sides, bound=sides.bound * factor[:, None])
-            slid = newton.follow(at, given, [before, *known]) or newton.unload(at, given)
+            given = replace(sides, bound=sides.bound * factor)
+            slid = newton.follow(at, given, [before, *known])
             if slid is None:
                 return None
             at = slid

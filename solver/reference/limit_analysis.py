@@ -69,10 +69,10 @@ def collapse_of(problem: Problem) -> Collapse | None:
     every = sparse.eye_array(size, format="csr")
     along, under = every[rubs], every[rules.partner[rubs]]
     # Slip may harden: what friction can ever carry is a bound whatever has slipped.
-    strongest = np.array([max(one.factors) for one in rules.strengths])[rules.strength[rubs]]
+    strongest = max(rules.strength.factors)
     across = sparse.diags_array(strongest * rules.friction[rubs]) @ under
     caps = np.flatnonzero(np.isfinite(rules.cap[rubs]))
-    capped = np.tile((strongest * rules.cap[rubs])[caps], 2) / unit
+    capped = np.tile(strongest * rules.cap[rubs][caps], 2) / unit
     cone = sparse.vstack([along - across, -along - across, along[caps], -along[caps]])
     none = sparse.csr_array((cone.shape[0], 1))
     lows = np.where(rules.normal, 0.0, -np.inf)

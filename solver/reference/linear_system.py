@@ -25,13 +25,12 @@ FEW = 4
 class LinearSystem:
     """The linear system of given states; the last factorisation is kept.
 
-    It is that of a condensed structure, or of one that springs hold, with another stiffness and
-    gauge.
+    The stiffness and gauge are those of the condensed structure, or others where springs hold it.
 
     Attributes
     ----------
     unit
-        Stiffness of every jump alone, with what is in series, shape (n, 1), scaled.
+        Stiffness of every jump alone, with what is in series, shape (n,), scaled.
     friction
         Coefficient mu of each jump, shape (n,).
     solutions
@@ -41,28 +40,26 @@ class LinearSystem:
     turned
         Whether the determinant of the last one is negative. That of a convex problem never is,
         and the signs at all solutions of an instant add up to one: so it has others.
-    singular
-        Whether the last one left a motion free; then its smallest solution is given.
     """
 
     def __init__(self, condensed: Condensation, stiffness: Array, gauge: Array) -> None:
         self._stiffness, self._gauge, rules = stiffness, gauge, condensed.rules
         self._partner, self.friction = rules.partner, rules.friction
         self._growth = np.zeros_like(rules.friction)
-        self._base, self._soft = condensed.base, rules.compliance[:, None]
+        self._base, self._soft = condensed.base, rules.compliance
         self._base_rows = as_slice(condensed.base)
         self._others: Indices = np.setdiff1d(np.arange(len(rules.gap)), self._base)
         self._ties = condensed.ties.toarray() if len(self._others) else None
         self._of_unknowns = self._forces_of_unknowns()
         alone = abs(condensed.ties) @ np.diagonal(self._stiffness)
-        self.unit: Array = (alone / (1.0 + alone * rules.compliance))[:, None]
+        self.unit: Array = alone / (1.0 + alone * rules.compliance)
         self._alone = np.diagonal(self._stiffness)
         self._pulls_of_gauge = self._of_unknowns[:, : len(self._base)] @ self._gauge
         self._is_plain = not self._soft.any() and not self._gauge.size
         self._states: States | None = None
         self._factors: Factors
         self.solutions = 0
-        self.unbalanced, self.turned, self.singular = 0.0, False, False
+        self.unbalanced, self.turned = 0.0, False
 
     def _forces_of_unknowns(self) -> Array:
         """Forces of all jumps by y and forces of jumps that follow from others, (n, n)."""
@@ -86,7 +83,7 @@ class LinearSystem:
         self.solutions += 1
         rows, kept, sprung = self._rows, self._kept, self._sprung
         n_base, n_free, n_rows = len(self._base), len(self._free), len(rows)
-        unknown = np.zeros((len(self._of_unknowns), sides.load.shape[1]))
+        unknown = np.zeros(len(self._of_unknowns))
         unknown[kept] = sides.held[self._base[kept]]
         stays = self._forces(unknown, kept)
         stays[self._base_rows] -= sides.load
@@ -126,7 +123,7 @@ class LinearSystem:
         symmetric, is read at the `rows` of what does, if these are not at hand.
         """
         if rows is None:
-            places = places[unknown[places].any(axis=1)]
+            places = places[unknown[places] != 0.0]
             if self._ties is not None or len(places) * FEW > len(unknown):
                 alone = np.zeros_like(unknown)
                 alone[places] = unknown[places]
@@ -159,23 +156,22 @@ class LinearSystem:
         """Force that rounding of a rigid motion may make at every jump, shape (n,)."""
         if self._is_plain:
             return np.zeros(1)
-        moved = self._jump(np.zeros((len(self._base), 1)), motion)
-        return np.asarray(ROUNDING * self.unit * np.abs(moved))[:, 0]
+        moved = self._jump(np.zeros(len(self._base)), motion)
+        return np.asarray(ROUNDING * self.unit * np.abs(moved))
 
     def _factor(self, states: States) -> None:
         self._states = states.copy()
-        is_free = (states != HELD) | (self._soft[:, 0] > 0.0)
+        is_free = (states != HELD) | (self._soft > 0.0)
         self._free: Indices = np.flatnonzero(is_free[self._base])
         self._kept: Indices = np.flatnonzero(~is_free[self._base])
         rows = np.concatenate([self._base[self._free], self._others])
         self._rows, of_rows = rows, states[rows]
         self._sprung: Indices = np.flatnonzero(of_rows == HELD)
-        way = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
-        slope = way * self.friction[rows]
-        self._stiffer = (np.abs(way) * self._growth[rows])[:, None]
+        self._way = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
+        self._slope = slope = self._way * self.friction[rows]
+        self._stiffer = np.abs(self._way) * self._growth[rows]
         self._grows = bool(self._stiffer.any())
         self._under: Indices = self._partner[rows]
-        self._way, self._slope = way[:, None], slope[:, None]
         others = np.arange(len(self._base), len(self._of_unknowns))
         unknowns = self._unknowns = np.concatenate([self._free, others])
         is_few = self._ties is None and len(rows) * FEW <= len(self._stiffness)
@@ -184,19 +180,19 @@ class LinearSystem:
         # A spring in series lengthens the slip by its force over its stiffness.
         self._share_of_own = 1.0 + self._stiffer * self._soft[rows]
         if self._grows:
-            matrix *= self._share_of_own
+            matrix *= self._share_of_own[:, None]
         tied = np.flatnonzero(slope)
         if len(tied):
             under = self._of_unknowns[np.ix_(self._under[tied], unknowns)]
             matrix[tied] += slope[tied, None] * under
         if self._grows:
             self._slips = self._jumps_of(rows)
-            matrix[:, : len(self._free)] += self._stiffer * self._slips[:, self._free]
+            matrix[:, : len(self._free)] += self._stiffer[:, None] * self._slips[:, self._free]
         if not self._is_plain:
             matrix = self._with_motions(matrix)
         least = LOOSE * float(self.unit.max(initial=0.0)) if self._is_plain else 0.0
         self._factors = Factors(matrix, least, scaled=not self._is_plain)
-        self.turned, self.singular = self._factors.turned, self._factors.singular
+        self.turned = self._factors.turned
 
     def _with_motions(self, forces: Array) -> Array:
         """All equations: what is in series comes to its end, and y is chosen."""
@@ -207,18 +203,20 @@ class LinearSystem:
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
         if gauge.size:
-            pulls = self._share_of_own * self._pulls_of_motions(self._rows)
+            pulls = self._share_of_own[:, None] * self._pulls_of_motions(self._rows)
             tied = np.flatnonzero(self._slope)
-            pulls[tied] += self._slope[tied] * self._pulls_of_motions(self._under[tied])
+            pulls[tied] += self._slope[tied, None] * self._pulls_of_motions(self._under[tied])
             matrix[:n_rows, n_rows:] = pulls
             if self._grows:
-                matrix[:n_rows, n_rows:] += self._stiffer * (self._slips[:, free] @ gauge[free])
+                slid = self._slips[:, free] @ gauge[free]
+                matrix[:n_rows, n_rows:] += self._stiffer[:, None] * slid
         if len(sprung):
             come = self._come = self._jumps_of(held)
-            soft, size = self._soft[held], (len(held), len(self._others))
-            self._share = 1.0 / (1.0 + soft)
+            soft, size = self._soft[held, None], (len(held), len(self._others))
+            share = 1.0 / (1.0 + soft)
             moved = [come[:, free], np.zeros(size), come[:, free] @ gauge[free]]
-            matrix[sprung] = self._share * (soft * matrix[sprung] + np.hstack(moved))
+            matrix[sprung] = share * (soft * matrix[sprung] + np.hstack(moved))
+            self._share = share[:, 0]
         matrix[n_rows:, :n_free] = -gauge[free].T
         matrix[n_rows:, n_rows:] = kept.T @ kept
         return matrix
@@ -272,16 +270,16 @@ class Factors:
         self.singular = bool(sizes.min(initial=np.inf) <= least)
 
     def solve(self, right: Array) -> Array:
-        """Solve A x = b, b of shape (n, k); where A is singular, by the least x that fits best."""
+        """Solve A x = b, b of shape (n,); where A is singular, by the least x that fits best."""
         if not len(right):
             return right
         if not self._scaled:
             return self._solve(right)
-        right = self._rows[:, None] * right
+        right = self._rows * right
         solution = self._solve(right)
         if not self.singular:
             solution += self._solve(right - self._matrix @ solution)
-        return np.asarray(self._columns[:, None] * solution)
+        return np.asarray(self._columns * solution)
 
     def _solve(self, right: Array) -> Array:
         if self.singular:

@@ -5,16 +5,23 @@ coupled to the normal force), and correct the states by what it shows (Alart and
 Methods Appl. Mech. Eng. 92, 1991). Exact once they repeat. The bound (r + mu f_n) g(s) of a slip s
 is taken by its tangent, which adds its growth per slip to the stiffness where contacts slip
 (solver/README.md, 14).
+
+From afar the states may cycle, above all where bodies hang loose, as they may go anywhere. With
+springs at all jumps that are relaxed where the last solution came to, none is loose: that is the
+proximal point method (Rockafellar, SIAM J. Control Optim. 14, 1976). Its steps are short, and where
+they come to rest the springs carry nothing. They are softened from step to step, until the states
+hold without them (solver/README.md, 6).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from copy import copy
 from dataclasses import replace
 
 import numpy as np
 from numpy.linalg import LinAlgError
+from scipy import sparse
 from scipy.linalg import cholesky
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
@@ -22,7 +29,6 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
-from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
 """Newton steps from one guess of the states; more than a dozen means that they cycle."""
@@ -30,6 +36,14 @@ CONVERGED = 1e-9
 """Relative KKT residual up to which an instant counts as solved, where rounding allows it."""
 SETTLED = 1e-12
 """Share of the largest force by which friction may differ from its law."""
+FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
+"""Springs, as shares of the stiffness of each jump alone."""
+SOFTER, STIFFER = 0.5, 10.0
+"""Factors on them after a step, and where Newton's method cycles in spite of them."""
+STEPS = 60
+"""Steps at most; up to 20 are seen where there is a solution."""
+MOST_JUMPS = 4000
+"""Jumps up to which springs are tried: that keeps two more matrices of their size."""
 _HELD, _OPEN = np.int8(HELD), np.int8(OPEN)
 
 
@@ -74,10 +88,30 @@ class Newton:
                 return reached
         return None
 
-    def unload(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
-        """Come down from large pressure, None where that leads nowhere."""
-        states = unload(self.system, self._rules, sides)
-        return None if states is None else self.seek(self.system, states, sides, at)
+    def approach(self, at: InstantSolution, sides: Sides) -> Iterator[States]:
+        """States that have come to rest with softer and softer springs, from those of a solution.
+
+        None where there are too many jumps.
+        """
+        condensed, states, share = self._condensed, at.states, FIRST
+        if len(condensed.stiffness) > MOST_JUMPS:
+            return
+        alone, moved = np.diagonal(condensed.stiffness), np.zeros_like(sides.load)
+        for _ in range(STEPS):
+            springs = share * alone
+            held = condensed.elastic + np.diagflat(springs)
+            sprung = LinearSystem(condensed, held, condensed.gauge[:, :0])
+            pulled = replace(sides, load=sides.load + springs * moved)
+            solved = self.seek(sprung, states, pulled, at)
+            if solved is not None:
+                before, states, moved = states, solved.states, solved.step.strained
+                share = max(SOFTER * share, SOFTEST)
+                if np.array_equal(states, before):
+                    yield states
+            elif share < STIFFEST:
+                share *= STIFFER
+            else:
+                return
 
     def stable(self, near: InstantSolution, sides: Sides) -> InstantSolution | None:
         """The solution near what is none yet, or None where it is not stable."""
@@ -95,7 +129,7 @@ class Newton:
             if rules.is_curved:
                 slip = np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
                 tangent, is_capped = self._linearised(slip, force, sides)
-                piece += rules.segment(self.gone + slip).tobytes() + is_capped.tobytes()
+                piece += rules.strength.segment(self.gone + slip).tobytes() + is_capped.tobytes()
             if piece in pieces and not (rules.is_curved and piece == pieces[-1]):
                 return None
             pieces.append(piece)
@@ -104,7 +138,7 @@ class Newton:
             self.system.solutions += system is not self.system
             corrected = self._corrected(states, step, tangent)
             if self._condensed.rules.is_curved:
-                slip = np.where(rules.normal, 0.0, (step.jump - sides.held)[:, 0])
+                slip = np.where(rules.normal, 0.0, step.jump - sides.held)
             force, reached = step.force, InstantSolution(states, step, slip)
             if np.array_equal(corrected, states) and self._obeys(system, reached, sides):
                 return reached
@@ -116,23 +150,23 @@ class Newton:
 
         And where it is capped.
         """
-        rules, most = self._rules, self._rules.before_slip(sides.bound, force)[:, 0]
-        is_capped, factor = most >= rules.cap, rules.factor(self.gone + slip)
-        grows = rules.growth(self.gone + slip) * most
+        rules, most = self._rules, self._rules.before_slip(sides.bound, force)
+        is_capped, factor = most >= rules.cap, rules.strength(self.gone + slip)
+        grows = rules.strength.slope(self.gone + slip) * most
         self.system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
-        bound = np.where(is_capped, rules.cap, sides.bound[:, 0]) * factor - grows * slip
-        return replace(sides, bound=bound[:, None]), is_capped
+        bound = np.where(is_capped, rules.cap, sides.bound) * factor - grows * slip
+        return replace(sides, bound=bound), is_capped
 
     def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides) -> bool:
         """Whether forces balance, and friction is what slip has left, not only by its tangent."""
         slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest, slack):
             return False
-        rules, force = self._rules, at.step.force[:, 0]
+        rules, force = self._rules, at.step.force
         if not rules.is_curved:
             return True
-        most = rules.before_slip(sides.bound, at.step.force)[:, 0]
-        wrong = np.abs(force + at.states * rules.factor(self.gone + np.abs(at.slip)) * most)
+        most = rules.before_slip(sides.bound, force)
+        wrong = np.abs(force + at.states * rules.strength(self.gone + np.abs(at.slip)) * most)
         largest = max(self.largest, np.abs(force).max())
         return bool(wrong[np.abs(at.states) == 1].max(initial=0.0) <= SETTLED * largest)
 
@@ -144,10 +178,10 @@ class Newton:
         """
         rules, condensed = self._rules, self._condensed
         begin, end = np.abs(at.slip), np.abs(reached.slip)
-        carried = [rules.before_slip(sides.bound, one.step.force)[:, 0] for one in (at, reached)]
+        carried = [rules.before_slip(sides.bound, one.step.force) for one in (at, reached)]
         on_way = self.gone + np.minimum(begin, end), self.gone + np.maximum(begin, end)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        growth = np.where(slips, rules.lowest_growth(*on_way) * np.maximum(*carried), 0.0)
+        growth = np.where(slips, rules.strength.lowest_slope(*on_way) * np.maximum(*carried), 0.0)
         if not np.any(growth < 0.0):
             return True
         sprung = rules.compliance > 0.0
@@ -159,12 +193,9 @@ class Newton:
         growth[presses] += 1.0 / rules.compliance[presses]
         is_free = slips | (at.states == OPEN) & (reached.states == OPEN) | sprung
         free = np.flatnonzero(is_free[condensed.base])
+        tied = condensed.ties[:, free]
         softened = condensed.elastic[np.ix_(free, free)]
-        if len(condensed.base) == len(growth):
-            softened[np.diag_indices_from(softened)] += growth[free]
-        else:
-            tied = condensed.ties[:, free].toarray()
-            softened += tied.T @ (growth[:, None] * tied)
+        softened += tied.T @ sparse.diags_array(growth) @ tied
         try:
             cholesky(softened, overwrite_a=True, check_finite=False)
         except LinAlgError:
@@ -176,7 +207,7 @@ class Newton:
 
         A held jump is the deformation less the rigid motion: rounding of that makes forces at all.
         """
-        inside = self.system.inside(self.strained + step.strained[:, 0])
+        inside = self.system.inside(self.strained + step.strained)
         slack = ROUNDING * (inside + self.largest)
         blur = self.system.blur(step.motion)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
@@ -184,13 +215,13 @@ class Newton:
 
     def _corrected(self, states: States, step: Increment, sides: Sides) -> States:
         """States that jump and force call for; what is up to rounding calls for none."""
-        rules, system, force = self._rules, self.system, step.force[:, 0]
-        moved = (system.unit * (step.jump - sides.held))[:, 0]
+        rules, system, force = self._rules, self.system, step.force
+        moved = system.unit * (step.jump - sides.held)
         slack, blur = self._rounding(states, step)
         held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
         carries = np.where(held, force[rules.partner], -moved[rules.partner])
-        most = sides.bound[:, 0] + np.maximum(system.friction * carries, 0.0) + slack * held
+        most = sides.bound + np.maximum(system.friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
         corrected = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
         corrected = np.where(np.abs(states) == 1, states * (states * moved >= -blur), corrected)

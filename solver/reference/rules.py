@@ -7,7 +7,6 @@ where the contact is open or there is no friction.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -25,7 +24,7 @@ HELD = 0
 EXPECTED = 2.5
 """Systems that an instant takes from the states of the one before, until it is known: the most on
 charts of the bar, where a guess from a neighbour takes 1 to 7, and one from an iterate 1.7."""
-OF_JUMPS = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance", "strength")
+OF_JUMPS = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance")
 """Fields of rules that have a row for each jump."""
 PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
 """Of friction that slip does not change."""
@@ -54,9 +53,7 @@ class Rules:
         Displacement in series with the jump, per force, scaled; 0 where there is none. What is said
         of the jump is then said of the jump and it together.
     strength
-        Which of the `strengths` it has.
-    strengths
-        Factors on the bound over accumulated slip, scaled; each once.
+        Factor on all bounds over accumulated slip, scaled.
     """
 
     normal: Flags
@@ -66,8 +63,7 @@ class Rules:
     bound: Array
     cap: Array
     compliance: Array
-    strength: Indices
-    strengths: tuple[Strength, ...]
+    strength: Strength = PLAIN
 
     @property
     def smooth(self) -> Flags:
@@ -92,20 +88,17 @@ class Rules:
         alone = partner < 0
         partner[alone] = np.flatnonzero(alone)
         own = {name: getattr(self, name)[moving] for name in OF_JUMPS}
-        return Rules(
-            **own | {"partner": partner, "friction": own["friction"] * ~alone},
-            strengths=self.strengths,
-        )
+        return replace(self, **own | {"partner": partner, "friction": own["friction"] * ~alone})
 
     @cached_property
     def ages(self) -> bool:
         """Whether friction changes with slip anywhere."""
-        return any(set(strength.factors) != {1.0} for strength in self.strengths)
+        return set(self.strength.factors) != {1.0}
 
     @cached_property
     def softens(self) -> bool:
         """Whether friction falls with slip anywhere."""
-        return any(strength.slopes.min() < 0.0 for strength in self.strengths)
+        return bool(self.strength.slopes.min() < 0.0)
 
     @cached_property
     def is_curved(self) -> bool:
@@ -114,25 +107,8 @@ class Rules:
 
     def without_slip(self, factor: Array) -> Rules:
         """Rules of a friction that slip has changed by a factor, (n,), and changes no more."""
-        endless, plain = np.full_like(self.cap, np.inf), np.zeros_like(self.strength)
-        friction = self.friction * factor
-        return replace(self, friction=friction, cap=endless, strength=plain, strengths=(PLAIN,))
-
-    def factor(self, gone: Array) -> Array:
-        """Factor on the friction bound after accumulated slip, shape (n, ...) both."""
-        return self._of_strengths(Strength.__call__, gone)
-
-    def growth(self, gone: Array) -> Array:
-        """Growth of the factor per further slip, shape (n,) both."""
-        return self._of_strengths(Strength.slope, gone)
-
-    def lowest_growth(self, first: Array, last: Array) -> Array:
-        """Smallest growth of the factor on the way from one slip to a larger one, shape (n,)."""
-        return self._of_strengths(Strength.lowest_slope, first, last)
-
-    def segment(self, gone: Array) -> Indices:
-        """Numbers of the points of the strengths behind accumulated slips, shape (n,)."""
-        return self._of_strengths(Strength.segment, gone).astype(np.intp)
+        endless = np.full_like(self.cap, np.inf)
+        return replace(self, friction=self.friction * factor, cap=endless, strength=PLAIN)
 
     def states_at(self, jumps: Array) -> States:
         """States of a body that is where it would be if it were rigid, (n, n_instants)."""
@@ -141,17 +117,10 @@ class Rules:
         slip[self.normal] = HELD
         return np.where(closed, slip, OPEN).astype(np.int8)
 
-    def _of_strengths(self, value: Callable[..., Array | Indices], *slips: Array) -> Array:
-        values = np.ones_like(slips[0])
-        for number, strength in enumerate(self.strengths):
-            points = self.strength == number
-            values[points] = value(strength, *(slip[points] for slip in slips))
-        return values
-
     def before_slip(self, bound: Array, force: Array) -> Array:
-        """Friction force r + mu f_n up to its cap, before slip changes it, (n, n_instants)."""
-        carried = self.friction[:, None] * force[self.partner]
-        return np.asarray(np.minimum(bound + np.maximum(carried, 0.0), self.cap[:, None]))
+        """Friction force r + mu f_n up to its cap, before slip changes it, (n, ...) all."""
+        carried = self.friction * force[self.partner].T
+        return np.asarray(np.minimum(bound.T + np.maximum(carried, 0.0), self.cap).T)
 
     def bounds(self, force: Array, slip: Array, opening: Array | None = None) -> Array:
         """Largest friction force, (n, n_instants), by force and slip per instant of all jumps.
@@ -164,54 +133,59 @@ class Rules:
             under = self.partner[self.bonds]
             bound[self.bonds] *= is_intact(opening[under], force[under])
         most = self.before_slip(bound, force)
-        return most * self.factor(np.cumsum(np.abs(slip), axis=1)) if self.ages else most
+        return most * self.strength(np.cumsum(np.abs(slip), axis=1)) if self.ages else most
 
 
 def rules_of(problem: Problem) -> Rules:
-    """Rules of all interfaces with friction, stacked as `Problem.sum_of_contact` says."""
-    strengths, parts, first = [PLAIN], list[Rules](), 0
+    """Rules of all interfaces with friction, stacked as `Problem.sum_of_contact` says.
+
+    Raises
+    ------
+    ValueError
+        If slip changes friction otherwise on one interface than on another.
+    """
+    strengths, parts, first = set[Strength](), list[Rules](), 0
     for law in problem.rubbing.values():
-        of_law = law.tangential.strength or PLAIN
-        if of_law not in strengths:
-            strengths.append(of_law)
-        parts += _components(law, first, strengths.index(of_law))
+        parts += _components(law, first)
         first += len(law.components) * len(law.positions)
+        if not parts[-1].smooth.all():
+            strengths.add(law.tangential.strength or PLAIN)
+    if len(strengths) > 1:
+        raise ValueError("slip changes friction in one way at most: give all interfaces the same")
     stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS}
-    return Rules(**stacked, strengths=tuple(strengths))
+    return Rules(**stacked, strength=next(iter(strengths), PLAIN))
 
 
-def _components(law: Contact, first: int, strength: int) -> list[Rules]:
+def _components(law: Contact, first: int) -> list[Rules]:
     """Rules of one interface, component by component, from a place in the stack on."""
     size, along = len(law.positions), law.tangential
     none, no, places = np.zeros(size), np.zeros(size, dtype=bool), first + np.arange(size)
-    endless, plain = np.full(size, np.inf), np.zeros(size, dtype=np.intp)
-    soft = law.in_parallel(along.softness)
+    endless, soft = np.full(size, np.inf), law.in_parallel(along.softness)
     bound, friction = law.by_point(along.bound), law.mean_by_point(along.friction)
     normal = []
     if law.normal is not None:
         across = law.in_parallel(law.normal.softness)
         gap = law.mean_by_point(law.normal.gap)
-        normal = [Rules(~no, gap, places, none, none[:, None], endless, across, plain, ())]
+        normal = [Rules(~no, gap, places, none, none[:, None], endless, across)]
         # Without friction what is in series along changes nothing, and tells the jump from others.
         soft = soft if bound.any() or friction.any() else across
     cap = endless if along.cap is None else law.by_point(along.cap)
-    strengths = np.full(size, strength)
-    return [*normal, Rules(no, none, places, friction, bound, cap, soft, strengths, ())]
+    return [*normal, Rules(no, none, places, friction, bound, cap, soft)]
 
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """Right sides of one instant; columns, where there are several, are solved together.
+    """Right sides of one instant.
 
     Attributes
     ----------
     load
-        q of the step from the instant before, shape (n_base, ...).
+        q of the step from the instant before, shape (n_base,).
     bound
-        Friction force r that needs no normal force, shape (n, ...).
+        Friction force r that needs no normal force, shape (n,).
     held
-        What held jumps come to in the step, shape (n, ...): minus the opening, or nothing; on top
-        of the length before of what is in series.
+        What held jumps come to in the step, shape (n,): minus the opening, or nothing; on top of
+        the length before of what is in series.
     """
 
     load: Array
@@ -230,16 +204,10 @@ class Sides:
 
 
 class Increment(NamedTuple):
-    """What an instant adds to the one before, and the forces at its end.
+    """What an instant adds to the one before, and the forces at its end, scaled.
 
-    Attributes
-    ----------
-    jump
-        Of all jumps, with the new length of what is in series, shape (n, ...); as `Sides.held`.
-    force
-        Of all jumps, same shape.
-    strained, motion
-        Of y of the base, shape (n_base, ...), and of the rigid motions a, (n_motions, ...).
+    Jumps and forces are of all jumps, (n,), with the new length of what is in series, as
+    `Sides.held`; then follow y of the base, (n_base,), and the rigid motions, (n_motions,).
     """
 
     jump: Array
@@ -249,7 +217,7 @@ class Increment(NamedTuple):
 
 
 class InstantSolution(NamedTuple):
-    """States of an instant, what it adds, and (n,) slips of the jumps where friction changes."""
+    """States of an instant, what it adds, and slips (n,) of the jumps where friction changes."""
 
     states: States
     step: Increment

@@ -33,17 +33,9 @@ LEASH = 1e-10
 class Tridiagonal:
     """A symmetric tridiagonal matrix, solved again and again with other degrees of freedom held.
 
-    Parameters
-    ----------
-    diagonal, beside
-        Its entries, shape (n,), and those beside it, shape (n - 1,).
-    slipping
-        What is added to the diagonal where degrees of freedom are not held, shape (n,).
-
-    Attributes
-    ----------
-    largest_row
-        Largest sum of the sizes of a row, without what is added.
+    It has a diagonal (n,), entries (n - 1,) beside it, and what is added to the diagonal where
+    degrees of freedom are not held, (n,). `largest_row` is the largest sum of the sizes of a row,
+    without that.
     """
 
     def __init__(self, diagonal: Array, beside: Array, slipping: Array | None = None) -> None:
@@ -67,10 +59,7 @@ class Tridiagonal:
     def solve_kept(self, keep: Array, force: Array) -> Array:
         """Solve on the degrees of freedom where `keep` is 1; where it is 0, the force must be 0.
 
-        Raises
-        ------
-        LinAlgError
-            If these can move without force.
+        LinAlgError is raised if these can move without force.
         """
         diagonal = self.diagonal
         if self._slipping is not None:
@@ -97,7 +86,7 @@ class Tridiagonal:
 
 
 def summed(group: Indices, values: Array) -> Array:
-    """Sum values by the number of their group, ascending from 0, shape (n_groups,)."""
+    """Sum of the values of every group, by their numbers from 0, shape (n_groups,)."""
     return np.asarray(np.bincount(group, values), dtype=float)
 
 
@@ -115,10 +104,9 @@ class Minimum:
 class Search:
     """Minimise phi where some degrees of freedom are held at zero.
 
-    Newton's method for the statuses takes a few steps from a good guess, but a front then advances
-    by one point a step, and the method may cycle. So it gives up early, and starts again from the
-    statuses of a mesh twice as coarse, found in the same way. Where that fails too, an active-set
-    method ends in finitely many steps. So each rod goes on its own way, as nothing ties them.
+    In Newton's method for the statuses a front advances by one point a step, and it may cycle. So
+    it gives up early, and each rod starts again from the statuses of a mesh twice as coarse, found
+    in the same way. Where that fails too, an active-set method ends in finitely many steps.
 
     Attributes
     ----------

@@ -1,33 +1,21 @@
 """The load up to which slip may cease: Melan's theorem for friction, and its like in the plane.
 
-**Known bounds.** Where the bound does not depend on slip, a structure shakes down under a load that
-repeats itself if there is any slip s, the same at all instants, whose forces keep all forces within
-the bound b:
-
-    |lambda f_e(t) + R s| <= b(t),
-
-with f_e the forces where nothing has slipped and R s those that slip alone leaves behind. The
-largest lambda is the limit, wherever the slip begins (A. Klarbring, M. Ciavarella, J. R. Barber,
-Shakedown in elastic contact problems with Coulomb friction, Int. J. Solids Struct. 44, 2007;
-solver/README.md, 15). R is regular, so that R s is any force that stays.
+**Known bounds** (A. Klarbring, M. Ciavarella, J. R. Barber, Shakedown in elastic contact problems
+with Coulomb friction, Int. J. Solids Struct. 44, 2007): slip that stays leaves forces behind that
+keep all others within the bound b at all instants (solver/README.md, 15). The matrix from slip to
+these is regular, so that they may be any. The limit holds wherever the slip begins.
 
 **In the plane** slip changes what presses. With all contacts closed their forces follow from the
 slips w of their points, f = S w - q(t), the pressing ones, too. So what friction can hold at an
-instant is a polyhedron: two planes a point,
+instant is a polyhedron, |f_t| <= r + mu f_n or A w <= b(t), which the load moves, and the slips are
+pushed by its planes. What lies inside at all instants of a cycle may stay for ever. Where slip
+changes what presses, whether it comes to that depends on the start, but for certain plane problems
+below a critical mu (Klarbring et al.; L.-E. Andersson, J. R. Barber, Y.-J. Ahn, Attractors in
+frictional systems subjected to periodic loads, SIAM J. Appl. Math. 73, 2013).
 
-    |f_t| <= r + mu f_n    or    A w <= b(t),
-
-which the load moves, and the slips are pushed by them. What lies inside at all instants of a cycle
-may stay for ever. Where no slip changes what presses, the planes push slip there wherever it
-begins, as Melan's theorem says; where slip does, that depends on the start, but for certain plane
-problems below a critical mu (Klarbring et al.; L.-E. Andersson, J. R. Barber, Y.-J. Ahn, Attractors
-in frictional systems subjected to periodic loads, SIAM J. Appl. Math. 73, 2013).
-
-The theorem is of complete contacts, all of whose points press at all times, and the planes say so
-themselves: |f_t| <= mu f_n leaves no room where f_n < 0. A point that presses and does not rub, or
-whose friction needs no pressing force, has a plane of its own, f_n >= 0. So between all planes the
-contacts are closed, and beyond the largest swing there is no slip with which they stick and stay
-closed: something slips, or opens, in every cycle, wherever it began.
+A point that presses and does not rub, or whose friction needs no pressing force, has a plane of its
+own, f_n >= 0: between all planes the contacts are closed. Beyond the largest swing there is no slip
+with which they stick and stay closed: something slips, or opens, in every cycle.
 """
 
 from __future__ import annotations
@@ -57,16 +45,9 @@ UNBOUNDED = 3
 
 
 def shakedown_limit(problem: Problem, cycle: slice) -> float:
-    """Largest factor on all loads of rods under which slip ceases.
+    """Largest factor on all loads of rods in a cycle under which slip ceases.
 
     It is infinite where the loads stay the same, or nothing that rubs feels them.
-
-    Parameters
-    ----------
-    problem
-        Bodies whose friction has known bounds; all that acts is scaled, but for these.
-    cycle
-        The instants of a cycle; what came before says nothing of the limit.
 
     Raises
     ------
@@ -205,9 +186,10 @@ def slip_space(problem: Problem) -> SlipSpace:
 def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     """How much a load may swing about its mean until no slip could stay, or a contact opens.
 
+    Returns
+    -------
     The factor on the load's distance from its mean over the instants of whole cycles, equally far
-    apart, infinite where it stands still; and a slip that stays under it, with all contacts closed,
-    shape (n_points,), m.
+    apart, infinite where it stands still; and a slip that stays under it, shape (n_points,), m.
 
     Raises
     ------

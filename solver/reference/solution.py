@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from hashlib import blake2b
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from solver.arrays import Array
 from solver.discrete.contacts import ContactFields, contact_fields
@@ -40,9 +39,8 @@ class Reference:
         Shape (n_points, n_instants), the points stacked interface by interface: -1 slip backward,
         0 stick, +1 slip forward, 2 open. The increment of a sticking point is zero.
     residual
-        Relative KKT residual, the maximum over the instants. Of `incremental`: distance of 0 from
-        the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|;
-        storing v in doubles costs as much.
+        Relative KKT residual, the maximum over the instants. Of rods: distance of 0 from the
+        subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|.
     unbalanced
         The same before it is divided, N.
     converged
@@ -56,8 +54,7 @@ class Reference:
         What rounding alone may leave of `unbalanced`, N.
     jumps_at
         First instant that has no solution that goes on from the instant before, as friction falls
-        with slip faster than the structure unloads: what follows, if anything is solved, is another
-        equilibrium. None where there is no such instant.
+        with slip faster than the structure unloads: what follows is another equilibrium, if any.
     is_lost
         Whether an instant that was tried is not solved.
     collapse
@@ -101,28 +98,26 @@ def fingerprint(problem: Problem) -> bytes:
     So cuts count where degrees of freedom depend on them, as in the plane, and do not along a rod;
     the method never does. Problems that differ by rounding count as two.
     """
-    digest = blake2b(digest_size=16)
-    for name, law in problem.rubbing.items():
-        digest.update(f"{name} {law.opens} {law.is_on_support}".encode())
-    for array in _arrays(problem):
-        digest.update(f"{array.dtype.str} {array.shape}".encode())
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.digest()
-
-
-def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
     scales, rules = problem.scales, rules_of(problem)
-    yield np.array([scales.displacement, scales.force, scales.time])
-    yield problem.instants
-    yield problem.positions
-    yield external_force(problem)
-    yield from problem.prescribed
-    yield from (getattr(rules, name) for name in OF_JUMPS)
-    yield from (np.array([strength.slips, strength.factors]) for strength in rules.strengths)
-    for matrix in (assembled_stiffness(problem), jumps(problem)):
+    laws = problem.rubbing
+    matrices = assembled_stiffness(problem), jumps(problem)
+    for matrix in matrices:
         matrix.sort_indices()
-        yield from (matrix.indptr, matrix.indices, matrix.data)
-    for law in problem.rubbing.values():
-        yield law.positions
-    if problem.rest is not None:
-        yield problem.rest
+    parts: list[ArrayLike] = [
+        [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
+        [scales.displacement, scales.force, scales.time],
+        problem.instants,
+        problem.positions,
+        external_force(problem),
+        *problem.prescribed,
+        *(getattr(rules, name) for name in OF_JUMPS),
+        [rules.strength.slips, rules.strength.factors],
+        *(part for matrix in matrices for part in (matrix.indptr, matrix.indices, matrix.data)),
+        *(law.positions for law in laws.values()),
+        [] if problem.rest is None else problem.rest,
+    ]
+    digest = blake2b(digest_size=16)
+    for part in map(np.asarray, parts):
+        digest.update(f"{part.dtype.str} {part.shape}".encode())
+        digest.update(part.tobytes())
+    return digest.digest()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.special import erfc
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
@@ -15,10 +16,7 @@ from solver.discrete.rods import Rods
 from solver.discrete.structure import Loop, LoopFields
 from solver.latin import Solution
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
-from solver.reference.closed_forms.fluid_driven_slip import (
-    front_over_diffusion,
-    slip_under_growing_strength,
-)
+from solver.reference.closed_forms.fluid_driven_slip import fronts, slip_under_growing_strength
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.study.quantities.cycles import turning_points
 
@@ -160,7 +158,9 @@ def driven_by_fluid(answer: Answer) -> Iterator[Number]:
     diffused = np.sqrt(4.0 * own.diffusivity * own.times()[late])
     place, slip = answer.problem.rubbing["support"].positions, np.abs(answer.slip[:, late])
     reached = np.array([_front(place, at_instant) for at_instant in slip.T])
-    exact = front_over_diffusion(lack / own.overpressure)
+    # The pressure is DP erfc(x / sqrt(4 alpha t)) (R. C. Viesca, J. Fluid Mech. 928, A29, 2021).
+    far = np.linspace(0.0, 20.0, 20_001)
+    (exact,) = fronts(far, (lack / own.overpressure - erfc(far))[:, None])
     yield "front over sqrt(4 alpha t)", "-", exact, reached @ diffused / (diffused @ diffused)
 
 

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from solver.arrays import Array
 from solver.discrete.cross_section import CrossSection, WireLayer
-from solver.reference.closed_forms.masing import energy_of_cycle, masing
+from solver.reference.closed_forms.masing import masing
 
 
 @dataclass(frozen=True)
@@ -58,10 +58,6 @@ class BentWire:
         share = np.array([self._share(float(kappa)) for kappa in np.ravel(curvature)])
         moment = self.radius * np.cos(wire.lay) * force * share
         return np.asarray(moment.reshape(np.shape(curvature)))
-
-    def energy(self, peak: float) -> float:
-        """What friction takes in a cycle between -peak and peak, J per wire and metre of strand."""
-        return energy_of_cycle(peak, lambda kappa: float(self.moment(np.array(kappa))))
 
     def _share(self, curvature: float) -> float:
         """Moment over R cos(alpha) times the force that friction builds up in a radian."""
@@ -115,8 +111,3 @@ class BentStrand:
     def along(self, path: Array) -> Array:
         """Moment along any path of the curvature from zero, of its shape, N m."""
         return masing(path, lambda curvature: float(self.moment(np.array(curvature))))
-
-    def energy(self, peak: float) -> float:
-        """What friction takes in a closed cycle between -peak and peak, J per metre."""
-        wires = zip(self.section.layers, self.layers, strict=True)
-        return float(sum(layer.wires * wire.energy(peak) for layer, wire in wires))

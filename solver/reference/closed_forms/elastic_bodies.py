@@ -55,30 +55,17 @@ class HalfPlane:
         return np.asarray(0.5 * self.modulus / self.radius * np.sqrt(square))
 
     def traction(self, place: Array, friction: float, share: float) -> Array:
-        """Shear traction under a share of mu P that has grown, Pa; places as above.
-
-        It is that of sliding, less the same for what sticks: two square roots.
-        """
+        """Shear traction under a share of mu P that has grown, Pa; places as above."""
         back = replace(self, force=(1.0 - share) * self.force)
         return friction * (self.pressure(place) - back.pressure(place))
 
     def traction_over(self, place: Array, friction: float, shear: Array) -> Array:
-        """Shear traction under a shear force that turns, Pa, shape (n, n_instants).
+        """Shear traction at places (n,) under a shear force (n_instants,) that turns, Pa.
 
-        Pressing grows the contact from its middle, step by step, as flat punches that widen. What
-        the outer ones carry is at its bound, as on a bar that is pulled at its end: the force on
-        all within a width is a play operator of the whole one, of reach mu (P - P'), with the force
-        P' at which the contact was as wide (M. Ciavarella, J. Appl. Mech. 65, 1998; J. Jaeger,
-        Int. J. Solids Struct. 35, 1998).
-
-        Parameters
-        ----------
-        place
-            From the middle of the contact, shape (n,), m.
-        friction
-            Coefficient mu.
-        shear
-            Over time from none on, with the force that presses at hand, shape (n_instants,), N/m.
+        Pressing grows the contact from its middle, step by step, as flat punches that widen. The
+        shear force on all within a width is a play operator of the whole one, of reach mu (P - P'),
+        with the force P' at which the contact was as wide (M. Ciavarella, J. Appl. Mech. 65, 1998;
+        J. Jaeger, Int. J. Solids Struct. 35, 1998).
         """
         level = np.linspace(0.0, 1.0, LEVELS + 1)
         widths = [replace(self, force=self.force * share) for share in level]
@@ -150,28 +137,14 @@ class TwoLeaves:
         stick = min(deflection, self.first_slip / stuck)
         return stick * stuck + (deflection - stick) * apart
 
-    def energy(self, peak: float) -> float:
-        """What friction takes in a cycle between -peak and peak of the force, J/m."""
-        stuck, apart = self.stiffnesses
-        slips = max(peak - self.first_slip, 0.0)
-        return 4.0 * self.first_slip * slips * (1.0 / apart - 1.0 / stuck)
-
 
 def leaf_spring(lengths: Array) -> float | None:
     """End force of graduated leaves for a unit of deflection, over that of the longest alone.
 
     Leaves are clamped together, and lie on each other without friction or pressure. Each longer
-    one presses on the end of the next alone, as long as the force bends it that way: beams whose
-    deflections agree there (S. Timoshenko, Strength of Materials II, 1956, on leaf springs).
-
-    Parameters
-    ----------
-    lengths
-        The longest first, each shorter than the one before, shape (n_leaves,), m.
-
-    Returns
-    -------
-    None where two leaves come apart, so that others touch.
+    one presses on the end of the next alone: beams whose deflections agree there (S. Timoshenko,
+    Strength of Materials II, 1956, on leaf springs). The longest comes first, each is shorter than
+    the one before, (n_leaves,), m. None where two leaves come apart, so that others touch.
     """
     ends = np.append(lengths, 0.0)
     # Deflections, times E I, of a leaf under a force at its end: there, and where the next ends.

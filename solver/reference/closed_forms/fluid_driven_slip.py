@@ -8,7 +8,8 @@ Conduction of Heat in Solids, 2nd ed., Oxford 1959, sections 2.4 and 2.5).
 Half spaces of one material rub on each other under a uniform shear stress. The strength is given
 over the interface; where it is below that stress, a zone slips whose shape is known: as long as it
 grows, the zone is a crack whose stress drops to the strength (J. R. Rice, Mathematical analysis in
-the mechanics of fracture, in Fracture II, Academic Press 1968).
+the mechanics of fracture, in Fracture II, Academic Press 1968; R. C. Viesca, J. Fluid Mech. 928,
+A29, 2021).
 """
 
 from __future__ import annotations
@@ -20,9 +21,6 @@ from scipy.special import erfc
 
 from solver.arrays import Array
 
-POINTS = 4000
-WIDEST = 60.0
-"""Front over diffusion length up to which a solution is sought: T down to 0.006."""
 SHARES = np.cos((np.arange(500) + 0.5) * np.pi / 1000)
 """Places in a zone, over its half-length, of one weight in integrals over ds / sqrt(a^2 - s^2)."""
 DRY = 30.0
@@ -72,24 +70,6 @@ def _risen(place: Array, later: Array, diffusivity: float) -> Array:
 def _far(place: Array, later: Array, diffusivity: float) -> Array:
     """Places over the diffusion length."""
     return np.minimum(place[:, None] / np.sqrt(4.0 * diffusivity * later), DRY)
-
-
-def front_over_diffusion(stress: float) -> float:
-    """Lambda of the front a = lambda sqrt(4 alpha t) of slip that a fluid drives.
-
-    The pressure of the fluid over the interface is DP erfc(|x| / sqrt(4 alpha t)) from the place
-    where it is let in. The front runs as it does because nothing is singular there: the mean of
-    erfc(lambda |s|) over s = cos(theta) is T (R. C. Viesca, Self-similar fault slip in response to
-    fluid injection, J. Fluid Mech. 928, A29, 2021).
-
-    Parameters
-    ----------
-    stress
-        T: what the shear stress lacks to the strength before, over the largest loss of strength;
-        between 0.006 and 1.
-    """
-    place = np.abs(np.cos((np.arange(POINTS) + 0.5) * np.pi / POINTS))
-    return float(brentq(lambda factor: erfc(factor * place).mean() - stress, 0.0, WIDEST))
 
 
 def fronts(place: Array, lack: Array) -> Array:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import quad
 
 from solver.arrays import Array
 
@@ -43,9 +42,3 @@ def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
     (before, _), (last, _) = turns[-2:]
     size = abs(last - before) if len(turns) > 2 else 2.0 * abs(last)
     return abs(value - last) >= size
-
-
-def energy_of_cycle(peak: float, grown: Callable[[float], float]) -> float:
-    """Area of the loop between -peak and peak: what friction takes in a closed cycle."""
-    below, _ = quad(grown, 0.0, peak, limit=200)
-    return float(abs(8.0 * below - 4.0 * peak * grown(peak)))

@@ -1,15 +1,12 @@
 """Closed forms: a clamped bar pulled over its support, a broken wire (solver/README.md, 6, 8, 14).
 
-Under Coulomb friction the normal force is a play operator. Sliding needs the whole bound between a
-section and the free end, R(x) = integral of mu p from x to L. So the normal force N(x, t) follows
-the load F(t) with play R(x): on a rising load it is the larger of its old value and F - R, on a
-falling one the smaller of its old value and F + R. This holds for every bound mu p >= 0 along the
-bar and every load path from rest, full sliding included.
+Under Coulomb friction sliding needs the whole bound between a section and the free end, R(x) =
+integral of mu p from x to L. So the normal force N(x, t) follows the load F(t) with play R(x), for
+every bound mu p >= 0 along the bar and every load path from rest, full sliding included.
 
 Where the bound changes with time it holds as long as what it leaves stuck is within the bound, to
-an element's length: the sections that a load reaches are then those to the right of one, as ever. A
-bar that stuck beyond what its bound has fallen to slips in its middle, away from any end, and this
-says nothing of it.
+an element's length: a bar that stuck beyond what its bound has fallen to slips in its middle, and
+this says nothing of it.
 
 Unbroken, all wires carry the tension T and nothing slips. A break adds a force n to the broken
 wire, -T at its two new ends, which the neighbours take over in equal shares: with m of them, what
@@ -50,9 +47,8 @@ class ClosedForm:
     normal_force
         Axial force N, shape (n_nodes, n_instants), N.
     friction_force
-        Friction force on the bar over the tributary length of each node, same shape, N. At the
-        clamp it is that of the first half element, which a solution with a clamped node cannot
-        tell from the reaction.
+        Friction force on the bar over the tributary length of each node, same shape, N. A solution
+        with a clamped node cannot tell it from the reaction there.
     displacement
         Same shape, m. The integral over the strain has an error below 1.5e-8 (mu p L) L / ES for
         each load reversal remembered: 1e-6 of the end's displacement from an eighth of mu p L on.
@@ -69,18 +65,10 @@ class ClosedForm:
 
 
 def closed_form(scene: Rods) -> ClosedForm | None:
-    """Solution of a bar under Coulomb friction.
+    """Solution of a bar whose bound mu p is linear between nodes, and between instants.
 
-    Parameters
-    ----------
-    scene
-        The bar; its bound mu p is linear between nodes, and between instants.
-
-    Returns
-    -------
-    The solution, or None for a bar that more than a force at its end moves: there, the normal force
-    is no play operator of the load. Also None for a bar of varying section, where
-    friction is not Coulomb's, and where a falling bound makes the bar slip in its middle.
+    None for a bar that more than a force at its end moves, or of varying section, where friction is
+    not Coulomb's, and where a falling bound makes the bar slip in its middle.
     """
     if not scene.is_only_pulled or scene.section is not None:
         return None
@@ -135,20 +123,15 @@ def pulled_compliant_bar(
 ) -> tuple[float, float]:
     """End displacement of a bar whose support gives way before it slips, and its zone of slip, m.
 
-    Each point hangs on a spring in series with its slider (Jenkins' element). With beta the root of
-    the springs' density over ES, a zone of length s at the end slips under F = q s + q / (beta
-    tanh(beta (L - s))), and beyond it the bar stands on springs.
+    With beta the root of the springs' density over ES, a zone of length s at the end slips under
+    F = q s + q / (beta tanh(beta (L - s))), and beyond it the bar stands on springs.
 
     Parameters
     ----------
-    force
-        F, N, grown from zero; at most what a bar that slips almost throughout carries.
-    length, stiffness
-        L, m, and ES, N.
-    bound
-        q = mu p, N/m.
-    density
-        Tangential stiffness of the support per length, N/m^2.
+    force, length, stiffness
+        F, N, grown from zero, at most what a bar that slips almost throughout carries; L, m; ES, N.
+    bound, density
+        q = mu p, N/m; tangential stiffness of the support per length, N/m^2.
     """
     beta = np.sqrt(density / stiffness)
 
@@ -166,23 +149,15 @@ def pulled_changing_bar(
 ) -> float:
     """End displacement where friction changes with slip, under a force grown from zero, m.
 
-    Before any point has slipped as far as its friction changes, the bound is q + g u with the slope
-    g = (q_last - q) / s_0, and ES u'' = q + g u beyond the front. With gamma the root of |g| / ES
-    and l the length that slips, F = q sinh(gamma l) / gamma where friction hardens, and
-    q sin(gamma l) / gamma where it softens, up to q / gamma: beyond that the bar jumps.
+    Before any point has slipped as far as its friction changes (solver/README.md, 14).
 
     Parameters
     ----------
-    force
-        F, N: less than what makes all of the bar slip, and less than q / gamma where it softens.
-    stiffness
-        ES, N.
-    bound
-        q before any slip, N/m.
-    ratio
-        Last bound over the first, not 1.
-    slip_length
-        Slip s_0 at which the bound is the last, m: more than what is returned.
+    force, stiffness
+        F, N: less than what makes all of the bar slip, and than q / gamma where it softens; ES, N.
+    bound, ratio, slip_length
+        q before any slip, N/m; the last bound over it, not 1; and the slip from which on it is the
+        last, m: more than what is returned.
     """
     slope = bound * (ratio - 1.0) / slip_length
     gamma = np.sqrt(abs(slope) / stiffness)
@@ -198,9 +173,6 @@ class BrokenWire:
 
     Attributes
     ----------
-    tension
-        T, which all wires would carry without the break, shape (n_instants,), N. With a rigid grip
-        the break makes it less than what was asked for.
     force, neighbour_force
         Axial force of the broken wire and of each neighbour, shape (n_nodes, n_instants), N.
     friction_force
@@ -211,7 +183,6 @@ class BrokenWire:
         Displacement of the broken wire over its neighbours, same shape, m.
     """
 
-    tension: Array
     force: Array
     neighbour_force: Array
     friction_force: Array
@@ -240,7 +211,6 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     left, right = sides
     lost = np.concatenate([left.normal_force, right.normal_force[-2::-1]])
     return BrokenWire(
-        tension=tension,
         force=tension - lost,
         neighbour_force=tension + lost / scene.rubbing_sides,
         friction_force=np.concatenate([-left.friction_force, right.friction_force[::-1]]),
@@ -271,10 +241,10 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
 
 
 def _tension(scene: Rods) -> Array:
-    """T under a rigid grip: a neighbour's elongation is given.
+    """T under a rigid grip, where a neighbour's elongation is given.
 
-    It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second
-    part grows with T, and no faster than the first, so halved steps halve the error at least.
+    It is T L / ES, plus for each side of the break what has slipped there over m + 1: which grows
+    with T no faster than that, so halved steps halve the error at least.
     """
     tension = scene.load
     largest = float(np.abs(tension).max())
