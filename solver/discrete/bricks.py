@@ -20,10 +20,10 @@ class Brick(NamedTuple):
     columns: int
     rows: int
 
-    def nodes(self, order: int) -> tuple[slice, slice]:
-        """Its nodes along and up, among those of a grid of elements of an order."""
-        x, y = order * self.x, order * self.y
-        return slice(x, x + order * self.columns + 1), slice(y, y + order * self.rows + 1)
+    def nodes(self) -> tuple[slice, slice]:
+        """Its nodes along and up, among those of the grid."""
+        x, y = self.x, self.y
+        return slice(x, x + self.columns + 1), slice(y, y + self.rows + 1)
 
 
 class Joint(NamedTuple):

@@ -11,7 +11,12 @@ from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Scales
-from solver.discrete.substructure import Elasticity, Substructure
+from solver.discrete.substructure import (
+    Elasticity,
+    Substructure,
+    substructure_sizes,
+    tributary,
+)
 from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod
 
 if TYPE_CHECKING:
@@ -44,19 +49,6 @@ def rod_stiffness(element_stiffness: Array) -> sparse.csr_array:
     columns[2::3] -= 1
     ends = np.clip(3 * np.arange(elements + 2) - 1, 0, len(entries))
     return sparse.csr_array((entries, columns, ends), shape=(elements + 1, elements + 1))
-
-
-def tributary(elements: int) -> Array:
-    """Length that belongs to each node of a row of elements, over that of one of them."""
-    shares = np.ones(elements + 1)
-    shares[[0, -1]] = 0.5
-    return shares
-
-
-def substructure_sizes(elements: int, substructures: int) -> list[int]:
-    """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
-    size, extra = divmod(elements, substructures)
-    return [size + 1] * extra + [size] * (substructures - extra)
 
 
 def _pieces_of(rods: Rods) -> tuple[list[int], int]:

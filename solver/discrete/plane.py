@@ -12,12 +12,8 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
-from solver.discrete.elements import (
-    edge_mass,
-    element_stiffness,
-    projected_strain_matrix,
-    strain_matrix,
-)
+from solver.discrete.elements import element_stiffness, strain_matrix
+from solver.discrete.substructure import tributary
 
 LONG_SIDES = 0.6
 """Factor on the macro degree of a side, times the root of its length over the depth behind it. Of
@@ -40,8 +36,6 @@ class Rectangle:
         Size of an element, scaled.
     elastic
         As of `elastic_matrix`, scaled.
-    order
-        Of the elements: 1 bilinear, 2 biquadratic.
     """
 
     columns: int
@@ -49,32 +43,21 @@ class Rectangle:
     width: float
     height: float
     elastic: Array
-    order: int = 1
 
     @property
     def n_nodes(self) -> int:
         """Number of nodes."""
-        return (self.order * self.columns + 1) * (self.order * self.rows + 1)
+        return (self.columns + 1) * (self.rows + 1)
 
     @cached_property
     def nodes(self) -> Indices:
-        """Number of every node, shape (order rows + 1, order columns + 1), from below."""
-        shape = self.order * self.rows + 1, self.order * self.columns + 1
+        """Number of every node, shape (rows + 1, columns + 1), from below."""
+        shape = self.rows + 1, self.columns + 1
         return np.arange(self.n_nodes, dtype=np.intp).reshape(shape)
 
     @cached_property
     def elements(self) -> Indices:
-        """Nodes of every element, row by row, shape (n_elements, (order + 1)^2)."""
-        size = self.order + 1
-        windows = np.lib.stride_tricks.sliding_window_view(self.nodes, (size, size))
-        return np.asarray(windows[:: self.order, :: self.order].reshape(-1, size * size))
-
-    @cached_property
-    def cells(self) -> Indices:
-        """Quadrilaterals between neighbouring nodes, counter-clockwise, shape (n_cells, 4).
-
-        An element, or a quarter of a biquadratic one; row by row over the whole rectangle.
-        """
+        """Corners of every element, counter-clockwise, row by row, shape (n_elements, 4)."""
         n = self.nodes
         corners = n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]
         return np.stack([corner.ravel() for corner in corners], axis=1)
@@ -82,7 +65,7 @@ class Rectangle:
     @cached_property
     def stiffness(self) -> sparse.csc_array:
         """Stiffness of all nodes, two degrees of freedom each, shape (2 n_nodes, 2 n_nodes)."""
-        own = element_stiffness(self.order, self.width, self.height, self.elastic)
+        own = element_stiffness(self.width, self.height, self.elastic)
         dofs = dofs_of(self.elements)
         rows, columns = np.repeat(dofs, len(own), axis=1), np.tile(dofs, len(own))
         values = np.tile(own.ravel(), len(dofs))
@@ -105,30 +88,16 @@ class Rectangle:
         """Length of a side that belongs to each of its nodes, scaled."""
         upright = side in ("left", "right")
         count, step = (self.rows, self.height) if upright else (self.columns, self.width)
-        return edge_lengths(self.order, count, step)
+        return step * tributary(count)
 
     def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at the centres of the cells, (n_cells, 3), scaled.
+        """Stresses (xx, yy, xy) at the centres of the elements, (n_elements, 3), scaled.
 
         From the displacement of all nodes, (n_nodes, 2); incompatible modes have no strain there.
         """
-        own = displacement[self.elements].reshape(self.rows, self.columns, -1)
-        stresses = np.empty((self.rows, self.order, self.columns, self.order, 3))
-        centres = (np.arange(self.order) + 0.5) * 2.0 / self.order - 1.0
-        for up, eta in enumerate(centres):
-            for along, xi in enumerate(centres):
-                at = float(xi), float(eta), self.width, self.height
-                strain = strain_matrix(1, *at) if self.order == 1 else projected_strain_matrix(*at)
-                stresses[:, up, :, along] = own @ (self.elastic @ strain).T
-        return stresses.reshape(-1, 3)
-
-
-def edge_lengths(order: int, count: int, step: float) -> Array:
-    """Length that belongs to each node of edges of elements in a row, of one length each."""
-    lengths = np.zeros(order * count + 1)
-    for place, share in enumerate(edge_mass(order).sum(axis=0)):
-        lengths[place : place + order * count : order] += step * share
-    return lengths
+        strain = strain_matrix(0.0, 0.0, self.width, self.height)
+        own = displacement[self.elements].reshape(len(self.elements), -1)
+        return np.asarray(own @ (self.elastic @ strain).T)
 
 
 def dofs_of(nodes: Indices) -> Indices:

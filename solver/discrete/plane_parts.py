@@ -59,8 +59,7 @@ class Inside:
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
     elements
-        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
-        as its four quarters.
+        Corners of every element, counter-clockwise, shape (n_elements, 4).
     grids
         Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
     bodies, parts
@@ -84,7 +83,7 @@ class Inside:
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
         self.places = positions[skeleton // 2]
-        corners = [part.nodes.ravel()[part.condensed.rectangle.cells] for part in parts]
+        corners = [part.nodes.ravel()[part.condensed.rectangle.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(own) for own in corners]
         self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)

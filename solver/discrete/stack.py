@@ -111,8 +111,6 @@ class Stack:
     elements, substructures
         Of one body, along and up. Bodies on each other that all begin at the left are also cut
         where any of them ends.
-    order
-        Of the elements: 1 bilinear, 2 biquadratic.
     macro_degree
         Of the macro basis on each side of a substructure; long sides get more in proportion.
     young, poisson, state
@@ -148,7 +146,6 @@ class Stack:
     poisson: float
     instants: Array
     duration: float
-    order: int = 1
     macro_degree: int = 1
     state: str = "strain"
     stiffness: Array | None = None

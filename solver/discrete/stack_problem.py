@@ -131,7 +131,7 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         normal=normal,
         tangential=friction,
         points=points,
-        positions=touching * (size / stack.elements[axis] / stack.order),
+        positions=touching * (size / stack.elements[axis]),
         weights=areas,
         around=Bodies(
             moduli=(stack.modulus(body), np.inf if under is None else stack.modulus(under)),

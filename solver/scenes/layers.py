@@ -195,7 +195,7 @@ class LayersSettings(PlaneSettings):
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all layers."""
-        return sum(self.order * span + 1 for span in self.spans) * self.nodes[1]
+        return sum(span + 1 for span in self.spans) * self.nodes[1]
 
     @property
     def n_substructures(self) -> int:
