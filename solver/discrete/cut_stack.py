@@ -16,7 +16,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.bricks import Brick, Joint, joints_of
 from solver.discrete.elements import EDGE_MASS, elastic_matrix
-from solver.discrete.plane import Condensed, Rectangle, side_basis
+from solver.discrete.plane import Rectangle, SchurComplement, side_basis
 from solver.discrete.plane_parts import Part
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 
@@ -135,7 +135,7 @@ class CutStack:
             brick = stack.rectangles[body]
             along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes()
             self.parts.append(
-                Part(condensed, operator, nodes[body][up, along], body, numbers, force)
+                Part(mesh, condensed, operator, nodes[body][up, along], body, numbers, force)
             )
 
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
@@ -144,16 +144,16 @@ class CutStack:
 
     def _operator_of(
         self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
-    ) -> tuple[Condensed, Elasticity]:
+    ) -> tuple[SchurComplement, Elasticity]:
         dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
-        condensed = Condensed(mesh, np.unique(dofs))
+        condensed = SchurComplement(mesh.outline, np.unique(dofs))
         density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
         weights = [mesh.edge_weights(one.side)[one.first : one.last] for one in traces]
         k = [
             np.repeat(density * own, len(one.components))
             for own, one in zip(weights, traces, strict=True)
         ]
-        trace = np.searchsorted(condensed.dofs, dofs)
+        trace = np.searchsorted(condensed.kept, dofs)
         return condensed, Elasticity(condensed.stiffness, trace, np.concatenate(k))
 
     def _outer(self, number: int) -> Iterator[str]:
@@ -190,7 +190,7 @@ class CutStack:
         """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
         number, side = joint.sides[which]
         part = self.parts[number]
-        mesh, count = part.condensed.rectangle, len(part.rows[joint])
+        mesh, count = part.rectangle, len(part.rows[joint])
         return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _is_known(self, joint: Joint) -> bool:

@@ -123,89 +123,64 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
 
 
 class SchurComplement:
-    """A symmetric stiffness, sparse or dense, seen from some of its degrees of freedom.
+    """A symmetric stiffness, sparse or condensed already, seen from some degrees of freedom.
 
     Attributes
     ----------
     kept
-        These degrees of freedom, ascending.
+        These, among all, ascending.
     stiffness
         Of what is kept, shape (n_kept, n_kept), dense, symmetric.
 
     Raises
     ------
     np.linalg.LinAlgError
-        Where a dense one is free to move while what is kept is held.
+        Where holding what is kept would leave one that is condensed already free to move.
     """
 
-    def __init__(self, whole: sparse.csc_array | Array, kept: Indices) -> None:
-        self._size, self.kept = whole.shape[0], kept
-        self._rest = np.setdiff1d(np.arange(self._size), kept)
-        stiffness, others = _dense(whole[kept][:, kept]), whole[self._rest]
+    def __init__(self, whole: sparse.csc_array | SchurComplement, kept: Indices) -> None:
+        self.kept, self._before, places = kept, None, kept
+        stiffness: sparse.csc_array | Array
+        if isinstance(whole, SchurComplement):
+            self._before, stiffness = whole, whole.stiffness
+            places = np.searchsorted(whole.kept, kept)
+        else:
+            stiffness = whole
+        self._size, self._places = stiffness.shape[0], places
+        self._rest = np.setdiff1d(np.arange(self._size), places)
+        own, others = _dense(stiffness[places][:, places]), stiffness[self._rest]
         if len(self._rest):
-            coupling, inner = _dense(others[:, kept]), others[:, self._rest]
+            coupling, inner = _dense(others[:, places]), others[:, self._rest]
             if isinstance(inner, np.ndarray):
                 self._solve = partial(cho_solve, cho_factor(inner))
             else:
                 self._solve = splu(sparse.csc_array(inner)).solve
             self._response = self._solve(coupling)
-            stiffness -= coupling.T @ self._response
-        self.stiffness: Array = 0.5 * (stiffness + stiffness.T)
+            own -= coupling.T @ self._response
+        self.stiffness: Array = 0.5 * (own + own.T)
 
     def condense(self, force: Array) -> Array:
         """Bring forces, shape (n, n_columns), onto what is kept, shape (n_kept, n_columns)."""
+        if self._before is not None:
+            force = self._before.condense(force)
         if not len(self._rest):
-            return np.asarray(force[self.kept])
-        return np.asarray(force[self.kept] - self._response.T @ force[self._rest])
+            return np.asarray(force[self._places])
+        return np.asarray(force[self._places] - self._response.T @ force[self._rest])
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all, shape (n, n_columns), from that of what is kept, under forces."""
+        nearer = force
+        if self._before is not None and force is not None:
+            nearer = self._before.condense(force)
         whole = np.empty((self._size, kept.shape[1]))
-        whole[self.kept] = kept
+        whole[self._places] = kept
         if len(self._rest):
             rest = -(self._response @ kept)
-            if force is not None:
-                rest += self._solve(np.ascontiguousarray(force[self._rest]))
+            if nearer is not None:
+                rest += self._solve(np.ascontiguousarray(nearer[self._rest]))
             whole[self._rest] = rest
-        return whole
+        return whole if self._before is None else self._before.recover(whole, force)
 
 
 def _dense(block: sparse.csc_array | Array) -> Array:
     return np.asarray(block if isinstance(block, np.ndarray) else block.toarray(), order="C")
-
-
-class Condensed:
-    """A rectangle seen from some degrees of freedom of its outline.
-
-    Condensation onto the whole outline is shared with others of the rectangle.
-
-    Attributes
-    ----------
-    rectangle
-        The mesh.
-    dofs
-        What is kept, among the degrees of freedom of the rectangle, ascending.
-    stiffness
-        Of what is kept, shape (n_kept, n_kept), dense, symmetric.
-
-    Raises
-    ------
-    np.linalg.LinAlgError
-        Where holding what is kept would leave the rectangle free to move.
-    """
-
-    def __init__(self, rectangle: Rectangle, dofs: Indices) -> None:
-        self.rectangle, self.dofs, self._outline = rectangle, dofs, rectangle.outline
-        places = np.searchsorted(self._outline.kept, dofs)
-        self._inner = SchurComplement(self._outline.stiffness, places)
-        self.stiffness = self._inner.stiffness
-
-    def condense(self, force: Array) -> Array:
-        """Bring nodal forces, shape (2 n_nodes, n), onto what is kept, shape (n_kept, n)."""
-        return self._inner.condense(self._outline.condense(force))
-
-    def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of all nodes, (n_nodes, 2, n), by that of what is kept, under forces."""
-        on_outline = None if force is None else self._outline.condense(force)
-        whole = self._outline.recover(self._inner.recover(kept, on_outline), force)
-        return whole.reshape(-1, 2, kept.shape[1])

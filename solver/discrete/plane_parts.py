@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane import Condensed, dofs_of
+from solver.discrete.plane import Rectangle, SchurComplement, dofs_of
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity
 
@@ -22,8 +22,8 @@ class Part:
 
     Attributes
     ----------
-    condensed
-        Its stiffness, seen from its boundary rows.
+    rectangle, condensed
+        Its mesh, and its stiffness, seen from its boundary rows.
     elasticity
         The same, with the search direction; equal parts share it.
     nodes
@@ -36,7 +36,8 @@ class Part:
         Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
     """
 
-    condensed: Condensed
+    rectangle: Rectangle
+    condensed: SchurComplement
     elasticity: Elasticity
     nodes: Indices
     body: int
@@ -46,7 +47,7 @@ class Part:
     @property
     def dofs(self) -> Indices:
         """What is kept, among the degrees of freedom of all nodes."""
-        return dofs_of(self.nodes.ravel())[self.condensed.dofs]
+        return dofs_of(self.nodes.ravel())[self.condensed.kept]
 
 
 class Inside:
@@ -83,7 +84,7 @@ class Inside:
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
         self.places = positions[skeleton // 2]
-        corners = [part.nodes.ravel()[part.condensed.rectangle.elements] for part in parts]
+        corners = [part.nodes.ravel()[part.rectangle.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(own) for own in corners]
         self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
@@ -96,7 +97,8 @@ class Inside:
         whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             force = None if part.force is None else part.force[:, instants]
-            whole[part.nodes.ravel()] = part.condensed.recover(chosen[dofs], force)
+            own = part.condensed.recover(chosen[dofs], force)
+            whole[part.nodes.ravel()] = own.reshape(-1, 2, own.shape[1])
         return whole * self._length
 
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
@@ -115,8 +117,7 @@ class Inside:
                 np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
                 if part.force is not None:
                     still = np.zeros((len(dofs), self._size[1]))
-                    inner = part.condensed.recover(still, part.force).reshape(len(own), -1)
-                    constant += own[:, 0] @ inner
+                    constant += own[:, 0] @ part.condensed.recover(still, part.force)
         return total, constant * self._length
 
     def stress(self, displacement: Array) -> Array:
@@ -125,9 +126,7 @@ class Inside:
         `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
         """
         scaled = displacement / self._length
-        parts = [
-            part.condensed.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts
-        ]
+        parts = [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
         return self._young * np.concatenate(parts)
 
     def rigid_motions(self, fixed: Indices) -> Array | None:

@@ -153,7 +153,7 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     """Law of a spring: it pushes to the right, as if from the left."""
     stack = cut.stack
     (part,) = (part for part in cut.parts if "spring" in part.rows)
-    rows, sides = part.rows["spring"], part.condensed.rectangle.edge_weights("right")
+    rows, sides = part.rows["spring"], part.rectangle.edge_weights("right")
     return Contact(
         normal=Unilateral(
             component=Component(rows[:, 0]),

@@ -132,14 +132,6 @@ class PlaneSettings(Settings):
         title="Macro degree",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
     )
-    k_normal_scale = quantity(
-        1.0,
-        (1e-6, 1e6),
-        (0.01, 100.0),
-        "Multiplies k once more, along the normals of contacts alone.",
-        group="Method",
-        title="Normal k factor",
-    )
     start = choice(
         "zero",
         ["zero"],
@@ -175,11 +167,6 @@ class PlaneSettings(Settings):
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
         return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
-
-    @property
-    def k_factors(self) -> tuple[float, float]:
-        """Further factors on k of contacts, along and across them."""
-        return self.k_friction_scale, self.k_normal_scale
 
     @property
     def n_bodies(self) -> int:
