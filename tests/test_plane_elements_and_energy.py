@@ -7,8 +7,7 @@ import pytest
 from plane import solved as driven
 from scipy.sparse.linalg import spsolve
 
-from solver.discrete.elements import EDGE_MASS, elastic_matrix
-from solver.discrete.plane import Rectangle, SchurComplement, dofs_of
+from solver.discrete.plane import EDGE_MASS, Rectangle, SchurComplement, dofs_of, elastic_matrix
 
 STATES = ["strain", "stress"]
 

@@ -12,7 +12,7 @@ import pytest
 
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.bricks import Brick
-from solver.discrete.elements import von_mises
+from solver.discrete.plane import von_mises
 from solver.discrete.probes import reaction, side_mean
 from solver.latin import Iterate, iterations
 from solver.reference.solution import fingerprint

@@ -15,8 +15,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.bricks import Brick, Joint, joints_of
-from solver.discrete.elements import EDGE_MASS, elastic_matrix
-from solver.discrete.plane import Rectangle, SchurComplement, side_basis
+from solver.discrete.plane import EDGE_MASS, Rectangle, SchurComplement, elastic_matrix, side_basis
 from solver.discrete.plane_parts import Part
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 
