@@ -107,7 +107,7 @@ BEAMS = replace(
     support=None,
     sides={
         "left": Side(Given(True, 0.0 * T), Given(True, 0.0 * T)),
-        "right": Side(Given(False, 0.0 * T, 6e5 * T, each_body=True), Given(False, 0.0 * T)),
+        "right": Side(Given(False, 0.0 * T, 6e5 * T), Given(False, 0.0 * T)),
     },
 )
 

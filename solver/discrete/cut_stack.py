@@ -79,18 +79,9 @@ class CutStack:
     Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
     contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
 
-    Attributes
-    ----------
-    stack
-        The bodies.
-    positions
-        Of all nodes, body by body, shape (n_nodes, 2), scaled.
-    parts
-        All substructures, body by body and row by row. Rows are numbered part by part and side by
-        side.
-    pairs
-        Numbers of the pairs of every joint on the grid of all nodes, and the length of each,
-        scaled; joints without any are left out.
+    All nodes have scaled `positions`, body by body, shape (n_nodes, 2). The `parts` come body by
+    body and row by row; boundary rows are numbered part by part and side by side. The `pairs` of a
+    joint are their numbers on the grid of all nodes, and the scaled length of each.
     """
 
     def __init__(self, stack: Stack) -> None:
@@ -273,12 +264,10 @@ class CutStack:
 
     def values(self, number: int, side: str, given: Given) -> Array:
         """What is given at the nodes of a substructure on an outer side, (n_nodes, n_instants)."""
-        (own, body, _), (columns, rows) = self._pieces[number], self.stack.grid
-        first, count, whole = own.x, own.columns, columns
+        own, body, _ = self._pieces[number]
+        first, count, whole = own.x, own.columns, self.stack.grid[0]
         if side in ("left", "right"):
-            first, count, whole = own.y, own.rows, rows
-            if given.each_body:
-                brick = self.stack.rectangles[body]
-                first, whole = own.y - brick.y, brick.rows
+            brick = self.stack.rectangles[body]
+            first, count, whole = own.y - brick.y, own.rows, brick.rows
         nodes = np.arange(first, first + count + 1)[:, None]
         return np.asarray(given.mean + (2.0 * nodes / whole - 1.0) * given.slope)

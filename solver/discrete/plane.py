@@ -97,14 +97,7 @@ def _bending(xi: float, eta: float, width: float, height: float) -> Array:
 class Rectangle:
     """A rectangle of equal elements; nodes are numbered row by row from the lower left.
 
-    Attributes
-    ----------
-    columns, rows
-        Elements along x and y.
-    width, height
-        Size of an element, scaled.
-    elastic
-        As of `elastic_matrix`, scaled.
+    The size is that of an element, and like `elastic`, of `elastic_matrix`, it is scaled.
     """
 
     columns: int
@@ -194,12 +187,7 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
 class SchurComplement:
     """A symmetric stiffness, sparse or condensed already, seen from some degrees of freedom.
 
-    Attributes
-    ----------
-    kept
-        These, among all, ascending.
-    stiffness
-        Of what is kept, shape (n_kept, n_kept), dense, symmetric.
+    These are `kept`, ascending, and have a dense `stiffness`, shape (n_kept, n_kept).
 
     Raises
     ------

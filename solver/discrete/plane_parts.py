@@ -18,22 +18,11 @@ HELD = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A rectangular substructure.
+    """A rectangular substructure: its mesh, and its stiffness seen from its boundary rows.
 
-    Attributes
-    ----------
-    rectangle, condensed
-        Its mesh, and its stiffness, seen from its boundary rows.
-    elasticity
-        The same, with the search direction; equal parts share it.
-    nodes
-        Number of its nodes among those of all bodies, shape (n_rows, n_columns) of the mesh.
-    body
-        Number of its body.
-    rows
-        Boundary rows by joint or by the name of a side, shape (n_nodes, n_components) each.
-    force
-        Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
+    Equal parts share these, and the elasticity. Its `nodes` have numbers among those of all bodies,
+    shape (n_rows, n_columns) of the mesh; boundary `rows` go by joint or by the name of a side,
+    shape (n_nodes, n_components) each; nodal forces are scaled, shape (2 n_nodes, n_instants).
     """
 
     rectangle: Rectangle
@@ -53,24 +42,19 @@ class Part:
 class Inside:
     """What lies inside condensed substructures, found when somebody looks.
 
-    Made of all substructures in order, and the scaled positions of all nodes, (n_nodes, 2).
-
     Attributes
     ----------
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
-    elements
-        Corners of every element, counter-clockwise, shape (n_elements, 4).
+    elements, bodies, parts
+        Corners of every element, counter-clockwise, (n_elements, 4); body and substructure of each.
     grids
         Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
-    bodies, parts
-        Body and substructure of every element, shape (n_elements,).
     dofs
         Degrees of freedom of the problem under those that each substructure keeps.
-    places
-        Scaled position of every degree of freedom of the problem, shape (n_dofs, 2).
-    components
-        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
+    places, components
+        Scaled position of every degree of freedom of the problem, (n_dofs, 2), and its direction:
+        0 along x and 1 along y, (n_dofs,).
     """
 
     def __init__(

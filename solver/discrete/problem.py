@@ -29,13 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scales:
-    """Units in which a problem is written, so that no method sees the size of a pascal.
-
-    Attributes
-    ----------
-    displacement, force, time
-        One scaled unit of each, in m, N and s.
-    """
+    """One scaled unit of each, in m, N and s, so that no method sees the size of a pascal."""
 
     displacement: float
     force: float

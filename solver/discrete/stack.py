@@ -31,15 +31,13 @@ class Given:
     prescribed
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
-        Over time, shape (n_instants,); no slope is 0.
-    each_body
-        Whether s runs over each body of the stack anew, on the left and the right.
+        Over time, shape (n_instants,); no slope is 0. On the left and the right s runs over each
+        body anew.
     """
 
     prescribed: bool
     mean: Array
     slope: Array | float = 0.0
-    each_body: bool = False
 
     @property
     def is_zero(self) -> bool:
@@ -79,12 +77,7 @@ class Support:
 class Spring:
     """A spring along x at the foot of the right side of the lowest body, slack at first.
 
-    Attributes
-    ----------
-    slack
-        How far the foot may move to the left before it is pulled back, m.
-    stiffness
-        N/m.
+    Before it is pulled back, the foot may move to the left by the slack, m; stiffness in N/m.
     """
 
     slack: float
@@ -251,9 +244,8 @@ class Stack:
 
     def _moment(self) -> Array:
         """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
-        given, size = self.sides["right"].x, self.longest * self.height**2
-        bodies = 1 if given.each_body else len(self.rectangles)
-        return np.broadcast_to(-bodies * size / 6.0 * given.slope, self.instants.shape)
+        size = self.longest * self.height**2
+        return np.broadcast_to(-size / 6.0 * self.sides["right"].x.slope, self.instants.shape)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""

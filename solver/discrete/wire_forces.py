@@ -14,16 +14,9 @@ from solver.discrete.rope import Rope
 class CutWires:
     """All wires of the layers at one section, inside out and around, shape (n_cut,) each.
 
-    Attributes
-    ----------
-    wire
-        The place in `Rope.wires` of the one that stands for each.
-    centres
-        Sideways and towards the outermost fibre, shape (n_cut, 2), m.
-    arc
-        Where that is along the wire that stands for it, m.
-    side
-        1, or -1 where it slips the other way: on the other side of the plane of bending.
+    A wire is cut at its centre, sideways and towards the outermost fibre, (n_cut, 2), m. The one
+    that stands for it has this place in `Rope.wires`, and is there at this arc length, m; the side
+    is -1 where a wire slips the other way, on the other side of the plane of bending, else 1.
     """
 
     wire: Indices

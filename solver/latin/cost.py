@@ -148,15 +148,7 @@ def _expected_share(problem: Problem) -> float:
 
 @dataclass(frozen=True)
 class RunCost:
-    """Estimated, by a factor of three.
-
-    Attributes
-    ----------
-    seconds, memory
-        Of the whole, s and B.
-    reference
-        Seconds of these for the reference; 0 without one.
-    """
+    """Seconds and bytes of a run, right by a factor of three; seconds of these for a reference."""
 
     seconds: float
     memory: float

@@ -24,10 +24,8 @@ class Record:
     ----------
     seconds
         Time that the run took so far, s: set-up, iterations, and all that its stop rules compute.
-    indicator
-        LATIN indicator eta (paper, eq. 2).
-    behaviour
-        The k-free indicator.
+    indicator, behaviour
+        LATIN indicator eta (paper, eq. 2), and the k-free indicator.
     estimated_error
         Of the contact force, relative, without a reference; NaN where it is not estimated.
     error_displacement, error_force

@@ -147,14 +147,9 @@ def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
 class SharedBasis:
     """A separated basis of y = W + F/k, and the substructures that share it; read-only, scaled.
 
-    Attributes
-    ----------
-    members
-        Their numbers, ascending; columns of the basis run through them, then through the instants.
-    basis
-        Its modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first.
-    incoming
-        W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
+    Columns of the basis run through the numbers of these, ascending, then through the instants; its
+    modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first. `incoming`
+    is W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
     """
 
     members: tuple[int, ...]

@@ -24,13 +24,7 @@ SAME_SHAPE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Sizes:
-    """Errors of a field that is kept in more and more numbers.
-
-    Attributes
-    ----------
-    numbers, errors
-        Shape (n,) each; the numbers ascend.
-    """
+    """Errors of a field that is kept in more and more numbers, shape (n,) each."""
 
     numbers: Indices
     errors: Array

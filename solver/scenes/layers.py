@@ -253,7 +253,7 @@ class LayersSettings(PlaneSettings):
             # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
             moment = self.path("bend_load")
             extreme = -6.0 * moment / (stack.longest * self.thickness**2)
-            right = Side(Given(False, pull, extreme, each_body=True), free)
+            right = Side(Given(False, pull, extreme), free)
         return replace(
             stack,
             friction=shared.factors_of(self)[:, None] * stack.friction,
