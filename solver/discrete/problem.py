@@ -42,8 +42,6 @@ class Problem:
 
     Attributes
     ----------
-    substructures
-        All substructures, in order.
     interfaces
         All interfaces by name; together they own every boundary row once.
     positions
@@ -51,8 +49,6 @@ class Problem:
         rod, (n_dofs, 2) in the plane.
     instants
         Shape (n_instants,), in s.
-    scales
-        What one scaled unit is in SI.
     inside
         What the degrees of freedom do not show, where substructures are condensed; else None.
     rest

@@ -139,8 +139,6 @@ class Rope:
         same all along, and the wires of a layer differ by their phase alone.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
-    friction_law
-        Of every wire on what it lies on.
     """
 
     wires: Sequence[RopeWire]

@@ -58,10 +58,9 @@ class Support:
 
     Attributes
     ----------
-    gap
-        Opening at the nodes of the lowest side, shape (nodes along,), m.
-    friction
-        Coefficient mu, or that of the nodes, shape (nodes along,).
+    gap, friction
+        Opening at the nodes of the lowest side, m, shape (nodes along,), and coefficient mu there,
+        or of all.
     bound
         Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
         support then presses as much as that takes, and adds no pressure of its own. None where
@@ -89,6 +88,8 @@ class Stack:
     """Rectangular bodies that lie on each other, or stand beside each other; one metre thick.
 
     They are in contact wherever sides meet, and where they stand at y = 0 with the support.
+
+    They have one friction law, also on the support; times are in s.
 
     Attributes
     ----------
@@ -120,15 +121,11 @@ class Stack:
         support replaces "bottom". `left` and `right` run over the sides of all bodies.
     body_force
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
-    instants, duration
-        s.
     spring
         At the right side, of which nothing is prescribed then; or None.
     tilt
         Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
         `body_force` has turned the other way already. None where it does not.
-    friction_law
-        Between the bodies, and on the support.
     """
 
     length: float

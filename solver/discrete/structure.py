@@ -43,16 +43,12 @@ class Act:
     ----------
     where
         "right x": along a side; or "body": throughout.
-    symbol
-        What it is called.
     places
         Where on the undeformed bodies, shape (n, 2), as shares of their length and height.
     towards
         Direction of positive values, a unit vector, or one of each instant, (2, n_instants).
     values
         Over time, shape (n_instants,) or, of each place, (n, n_instants).
-    unit
-        Of the values.
     """
 
     where: str

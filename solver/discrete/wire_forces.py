@@ -78,13 +78,11 @@ def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the first and
     the last of them.
     """
-    if rope.elements == 1:
-        return np.asarray(stress[cut.wire, 0])
     sizes = np.array([wire.length / rope.elements for wire in rope.wires])
     at = cut.arc / sizes[cut.wire] - 0.5
-    first = np.clip(np.floor(at).astype(np.intp), 0, rope.elements - 2)
+    first = np.clip(np.floor(at).astype(np.intp), 0, max(rope.elements - 2, 0))
     share = (at - first)[:, None]
-    low, high = stress[cut.wire, first], stress[cut.wire, first + 1]
+    low, high = stress[cut.wire, first], stress[cut.wire, np.minimum(first + 1, rope.elements - 1)]
     return np.asarray((1.0 - share) * low + share * high)
 
 

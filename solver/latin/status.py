@@ -89,7 +89,6 @@ _BY_INCREMENTS = (
     " It is the incremental solver's answer: the status step began at the statuses of iterate {}, "
     "whose own contact force was still {} % away from it."
 )
-_ON_BASES = " The modes are those of that iterate."
 _FEW_MODES = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
@@ -133,7 +132,7 @@ def certified(
             message += _SEARCHED.format(away)
         else:
             message += _FOUND.format(before, f"{away:g}")
-        message += _ON_BASES * bool(finish.bases) + f" {advice}" * bool(advice)
+        message += f" {advice}" * bool(advice)
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
 
 
