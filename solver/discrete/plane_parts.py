@@ -46,8 +46,8 @@ class Inside:
     ----------
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
-    elements, bodies, parts
-        Corners of every element, counter-clockwise, (n_elements, 4); body and substructure of each.
+    elements, bodies
+        Corners of every element, counter-clockwise, (n_elements, 4), and body of each.
     grids
         Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
     dofs
@@ -71,7 +71,6 @@ class Inside:
         corners = [part.nodes.ravel()[part.rectangle.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(own) for own in corners]
-        self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
         self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
         self.components: Indices = skeleton % 2
 
