@@ -19,6 +19,8 @@ from scipy.sparse.linalg import splu
 from solver.arrays import Array, Indices
 from solver.discrete.substructure import tributary
 
+EDGE_MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
+"""From a traction at both ends of an edge of length 1, linear between them, to their forces."""
 LONG_SIDES = 0.6
 """Factor on the macro degree of a side, times the root of its length over the depth behind it. Of
 layers 10 to 1000 times as long as thick 1 % of the contact force takes at most 45 iterations, 50
@@ -49,10 +51,6 @@ def von_mises(stress: Array, poisson: float, state: str) -> Array:
     zz = poisson * (xx + yy) if state == "strain" else np.zeros_like(xx)
     squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return np.asarray(np.sqrt(0.5 * squares + 3.0 * xy**2))
-
-
-EDGE_MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
-"""From a traction at both ends of an edge of length 1, linear between them, to their forces."""
 
 
 def strain_matrix(xi: float, eta: float, width: float, height: float) -> Array:
@@ -97,7 +95,7 @@ def _bending(xi: float, eta: float, width: float, height: float) -> Array:
 class Rectangle:
     """A rectangle of equal elements; nodes are numbered row by row from the lower left.
 
-    The size is that of an element, and like `elastic`, of `elastic_matrix`, it is scaled.
+    Width and height are those of an element, scaled; so is `elastic`, as of `elastic_matrix`.
     """
 
     columns: int
