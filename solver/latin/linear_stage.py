@@ -131,7 +131,7 @@ class Group:
         """Allocate a zero field of the group."""
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
-    def gather(self, field: Array, instants: slice = ALL) -> None:
+    def gather(self, field: Array, instants: slice) -> None:
         """Make the group's rows of a boundary field its target, at some instants."""
         flat = self.target.T.reshape(self._n_instants, -1)[instants]
         np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
@@ -150,7 +150,7 @@ class Group:
         """W + F/k, a field of the group."""
         return self.state
 
-    def relax(self, relaxation: float, instants: slice = ALL) -> None:
+    def relax(self, relaxation: float, instants: slice) -> None:
         """Mix the target into the state, at some instants."""
         old, target = self.state[:, :, instants], self.target[:, :, instants]
         if relaxation == 1.0:
@@ -160,7 +160,7 @@ class Group:
         np.multiply(target, relaxation, out=target)
         np.add(old, target, out=old)
 
-    def reflect(self, instants: slice = ALL) -> Array:
+    def reflect(self, instants: slice) -> Array:
         """W - F/k = 2 W - (W + F/k), up to date at some instants; the next call overwrites it."""
         flat = (len(self.k), -1)
         reflected = self._reflected[:, :, instants]

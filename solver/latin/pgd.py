@@ -14,7 +14,6 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
@@ -95,14 +94,14 @@ class PGDGroup(Group):
             self._put(shared.members, rebuilt, shared.basis.field())
         return rebuilt
 
-    def relax(self, relaxation: float, instants: slice = ALL) -> None:
+    def relax(self, relaxation: float, instants: slice) -> None:
         """Bring the bases towards the target: update time functions, enrich, downsize."""
         self.shared = [self._advanced(shared, relaxation) for shared in self.shared]
         self.iterations += 1
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share()
 
-    def reflect(self, instants: slice = ALL) -> Array:
+    def reflect(self, instants: slice) -> Array:
         """W - F/k; the next call overwrites it."""
         for shared in self.shared:
             columns = self._columns(shared.members, self._reflected)
