@@ -29,8 +29,6 @@ IN_FILES = {"str": str, "int": int, "float": (int, float), "tuple[str, ...]": li
 INDICATORS = "indicator", "behaviour", "estimated_error"
 ERRORS = "error_displacement", "error_force"
 """What is known of every iteration, beside its time; errors where there is a reference."""
-OF_BASES = "modes", "added", "updated", "enriched", "dropped"
-"""What is known of every separated basis at every iteration."""
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
@@ -194,8 +192,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     (n_instants,), is false where nothing says where a body lies. Interfaces between bodies, or that
     may open, have arrays of their own (`interface_arrays`).
 
-    With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
-    shape (n_iterations, n_substructures), as in `ReductionRecord`.
+    With separated bases also pgd_modes, shape (n_iterations, n_substructures).
     """
     iterate, problem = solution.iterate, solution.iterate.problem
     history = {
@@ -203,10 +200,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         for name in (*INDICATORS, *ERRORS, "seconds")
     }
     if iterate.bases:
-        for name in OF_BASES:
-            history[f"pgd_{name}"] = [
-                [getattr(part, name) for part in entry.reduction] for entry in solution.records
-            ]
+        history["pgd_modes"] = [entry.modes for entry in solution.records]
     found: dict[str, Any]
     if problem.inside is None:
         found = {

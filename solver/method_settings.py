@@ -82,14 +82,6 @@ class MethodSettings(Checked):
         group="Method",
         title="Factor on k",
     )
-    k_friction_scale = quantity(
-        1.0,
-        (1e-6, 1e6),
-        (0.01, 100.0),
-        "Multiplies k once more, at friction points alone.",
-        group="Method",
-        title="Friction k factor",
-    )
     relaxation = quantity(
         0.8,
         (0.01, 1.0),
@@ -224,8 +216,3 @@ class MethodSettings(Checked):
     def n_substructures(self) -> int:
         """Number of substructures in all."""
         return self.substructures
-
-    @property
-    def k_factors(self) -> tuple[float, float]:
-        """Further factors on k of contacts, along and across them."""
-        return self.k_friction_scale, 1.0

@@ -33,7 +33,7 @@ MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of one."""
 MOST_ITERATIONS = 1000
 """Entries of the history that a frame has at most."""
-SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("reduction", "is_answer"))
+SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("modes", "is_answer"))
 
 
 class Sampler:

@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 class Full:
     """A linear stage with a value for every point and instant.
 
-    Attributes
-    ----------
-    responses
-        Factors of substructures that runs with one k share; None: each run has its own.
+    Runs with one k may share the factors of substructures, `responses`.
     """
 
     responses: Responses | None = field(default=None, repr=False)
@@ -44,13 +41,6 @@ class LinearStage:
     comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
     relaxation mixes, and everything else follows from it. How y is held is the groups' business:
     in full, block by block of instants, or on separated bases.
-
-    Attributes
-    ----------
-    groups
-        Of identical substructures with the same k.
-    is_full
-        Whether their states are y in full.
     """
 
     def __init__(
@@ -141,7 +131,7 @@ class Group:
         """Allocate a zero field of the group."""
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
-    def gather(self, field: Array, instants: slice = ALL) -> None:
+    def gather(self, field: Array, instants: slice) -> None:
         """Make the group's rows of a boundary field its target, at some instants."""
         flat = self.target.T.reshape(self._n_instants, -1)[instants]
         np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
@@ -160,7 +150,7 @@ class Group:
         """W + F/k, a field of the group."""
         return self.state
 
-    def relax(self, relaxation: float, instants: slice = ALL) -> None:
+    def relax(self, relaxation: float, instants: slice) -> None:
         """Mix the target into the state, at some instants."""
         old, target = self.state[:, :, instants], self.target[:, :, instants]
         if relaxation == 1.0:
@@ -170,7 +160,7 @@ class Group:
         np.multiply(target, relaxation, out=target)
         np.add(old, target, out=old)
 
-    def reflect(self, instants: slice = ALL) -> Array:
+    def reflect(self, instants: slice) -> Array:
         """W - F/k = 2 W - (W + F/k), up to date at some instants; the next call overwrites it."""
         flat = (len(self.k), -1)
         reflected = self._reflected[:, :, instants]

@@ -14,11 +14,10 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import ReductionRecord, SeparatedBasis, SharedBasis, nearest_mode
+from solver.reduction.basis import SeparatedBasis, SharedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -95,14 +94,14 @@ class PGDGroup(Group):
             self._put(shared.members, rebuilt, shared.basis.field())
         return rebuilt
 
-    def relax(self, relaxation: float, instants: slice = ALL) -> None:
+    def relax(self, relaxation: float, instants: slice) -> None:
         """Bring the bases towards the target: update time functions, enrich, downsize."""
         self.shared = [self._advanced(shared, relaxation) for shared in self.shared]
         self.iterations += 1
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share()
 
-    def reflect(self, instants: slice = ALL) -> Array:
+    def reflect(self, instants: slice) -> Array:
         """W - F/k; the next call overwrites it."""
         for shared in self.shared:
             columns = self._columns(shared.members, self._reflected)
@@ -142,19 +141,13 @@ class PGDGroup(Group):
         wanted = basis.coefficients(target)
         # What was last reflected is read already, and its place is free.
         whole = basis.squared(target, self._columns(shared.members, self._reflected))
-        inside = basis.squared_of(wanted)
+        left = whole - basis.squared_of(wanted)
         change = wanted - basis.time_functions
-        updated = basis.squared_of(change)
-        left = whole - inside
-        if left < NOTHING_LEFT * whole:
-            left = 0.0
-        residual = left + updated
-        enough = pgd.tolerance**2 * whole
-        explained, added, dropped = 0.0, 0, 0.0
         basis = replace(basis, time_functions=basis.time_functions + relaxation * change)
-        if left > enough:
+        if left > max(pgd.tolerance**2, NOTHING_LEFT) * whole:
             rest = target - basis.modes @ wanted
-            while added < pgd.pairs and left - explained > enough:
+            added, explained = 0, 0.0
+            while added < pgd.pairs and left - explained > pgd.tolerance**2 * whole:
                 mode = basis.orthonormal(nearest_mode(rest, self.k, basis.weights))
                 if mode is None:
                     break
@@ -163,16 +156,9 @@ class PGDGroup(Group):
                 basis = basis.appended(mode, relaxation * time_function)
                 explained += basis.squared_of(time_function[None])
                 added += 1
-            basis, dropped = basis.downsized(pgd.tolerance, pgd.modes)
+            basis = basis.downsized(pgd.tolerance, pgd.modes)
             incoming = self._incoming(basis)
-        record = ReductionRecord(
-            modes=basis.n_modes,
-            added=added,
-            updated=updated / residual if residual > 0.0 else 1.0,
-            enriched=min(explained / residual, 1.0) if residual > 0.0 else 0.0,
-            dropped=dropped,
-        )
-        return SharedBasis(shared.members, basis, incoming, record)
+        return SharedBasis(shared.members, basis, incoming)
 
     def _share(self) -> None:
         """Join bases whose fields lie in each other's modes up to the allowed share."""
@@ -185,7 +171,7 @@ class PGDGroup(Group):
                     for part in (other, shared):
                         self._put(part.members, field, part.basis.field())
                     members = tuple(sorted(other.members + shared.members))
-                    joined[place] = replace(self._of_field(members, field), record=other.record)
+                    joined[place] = self._of_field(members, field)
                     break
             else:
                 joined.append(shared)
@@ -196,7 +182,7 @@ class PGDGroup(Group):
         columns, pgd = self._columns(members, field), self._pgd
         weights = np.repeat(self._weights, len(members))
         basis = SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
-        return SharedBasis(members, basis, self._incoming(basis), ReductionRecord(basis.n_modes))
+        return SharedBasis(members, basis, self._incoming(basis))
 
     def _incoming(self, basis: SeparatedBasis) -> Array:
         """W - F/k of every mode."""

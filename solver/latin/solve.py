@@ -13,7 +13,6 @@ from solver.latin.iteration import iterations
 from solver.latin.method import Latin
 from solver.latin.status import CANCELLED, Decision, Ending, Status
 from solver.latin.stop import StopState
-from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 
 
@@ -25,16 +24,14 @@ class Record:
     ----------
     seconds
         Time that the run took so far, s: set-up, iterations, and all that its stop rules compute.
-    indicator
-        LATIN indicator eta (paper, eq. 2).
-    behaviour
-        The k-free indicator.
+    indicator, behaviour
+        LATIN indicator eta (paper, eq. 2), and the k-free indicator.
     estimated_error
         Of the contact force, relative, without a reference; NaN where it is not estimated.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
-    reduction
-        What the iteration did to the separated basis of every substructure; empty without bases.
+    modes
+        Of the separated basis of every substructure; empty without bases.
     is_answer
         As in `Iterate`.
     """
@@ -46,7 +43,7 @@ class Record:
     estimated_error: float
     error_displacement: float
     error_force: float
-    reduction: tuple[ReductionRecord, ...] = ()
+    modes: tuple[int, ...] = ()
     is_answer: bool = False
 
 
@@ -84,7 +81,7 @@ def record(
         estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
-        reduction=tuple(basis.record for basis in iterate.bases),
+        modes=tuple(basis.n_modes for basis in iterate.bases),
         is_answer=iterate.is_answer,
     )
 

@@ -10,10 +10,10 @@ import solver.scenes.bar_ends as bar_ends
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import ANY, POSITIVE, count, quantity
-from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
+from solver.discrete.substructure import tributary
 from solver.friction_settings import STIFFNESSES
 from solver.loads import interpolate
 from solver.profiles import harmonic_means, means

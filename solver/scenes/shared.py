@@ -81,20 +81,20 @@ def _over_length(shares: Rows, settings: Settings) -> Rows:
     return tuple((share * settings.length, factor) for share, factor in shares)
 
 
-def at_nodes(settings: Settings, places: Array, *profiles: str, order: int = 1) -> Array:
+def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
     """Product of the factors of profiles at nodes; of tables, its mean over their shares.
 
     Parameters
     ----------
     settings, profiles
         Whose, and the names of one or two of them.
-    places, order
-        Of the nodes, shape (n_nodes,), m; order of their elements.
+    places
+        Of the nodes, shape (n_nodes,), m.
     """
     tables = [settings.points(name) for name in profiles]
     if all(isinstance(getattr(settings, name), str) for name in profiles):
         return math.prod((interpolate(table, places) for table in tables), start=np.ones(1))
-    return means(tables, shares_of(places, order))
+    return means(tables, shares_of(places))
 
 
 def friction_factors(which: str) -> CurveParameter:
