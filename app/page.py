@@ -153,10 +153,10 @@ class Page:
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
-            if tab == "Reports":
-                made = Reports(self.state)
+            if tab == "Fit":
+                made = FitTab(self.state, self._open_run)
             else:
-                made = {"What if": WhatIf, "Fit": FitTab}[tab](self.state, self._open_run)
+                made = {"What if": WhatIf, "Reports": Reports}[tab](self.state)
             self._tabs[tab] = made.view
         self._place()
         self._live.look()

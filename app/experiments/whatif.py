@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import holoviews as hv
-import numpy as np
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.events import Tap
 
 from app.charts import in_units, keys, overlay
 from app.experiments.jobs import SETTINGS, Job, Sweep, follow
@@ -24,34 +20,27 @@ from app.experiments.questions import (
     quantities,
     question_of,
 )
-from app.refusals import message_of
-from app.state import ANSWER, PageState, answer
-from app.units import sizes_of, unit_for
+from app.state import PageState, answer
+from app.units import unit_for
 from app.widgets import button, changing_text, download
 from solver.checked import dump
-from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart, Map
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.sweep.chart import chart_of, is_map
+from solver.study.sweep.chart import chart_of
 from solver.study.sweep.plan import Plan
 from solver.study.sweep.report import counts, csv_of
 
 MESH = "Is the mesh fine enough?"
 SCALES = {"automatic": None, "linear": False, "logarithmic": True}
-NEAR = 0.04
-"""Share of the axes up to which a tap hits a point."""
 
 
 class WhatIf:
-    """The tab: the state has the question, and all that does not vary.
+    """The tab: the state has the question, and all that does not vary."""
 
-    `open_run` opens the run of some settings on the live tab.
-    """
-
-    def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
-        self.state, self._open_run = state, open_run
+    def __init__(self, state: PageState) -> None:
+        self.state = state
         self.question = Question((), "")
         self.sweep: Sweep | None = None
         self._seen: tuple[int, bool] = 0, False
@@ -218,7 +207,7 @@ class WhatIf:
     # Chart
 
     def _draw(self) -> None:
-        """Show what has come, and where the page's settings stand."""
+        """Show what has come."""
         sweep, settings = self.sweep, self.state.settings
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
@@ -227,51 +216,13 @@ class WhatIf:
             words += " These are runs of other settings: draw them again."
         self.message.object = f"{sweep.message} {words}".strip()
         chart = self.chart()
-        data = chart, _place_of(sweep.plan, chart, settings)
         scale = chart.scale if isinstance(chart, Map) else chart.y
         if scale.logarithmic is self._is_logarithmic:
-            self._pipe.send(data)
+            self._pipe.send(chart)
             return
         self._is_logarithmic, self._keys.object = scale.logarithmic, keys([chart])
-        self._pipe = hv.streams.Pipe(data=data)
-        self._chart.object = hv.DynamicMap(
-            lambda data: overlay(*data).opts(hooks=[self._listen]), streams=[self._pipe]
-        )
-
-    def _listen(self, plot: Any, _element: Any) -> None:
-        """Listen to taps, as HoloViews' own stream does not on overlays."""
-        if not plot.handles.get("is_tapped"):
-            plot.handles["is_tapped"] = True
-            plot.state.on_event(Tap, lambda event: self.open_at(event.x, event.y))
-
-    def open_at(self, x: float, y: float) -> None:
-        """Open the run of the point at a place on the chart, as the page shows runs."""
-        chart, page = self.chart(), self.state.settings
-        place = nearest(chart, x, y)
-        if self.sweep is None or place is None:
-            return
-        plan = self.sweep.plan
-        try:
-            settings = plan.settings_at(int(chart.runs.numbers[place]))
-        except RefusedError as refusal:
-            self.state.refusal = message_of(refusal, page)
-            return
-        ends = {"accuracy", *(ANSWER if settings.finish != "none" else ())}
-        ends -= {axis.name for axis in plan.axes}
-        self._open_run(settings.replace(**{name: getattr(page, name) for name in ends}))
-
-
-def nearest(chart: Chart, x: float, y: float) -> int | None:
-    """Number in the chart of the run that is meant by a place on it; None where there is none."""
-    known, away = np.flatnonzero(np.isfinite(chart.runs.y)), 0.0
-    if not known.size:
-        return None
-    for axis, values, at in ((chart.x, chart.runs.x, x), (chart.y, chart.runs.y, y)):
-        scale = np.log if axis.logarithmic else np.asarray
-        places = scale(values[known])
-        away = np.hypot(away, (places - scale(at)) / (np.ptp(places) or 1.0))
-    nearest = int(away.argmin())
-    return int(known[nearest]) if isinstance(chart, Map) or away[nearest] < NEAR else None
+        self._pipe = hv.streams.Pipe(data=chart)
+        self._chart.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
@@ -279,16 +230,3 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
     varied = {axis.name: None for axis in plan.axes}
     is_same_scene = settings.scene == plan.settings.scene
     return is_same_scene and settings.values() | varied == plan.settings.values() | varied
-
-
-def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
-    """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
-    place = [np.nan, np.nan]
-    axes = plan.axes[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
-    for i, axis in enumerate(axes):
-        value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
-        if axis.is_numeric:
-            place[i] = value / sizes_of(axis.unit).get(unit, 1.0)
-        elif value in axis.values:
-            place[i] = axis.values.index(value)
-    return place[0], place[1]
