@@ -207,22 +207,9 @@ def made(monkeypatch: pytest.MonkeyPatch) -> reports.Reports:
 
 
 def test_a_report_is_read_with_its_files_and_its_links_lead_here(made: reports.Reports) -> None:
-    made.kind.value = reports.PROOF
+    made.kind.value = "Proof"
     assert made.page.object == ""
     made.start()
     assert "a run" in made.page.object
     assert "localhost" not in made.page.object
     assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]
-
-
-def test_a_run_stands_still_while_a_study_is_timed(
-    made: reports.Reports, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Done, "is_over", False)
-    made.kind.value = reports.STUDY
-    made.start()
-    assert not made.state.running
-    assert made.cancel_button.visible
-    monkeypatch.setattr(Done, "is_over", True)
-    made.look()
-    assert made.state.running

@@ -13,16 +13,17 @@ from app.experiments.jobs import OUT, SETTINGS, Job, follow
 from app.experiments.questions import TEXTS
 from app.state import PageState
 from app.widgets import button, changing_text, download, looks, wrapped
-from app.worker.references import has_reference
 from solver.checked import dump
 from solver.study.proof.report import PAGE
 
 WORDS: dict[str, str] = TEXTS["reports"]
-FIGURES, STUDY, STABILITY, PROOF = "The paper's figures", "Study", "Stability", "Proof"
-NO_REFERENCE = (
-    "The reference to measure errors by would take too long here: choose fewer bodies or "
-    "elements, or the command line."
-)
+COMMANDS = {
+    "The paper's figures": ("figures",),
+    "Study": ("study", SETTINGS),
+    "Stability": ("stability", "--quick"),
+    "Proof": ("proof",),
+}
+"""By what is said of them in `WORDS`."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
 KEPT = 12
 """Reports that a server keeps for all of its pages."""
@@ -141,13 +142,12 @@ class Reports(CommandTab):
     def __init__(self, state: PageState) -> None:
         self.kind = pmui.RadioButtonGroup(
             label="",
-            options=list(WORDS),
-            value=FIGURES,
+            options=list(COMMANDS),
+            value=next(iter(COMMANDS)),
             size="small",
             margin=(6, 6),
             **looks("words"),
         )
-        self._has_paused = False
         super().__init__(state, "Reports", DONE, self.kind)
         self.kind.param.watch(lambda event: self.show(), "value")
         self.show()
@@ -155,42 +155,16 @@ class Reports(CommandTab):
             self.start()
 
     @property
-    def command(self) -> Command | None:
-        """The command of the report that is chosen, if it can be made."""
-        if self._has_no_reference:
-            return None
-        arguments = {
-            FIGURES: ["figures"],
-            STUDY: ["study", SETTINGS],
-            STABILITY: ["stability", "--quick"],
-            PROOF: ["proof"],
-        }[self.kind.value]
+    def command(self) -> Command:
+        """The command of the report that is chosen."""
+        arguments = COMMANDS[self.kind.value]
         texts = ((SETTINGS, dump(self.state.settings)),) if SETTINGS in arguments else ()
         return (*arguments, "--out", OUT), texts
 
     @property
     def words(self) -> str:
-        """What it is of, and why it cannot be made."""
-        return WORDS[self.kind.value] + self._has_no_reference * f" {NO_REFERENCE}"
-
-    @property
-    def _has_no_reference(self) -> bool:
-        return self.kind.value == STUDY and not has_reference(self.state.settings)
-
-    def start(self) -> None:
-        """Have the chosen report made; the page's run waits while methods are timed."""
-        super().start()
-        state = self.state
-        self._has_paused = self.kind.value == STUDY and state.running and not state.is_over
-        if self._has_paused:
-            state.pause()
-
-    def end(self) -> None:
-        """Leave nothing behind."""
-        super().end()
-        if self._has_paused:
-            self._has_paused = False
-            self.state.go_on()
+        """What it is of."""
+        return WORDS[self.kind.value]
 
 
 def shown(files: Files) -> str:
