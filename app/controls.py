@@ -187,7 +187,7 @@ class SettingControl:
             self._state.drag(self.name, self._from_slider(place))
 
     def _release(self, place: float) -> None:
-        """Run what the slider is let go at; where that is refused, the nearest that holds."""
+        """Run what the slider is let go at; where that is refused, the last that held."""
         if self._is_updating:
             return
         self._is_dragged = False
