@@ -292,9 +292,8 @@ class ClassDialog:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
         self._act = button("", self._leave_or_return, variant="text")
-        self._code = button("Code", lambda: self.open(), variant="text")
-        parts = self._message, self._act, self._code
-        self.view = pn.Row(*parts, visible=False, margin=0, align="center", css_classes=["class"])
+        look = {"visible": False, "margin": 0, "align": "center", "css_classes": ["class"]}
+        self.view = pn.Row(self._message, self._act, **look)
         self.dialog = dialog("A class", width_option="sm")
         member.param.watch(lambda event: self._show(), "message")
 
@@ -354,5 +353,4 @@ class ClassDialog:
         here = "End the class" if member.leads else "Go on by myself"
         label = "Follow again" if member.room is None else here
         self._act.param.update(label=label, visible=bool(member.room or member.left))
-        self._code.visible = member.leads
         self.view.visible = bool(member.message)
