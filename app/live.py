@@ -87,7 +87,7 @@ class Live:
             self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":
             self._cards = self._all[:PRESENTED]
-        self._above.visible = not state.is_asked and state.view != "embed"
+        self._above.visible = not state.is_asked
         self._figures.visible = not state.is_asked
         # Without plots the scene has all the height.
         self._plots.css_classes = ["plots"] if self._cards else []

@@ -182,7 +182,7 @@ class Page:
     def _dress(self) -> None:
         """Have the plots that belong here, and the controls where there is room for them.
 
-        A lesson has those that it speaks of; a view for a projector, or a frame, shows a run alone.
+        A lesson has those that it speaks of; the view for a projector shows a run alone.
         """
         self._place()
         is_bare = self.state.view != "page"

@@ -37,8 +37,8 @@ PACES = {
     "fastest": math.inf,
 }
 TABS = ["Live", "What if", "Fit", "Reports"]
-VIEWS = ["page", "present", "embed"]
-"""With controls, for a projector, for a frame in another page."""
+VIEWS = ["page", "present"]
+"""With controls, for a projector."""
 
 
 @dataclass(frozen=True)
