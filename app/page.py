@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +33,7 @@ COMPACT = {
         "& header": {"overflowX": "auto"},
     },
 }
+WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 
 
@@ -63,7 +63,8 @@ class Page:
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        self._away, self._words = dialog("Take away"), glossary()
+        self._away = dialog("Take away")
+        self._words = dialog("Keys and words", pn.pane.Markdown(WORDS), width_option="md")
         dialogs = *self._guide.dialogs.values(), self._class.dialog, self._away, self._words
         for each in dialogs:
             each.param.watch(self._put, "open")
@@ -210,15 +211,3 @@ def open_page() -> pmui.Page:
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template
-
-
-def glossary() -> pmui.Dialog:
-    """A dialog of the keys, and of what words mean."""
-    texts = tomllib.loads((Path(__file__).parent / "glossary.toml").read_text(encoding="utf-8"))
-    tables = pn.pane.HTML("".join(map(_table, texts.values())), sizing_mode="stretch_width")
-    return dialog("Keys and words", tables, width_option="md")
-
-
-def _table(entries: dict[str, str]) -> str:
-    rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in entries.items())
-    return f'<table style="text-align:left;font-size:14px;margin-bottom:12px">{rows}</table>'
