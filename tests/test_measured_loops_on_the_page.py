@@ -11,7 +11,7 @@ from bars import SMALL
 
 from app.experiments.fit import FitTab
 from app.files.opener import TableOpener
-from app.files.tables import BOTH, LOOP, TABLES
+from app.files.tables import LOOP, TABLES
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
@@ -52,7 +52,8 @@ def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     assert "passed over" not in made.message.object
     made.heads.value = "Weg [µm], Kraft [kN], time [ms]"
     assert state.brought.times.tolist() == pytest.approx([0.0, 1e-3, 2e-3, 3e-3, 4e-3])
-    made.use.value = f"{BOTH}load"
+    made.use.value = "load"
+    assert state.brought is not None
     assert state.settings.load[:2] == ((0.0, 0.0), (1e-3, 500.0))
     assert state.settings.duration == pytest.approx(4e-3)
     made.heads.value = "Weg [µm], Kraft [kN], time [min]"
