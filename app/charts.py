@@ -11,6 +11,7 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import pandas as pd
+import panel as pn
 from bokeh.embed import components
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
@@ -76,6 +77,27 @@ def _key(curve: PanelCurve) -> str:
     style = f"border-top: 3px {dash} {COLORS[curve.hue]}"
     mark = f'<i style="display: inline-block; width: 1.2rem; vertical-align: middle; {style}"></i>'
     return f'<span class="key">{mark} {escape(curve.label)}</span>'
+
+
+class LiveChart:
+    """A chart that is drawn anew as it fills; `view` has it below its legend."""
+
+    def __init__(self) -> None:
+        self._keys = pn.pane.HTML("", margin=(4, 8))
+        self._figure = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        self.view = pn.Column(self._keys, self._figure, sizing_mode="stretch_width")
+        self._drawn: list[Any] = []
+
+    def show(self, chart: Chart) -> None:
+        """Show a chart, in the figure of the last one if it has the same axes and curves."""
+        axes = chart.x, chart.y, chart.scale if isinstance(chart, Map) else chart.y
+        legend, data = keys([chart]), in_units(chart)
+        drawn = [legend, *((axis.quantity, axis.names, axis.logarithmic) for axis in axes)]
+        if drawn == self._drawn:
+            self._pipe.send(data)
+            return
+        self._drawn, self._keys.object, self._pipe = drawn, legend, hv.streams.Pipe(data=data)
+        self._figure.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
 
 
 def in_units(chart: Chart) -> Chart:

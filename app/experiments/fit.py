@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from html import escape
 
-import holoviews as hv
 import numpy as np
 import pandas as pd
-import panel as pn
 import panel_material_ui as pmui
 
-from app.charts import in_units, keys, overlay
+from app.charts import LiveChart
 from app.experiments.jobs import OUT, SETTINGS
 from app.experiments.reports import LOOKS, Command, CommandTab, Files
 from app.files.opener import TableOpener
@@ -47,13 +45,9 @@ class FitTab(CommandTab):
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
         self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
         self.use_button = button("Use these settings", self.use, icon="check", **LOOKS)
-        self._keys = pn.pane.HTML("", margin=(4, 8))
-        self._pipe = hv.streams.Pipe(data=None)
-        self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        self._chart = LiveChart()
         super().__init__(state, "Fit", {}, opener.view, self.chosen)
-        # Of its own visibility the chart would tell Bokeh's figure, which knows no such thing.
-        self._drawn = pn.Column(self._keys, self._chart, visible=False, sizing_mode="stretch_width")
-        self.view.append(self._drawn)
+        self.view.append(self._chart.view)
         self.buttons.insert(1, self.use_button)
         self.chosen.param.watch(lambda event: self.show(), "value")
         self.show()
@@ -107,13 +101,9 @@ class FitTab(CommandTab):
     def _draw(self) -> None:
         """Draw the measured loop, the run of the page, and the nearest so far, until the report."""
         chart = self._panel() if self.job is not None or not self.written else None
-        self._drawn.visible = chart is not None
-        if chart is None:
-            return
-        self._keys.object = keys([chart])
-        self._pipe.send(in_units(chart))
-        if self._chart.object is None:
-            self._chart.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
+        self._chart.view.visible = chart is not None
+        if chart is not None:
+            self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
         measured, frame = self.measured, self.state.frame

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
-import holoviews as hv
 import panel as pn
 import panel_material_ui as pmui
 
-from app.charts import in_units, keys, overlay
+from app.charts import LiveChart
 from app.experiments.jobs import SETTINGS, Job, Sweep, follow
 from app.experiments.questions import (
     FIELD,
@@ -26,7 +25,7 @@ from app.widgets import button, changing_text, download
 from solver.checked import dump
 from solver.settings import Settings
 from solver.study.mesh import decides
-from solver.study.page import Chart, Map
+from solver.study.page import Chart
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep.chart import chart_of
 from solver.study.sweep.plan import Plan
@@ -46,17 +45,15 @@ class WhatIf:
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
         self._is_updating = False
-        self._is_logarithmic: bool | None = None
         self._make_fields()
-        self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        self._chart = LiveChart()
         table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
         self.view = pn.Column(
             pn.FlexBox(*self._ready.values(), self._help),
             *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._scale, self._start, self._cancel),
             self.message,
-            self._keys,
-            self._chart,
+            self._chart.view,
             pn.FlexBox(table, self.mesh, self._meshed),
             sizing_mode="stretch_width",
             css_classes=["what-if"],
@@ -88,7 +85,6 @@ class WhatIf:
         self._help = changing_text(margin=(2, 8))
         self.message = changing_text(margin=(2, 8))
         self._meshed = changing_text(margin=(10, 8))
-        self._keys = pn.pane.HTML("", margin=(4, 8))
 
     def start(self) -> None:
         """Have the question answered, in place of the one before."""
@@ -98,7 +94,6 @@ class WhatIf:
             return
         self.cancel()
         self.sweep = Sweep(self.question.plan(self.state.settings))
-        self._is_logarithmic = None
         self._draw()
 
     def cancel(self) -> None:
@@ -131,11 +126,10 @@ class WhatIf:
         return csv_of(self.sweep.plan, sorted(self.sweep.rows, key=lambda row: row.number))
 
     def chart(self) -> Chart:
-        """What has come so far, in the units that are read."""
+        """What has come so far."""
         plan, rows = self.sweep.plan, list(self.sweep.rows)
         text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
-        scale = SCALES[self._scale.value]
-        return in_units(chart_of(plan, rows, 0, text, logarithmic=scale))
+        return chart_of(plan, rows, 0, text, logarithmic=SCALES[self._scale.value])
 
     # Fields
 
@@ -190,10 +184,8 @@ class WhatIf:
             self.state.question = str(question)
 
     def _on_ready(self, title: str) -> None:
+        self.state.question = str(READY[title](self.state.settings))
         self._help.object = TEXTS["questions"][title]
-        self.question = READY[title](self.state.settings)
-        self.state.question = str(self.question)
-        self.start()
 
     def _on_mesh(self) -> None:
         """Have the quantity taken on three meshes and three numbers of instants, or no more."""
@@ -215,14 +207,7 @@ class WhatIf:
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
         self.message.object = f"{sweep.message} {words}".strip()
-        chart = self.chart()
-        scale = chart.scale if isinstance(chart, Map) else chart.y
-        if scale.logarithmic is self._is_logarithmic:
-            self._pipe.send(chart)
-            return
-        self._is_logarithmic, self._keys.object = scale.logarithmic, keys([chart])
-        self._pipe = hv.streams.Pipe(data=chart)
-        self._chart.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
+        self._chart.show(self.chart())
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
