@@ -106,14 +106,14 @@ def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
 
 
 def offline_page(
-    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None, backend: str
+    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None
 ) -> str:
     """A run as one page that needs nothing beside it (HTML): its plots at all instants.
 
     Views and ghost are those in sight, which are not touched. The save buttons of the plots write
-    PNG, or SVG with the backend "svg".
+    SVG.
     """
-    copies, settings = _copies(views, backend), escape(dump(frame.run.settings))
+    copies, settings = _copies(views), escape(dump(frame.run.settings))
     instants, end = frame.run.instants, float(frame.run.instants[-1])
     columns = thinned(len(instants), MOST_INSTANTS)
     at = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
@@ -154,12 +154,12 @@ def offline_page(
     )
 
 
-def _copies(views: Sequence[View], backend: str) -> list[View]:
+def _copies(views: Sequence[View]) -> list[View]:
     """Views of the same kinds, with figures of their own, in which nothing is dragged."""
     copies = [type(view)(view.state) for view in views]
     for view in copies:
         made = view.figure
-        made.output_backend = backend
+        made.output_backend = "svg"
         made.sizing_mode, made.height = "stretch_width", HEIGHTS.get(view.name, HEIGHT)
         made.tools = [tool for tool in made.tools if not isinstance(tool, PointDrawTool)]
         for tool in made.select({"type": SaveTool}):
@@ -192,8 +192,7 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
         return [pmui.Typography("There is no run yet.")]
     page = partial(offline_page, frame, views, state.selection, state.ghost)
     files = {
-        "The run as one page (.html)": (".html", partial(page, "canvas")),
-        "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
+        "The run as one page, to save plots from as SVG (.html)": (".html", page),
         "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
     }
     tables = {"All iterations": partial(history_table, frame)}
