@@ -15,14 +15,14 @@ from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
-from app.files.export import offers
+from app.files.export import LOOK, offers
 from app.files.link import Link, read, show
 from app.lessons.guide import Guide
 from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import dialog, looks, wrapped
+from app.widgets import button, dialog, looks, wrapped
 from solver.settings import Settings
 
 COMPACT = {
@@ -47,7 +47,7 @@ class Page:
         self.state = state
         document = pn.state.curdoc
         browser = Browser(name="browser")
-        link = Link(state, browser)
+        self._link = Link(state, browser)
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
@@ -70,7 +70,7 @@ class Page:
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
-            sidebar=[Controls(state, link.copy).view],
+            sidebar=[Controls(state).view],
             sidebar_width=320,
             header=[self._header()],
             main=[self._main],
@@ -145,7 +145,8 @@ class Page:
 
     def _take_away(self) -> None:
         """Offer to save what is seen."""
-        self._away[:] = offers(self.state, list(self._live.display.views))
+        link = button("Copy link", self._link.copy, icon="link", **LOOK)
+        self._away[:] = [link, *offers(self.state, list(self._live.display.views))]
         self._away.open = True
 
     def _help(self) -> None:

@@ -166,7 +166,7 @@ def test_a_slider_ends_where_another_setting_has_it_end() -> None:
 
 def test_controls_that_do_nothing_here_are_hidden() -> None:
     state = of_scene("bar")
-    controls = Controls(state, str)
+    controls = Controls(state)
     seed = next(control for control in controls._controls if control.name == "seed")
     assert not seed.view.visible
     state.change(load="random")
@@ -175,7 +175,7 @@ def test_controls_that_do_nothing_here_are_hidden() -> None:
 
 def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
     for scene in CATALOGUE:
-        controls = Controls(of_scene(scene), str)
+        controls = Controls(of_scene(scene))
         built = len(controls._controls)
         groups = controls._groups
         groups.active = list(range(len(groups)))
@@ -188,7 +188,7 @@ def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() 
 
 def test_each_scene_keeps_its_settings() -> None:
     state = of_scene("bar")
-    controls = Controls(state, str)
+    controls = Controls(state)
     state.change(peak=1100.0)
     controls._scene.value = "rope"
     assert state.settings.scene == "rope"

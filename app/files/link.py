@@ -62,11 +62,11 @@ class Link:
             is_same = self._location.search == query
             self._location.search = f"{query}&" if is_same else query
 
-    def copy(self) -> str:
-        """Have the browser copy the whole link; what it had to leave out."""
+    def copy(self) -> None:
+        """Have the browser copy the whole link."""
         self._browser.copied = ""
         self._browser.copied, message = link_of(self._state)
-        return message
+        pn.state.notifications.info(f"The link to what is shown is copied. {message}")
 
     def go(self, query: str) -> None:
         """Bring the page to an address."""

@@ -46,22 +46,15 @@ SHOWN = 5
 """Lines of a table that are shown."""
 
 
-def files_panel(state: PageState, copy: Callable[[], str], width: int) -> pn.Column:
-    """Buttons that copy the link, save and reset settings and open files.
-
-    `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
-    """
+def files_panel(state: PageState, width: int) -> pn.Column:
+    """Buttons that save and reset settings and open files."""
     look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
     opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
-
-    def copy_link() -> None:
-        opener.message.object = f"The link to what is shown is copied. {copy()}"
 
     def reset() -> None:
         state.adopt(default_settings(state.settings.scene))
 
     return pn.Column(
-        button("Copy link", copy_link, icon="link", variant="outlined", **look),
         download("Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look),
         opener.view,
         button("All settings to default", reset, icon="restart_alt", variant="outlined", **look),
