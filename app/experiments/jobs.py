@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import logging
 import os
-import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -123,14 +122,12 @@ class Job:
 def share_of(named: str, users: int) -> str:
     """What each of so many sweeps has of an executor: of a cluster, which has a queue, all.
 
-    A queue for all would have everybody wait for the longest run of anybody. Where no number is
-    named, one processor is left to the pages, but of two none: the processes are niced.
+    A queue for all would have everybody wait for the longest run of anybody.
     """
-    if not re.fullmatch(rf"{PROCESSES}(:[1-9]\d*)?", named):
-        return named
-    _, _, count = named.partition(":")
-    width = int(count) if count else max(processors() - 1, min(processors(), 2))
-    return f"{PROCESSES}:{max(1, width // users)}"
+    kind, _, named_count = named.partition(":")
+    count = named_count or str(processors())
+    is_local = kind == PROCESSES and count.isdecimal()
+    return f"{PROCESSES}:{max(1, int(count) // users)}" if is_local else named
 
 
 class Sweep:

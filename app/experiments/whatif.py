@@ -49,7 +49,7 @@ class WhatIf:
         self._chart = LiveChart()
         table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
         self.view = pn.Column(
-            pn.FlexBox(*self._ready.values(), self._help),
+            pn.FlexBox(*self._ready.values()),
             *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._scale, self._start, self._cancel),
             self.message,
@@ -80,9 +80,9 @@ class WhatIf:
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
         self.mesh = button(MESH, self._on_mesh, icon="grid_on", **look)
         self._ready = {
-            title: button(title, partial(self._on_ready, title), **look) for title in READY
+            title: button(title, partial(self._on_ready, title), description=text, **look)
+            for title, text in TEXTS["questions"].items()
         }
-        self._help = changing_text(margin=(2, 8))
         self.message = changing_text(margin=(2, 8))
         self._meshed = changing_text(margin=(10, 8))
 
@@ -157,7 +157,6 @@ class WhatIf:
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
         if self.sweep is None or self.question != before:
-            self._help.object = ""
             self.start()
         else:
             self._draw()
@@ -177,7 +176,7 @@ class WhatIf:
             refusal = question.refusal(settings)
         except ValueError as problem:
             refusal = f"{problem}."
-        self._start.disabled, self._help.object = bool(refusal), ""
+        self._start.disabled = bool(refusal)
         self.message.object = refusal
         if not refusal:
             self.question = question
@@ -185,7 +184,6 @@ class WhatIf:
 
     def _on_ready(self, title: str) -> None:
         self.state.question = str(READY[title](self.state.settings))
-        self._help.object = TEXTS["questions"][title]
 
     def _on_mesh(self) -> None:
         """Have the quantity taken on three meshes and three numbers of instants, or no more."""
