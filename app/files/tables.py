@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 
 from app.state import PageState
 from solver.columns import column_of
@@ -65,11 +66,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 def table_of(data: bytes | str, source: str) -> Table:
     """Table of a file, whatever it is of."""
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError("the table", source, "a table of time and value", remedy)
-
-    return read_table(data, refuse)
+    return read_table(data, partial(SettingError, "the table", source, "a table of time and value"))
 
 
 def renamed(table: Table, heads: str) -> Table:
