@@ -23,7 +23,6 @@ from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
 from app.widgets import button, dialog, looks, wrapped
-from solver.settings import Settings
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -155,18 +154,10 @@ class Page:
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
-            if tab == "Fit":
-                made = FitTab(self.state, self._open_run)
-            else:
-                made = {"What if": WhatIf, "Reports": Reports}[tab](self.state)
-            self._tabs[tab] = made.view
+            kind = {"What if": WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
+            self._tabs[tab] = kind(self.state).view
         self._place()
         self._live.look()
-
-    def _open_run(self, settings: Settings) -> None:
-        """Show a run on the live tab."""
-        self.state.tab = TABS[0]
-        self.state.adopt(settings)
 
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""

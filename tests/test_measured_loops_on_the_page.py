@@ -105,9 +105,8 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
 
 
 def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
-    opened: list[Settings] = []
     state = PageState(bar(friction=0.2, contact_stiffness=3.0), tab="Fit")
-    tab = FitTab(state, opened.append)
+    tab = FitTab(state)
     assert tab.start_button.disabled
     state.brought = loop_of_a_run(bar(friction=0.37))
     assert tab.start_button.disabled
@@ -122,10 +121,9 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     assert not folder.exists()
     assert "standard error" in tab.page.object, tab.progress.object
     tab.use()
-    (settings,) = opened
-    assert (settings.friction, settings.contact_stiffness) == (0.37, 8.0)
-    assert settings.finish == state.settings.finish
-    state.brought = None
+    assert state.tab == "Live"
+    assert (state.settings.friction, state.settings.contact_stiffness) == (0.37, 8.0)
+    state.param.update(tab="Fit", brought=None)
     assert tab.start_button.disabled
     assert "standard error" in tab.page.object
     tab.end()
@@ -133,7 +131,7 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
 
 def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
     state = PageState(bar(), tab="Fit")
-    tab = FitTab(state, lambda settings: None)
+    tab = FitTab(state)
     state.brought = loop_of_a_run(bar(load="random"))
     tab.chosen.value = ["friction"]
     tab.start()

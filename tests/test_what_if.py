@@ -71,7 +71,8 @@ def test_the_chart_is_of_another_question_once_one_goes_back_to_it() -> None:
     made.spans[1].name.value = ""
     assert made.question.vary == LOADS.vary[:1]
     assert made.sweep.plan.size == 6
-    made.state.question = "friction=0.2:0.4:2 dissipation"
+    peak = tiny().replace(peak=800.0)
+    made.state.param.update(settings=peak, question="friction=0.2:0.4:2 dissipation")
     made.sweep.thread.join()
     assert made.sweep.plan.size == len(made.sweep.rows) == 2
 
@@ -202,7 +203,6 @@ class Done:
 def made(monkeypatch: pytest.MonkeyPatch) -> reports.Reports:
     """The tab, of a server whose commands are over at once."""
     monkeypatch.setattr(reports, "Job", Done)
-    monkeypatch.setattr(reports, "DONE", type(reports.DONE)())
     return reports.Reports(PageState(tiny(), tab="Reports"))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from html import escape
 
 import numpy as np
@@ -11,15 +10,14 @@ import panel_material_ui as pmui
 
 from app.charts import LiveChart
 from app.experiments.jobs import OUT, SETTINGS
-from app.experiments.reports import LOOKS, Command, CommandTab, Files
+from app.experiments.reports import LOOKS, Command, CommandTab
 from app.files.opener import TableOpener
 from app.files.tables import TABLES, axes_on
-from app.state import PageState
+from app.state import TABS, PageState
 from app.widgets import button
 from solver.checked import dump
 from solver.definitions import about
 from solver.files import settings_from_toml
-from solver.settings import Settings
 from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP
@@ -35,18 +33,14 @@ NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
 
 class FitTab(CommandTab):
-    """The tab: the state has the measured loop and where the settings begin.
+    """The tab: the state has the measured loop and where the settings begin."""
 
-    `open_run` opens the run of some settings on the live tab.
-    """
-
-    def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
-        self._open_run = open_run
+    def __init__(self, state: PageState) -> None:
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
         self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
         self.use_button = button("Use these settings", self.use, icon="check", **LOOKS)
         self._chart = LiveChart()
-        super().__init__(state, "Fit", {}, opener.view, self.chosen)
+        super().__init__(state, "Fit", opener.view, self.chosen)
         self.view.append(self._chart.view)
         self.buttons.insert(1, self.use_button)
         self.chosen.param.watch(lambda event: self.show(), "value")
@@ -68,18 +62,13 @@ class FitTab(CommandTab):
         if loop is None or not names:
             return None
         arguments = ("fit", SETTINGS, "--with", MEASURED, "--vary", names, "--out", OUT)
-        return arguments, ((SETTINGS, dump(self.state.settings)), (MEASURED, loop.csv()))
+        return arguments, {SETTINGS: dump(self.state.settings), MEASURED: loop.csv()}
 
     @property
     def words(self) -> str:
         """What it does, and what is missing."""
         missing = NO_LOOP if self.measured is None else "" if self.chosen.value else NO_SETTING
         return f"Settings with which the run is as near to a measured loop as can be. {missing}"
-
-    @property
-    def written(self) -> Files:
-        """What is shown: what the last fit has written, whatever is set now."""
-        return next(reversed(self._done.values()), {})
 
     def show(self) -> None:
         """Offer the settings that can be fitted, and show the last fit."""
@@ -121,7 +110,8 @@ class FitTab(CommandTab):
         return Panel(escape(measured.source), x, y, tuple(curves))
 
     def use(self) -> None:
-        """Have the page run with what was found, in as many digits as one reads."""
+        """Run what was found on the live tab, in as many digits as one reads."""
         found = settings_from_toml(self.written[SETTINGS].decode())
         values = {name: getattr(found, name) for name in fittable(found)}
-        self._open_run(found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()}))
+        self.state.tab = TABS[0]
+        self.state.adopt(found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()}))

@@ -25,31 +25,26 @@ COMMANDS = {
 }
 """By what is said of them in `WORDS`."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
-KEPT = 12
-"""Reports that a server keeps for all of its pages."""
 FRAME = (
     '<iframe title="{title}" srcdoc="{page}" '
     'style="width: 100%; height: calc(100vh - 240px); min-height: 300px; border: 0"></iframe>'
 )
-Command = tuple[tuple[str, ...], tuple[tuple[str, str], ...]]
-"""Arguments, and the names and texts of files that these name."""
+Command = tuple[tuple[str, ...], dict[str, str]]
+"""Arguments, and the texts of files that these name."""
 Files = dict[str, bytes]
-DONE: dict[Command, Files] = {}
-"""Files of finished reports, by the command that wrote them."""
 
 
 class CommandTab(ABC):
     """A tab with fields for a command, which is started there, and whose report is read there.
 
-    `job` is the command that is waiting or runs, `page` shows the report, `files` has buttons that
-    save what the command has written, which is kept in `done`; `buttons` are all buttons.
+    `report` is the one that is chosen, of which `page` shows the last, and `files` has buttons that
+    save what was written; `job` is the command that is waiting or runs, `buttons` are all buttons.
     """
 
-    def __init__(
-        self, state: PageState, tab: str, done: dict[Command, Files], *fields: Any
-    ) -> None:
-        self.state, self._tab, self._done = state, tab, done
+    def __init__(self, state: PageState, tab: str, *fields: Any) -> None:
+        self.state, self._tab, self.report = state, tab, tab
         self.job: Job | None = None
+        self._done: dict[str, Files] = {}
         self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
         self.cancel_button = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
         self._words = changing_text(margin=(0, 8))
@@ -66,7 +61,7 @@ class CommandTab(ABC):
             sizing_mode="stretch_width",
             css_classes=[tab.lower()],
         )
-        state.param.watch(lambda event: self.show(), ["settings", "tab", "brought"])
+        state.param.watch(lambda *events: self.show(), ["settings", "tab", "brought"])
         follow(self.look, self.end)
 
     @property
@@ -81,15 +76,14 @@ class CommandTab(ABC):
 
     @property
     def written(self) -> Files:
-        """What is shown: the files that the command of the fields has written."""
-        return self._done.get(self.command, {})
+        """What the last report has written, whatever is set now."""
+        return self._done.get(self.report, {})
 
     def start(self) -> None:
         """Have the command run, in place of the one before."""
         self.end()
-        self._running = self.command
-        arguments, texts = self._running
-        self.job = Job(arguments, dict(texts))
+        self._started = self.report
+        self.job = Job(*self.command)
         self.show()
         self.look()
 
@@ -110,14 +104,11 @@ class CommandTab(ABC):
         job = self.job
         if job is None:
             return
-        kind = self._running[0][0].capitalize()
-        self.progress.object = f"{kind}: {job.progress}" if job.progress else ""
+        self.progress.object = f"{self._started}: {job.progress}" if job.progress else ""
         if not job.is_over:
             return
         if not job.failure:
-            self._done[self._running] = job.files
-            while len(self._done) > KEPT:
-                self._done.pop(next(iter(self._done)))
+            self._done[self._started] = job.files
         self.end()
         self.show()
 
@@ -137,7 +128,7 @@ class CommandTab(ABC):
 
 
 class Reports(CommandTab):
-    """The tab of the reports of the command line; `kind` is the one that is chosen."""
+    """The tab of the reports of the command line, of which `kind` chooses one."""
 
     def __init__(self, state: PageState) -> None:
         self.kind = pmui.RadioButtonGroup(
@@ -148,23 +139,25 @@ class Reports(CommandTab):
             margin=(6, 6),
             **looks("words"),
         )
-        super().__init__(state, "Reports", DONE, self.kind)
-        self.kind.param.watch(lambda event: self.show(), "value")
+        super().__init__(state, "Reports", self.kind)
+        self.kind.param.watch(lambda event: self.choose(event.new), "value")
+        self.choose(self.kind.value)
+        self.start()
+
+    def choose(self, report: str) -> None:
+        """Show another report."""
+        self.report = report
         self.show()
-        if not self.written:
-            self.start()
 
     @property
     def command(self) -> Command:
         """The command of the report that is chosen."""
-        arguments = COMMANDS[self.kind.value]
-        texts = ((SETTINGS, dump(self.state.settings)),) if SETTINGS in arguments else ()
-        return (*arguments, "--out", OUT), texts
+        return (*COMMANDS[self.report], "--out", OUT), {SETTINGS: dump(self.state.settings)}
 
     @property
     def words(self) -> str:
         """What it is of."""
-        return WORDS[self.kind.value]
+        return WORDS[self.report]
 
 
 def shown(files: Files) -> str:

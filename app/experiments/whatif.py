@@ -58,7 +58,7 @@ class WhatIf:
             sizing_mode="stretch_width",
             css_classes=["what-if"],
         )
-        state.param.watch(lambda event: self._show(), ["settings", "tab", "question"])
+        state.param.watch(lambda *events: self._show(), ["settings", "tab", "question"])
         follow(self.look, self.end)
         self._show()
 
