@@ -291,9 +291,9 @@ class ClassDialog:
     def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
-        self._act = button("", self._leave_or_return, variant="text")
+        self._again = button("Follow again", lambda: member.enter(member.left), variant="text")
         look = {"visible": False, "margin": 0, "align": "center", "css_classes": ["class"]}
-        self.view = pn.Row(self._message, self._act, **look)
+        self.view = pn.Row(self._message, self._again, **look)
         self.dialog = dialog("A class", width_option="sm")
         member.param.watch(lambda event: self._show(), "message")
 
@@ -340,17 +340,8 @@ class ClassDialog:
         self._member.leave()
         self.dialog.open = False
 
-    def _leave_or_return(self) -> None:
-        member = self._member
-        if member.room is None:
-            member.enter(member.left)
-        else:
-            self._leave()
-
     def _show(self) -> None:
         member = self._member
         self._message.object = escape(member.message)
-        here = "End the class" if member.leads else "Go on by myself"
-        label = "Follow again" if member.room is None else here
-        self._act.param.update(label=label, visible=bool(member.room or member.left))
+        self._again.visible = member.room is None and bool(member.left)
         self.view.visible = bool(member.message)
