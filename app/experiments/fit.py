@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from html import escape
 
-import numpy as np
 import pandas as pd
 import panel_material_ui as pmui
 
@@ -88,20 +87,17 @@ class FitTab(CommandTab):
             self._draw()
 
     def _draw(self) -> None:
-        """Draw the measured loop, the run of the page, and the nearest so far, until the report."""
+        """Draw the measured loop and the nearest so far, until there is the report."""
         chart = self._panel() if self.job is not None or not self.written else None
         self._chart.view.visible = chart is not None
         if chart is not None:
             self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
-        measured, frame = self.measured, self.state.frame
+        measured = self.measured
         if measured is None:
             return None
         curves = [PanelCurve("measured", measured.displacement, measured.force, 5, "points")]
-        if frame is not None and frame.run.settings.scene == self.state.settings.scene:
-            loop = np.asarray(frame.loop, dtype=float)
-            curves.append(PanelCurve("run of the page", *loop, 0, "dotted"))
         file = None if self.job is None else self.job.folder / OUT / LOOP
         if file is not None and file.exists():
             _, across, up = pd.read_csv(file).to_numpy().T
