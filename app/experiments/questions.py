@@ -50,13 +50,7 @@ class Question:
         return " ".join((*self.vary, self.of))
 
     def plan(self, settings: Settings) -> Plan:
-        """The runs that answer it, everything else as in some settings.
-
-        Raises
-        ------
-        RefusedError
-            For whatever of it cannot be run.
-        """
+        """The runs that answer it, everything else as in some settings; they may be refused."""
         plan = plan_of(self.asked(settings), self.vary, [self.of])
         for name in plan.idle():
             can = "settings that do something here"
@@ -95,8 +89,7 @@ def question_of(text: str, settings: Settings) -> Question:
     is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
     if is_known and not question.refusal(settings):
         return question
-    ready = filter(None, (make(settings) for make in READY.values()))
-    return next((each for each in ready if not each.refusal(settings)), iterations_over_k(settings))
+    return next(ready for make in READY.values() if (ready := make(settings)) is not None)
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -219,13 +212,7 @@ class Span:
         self._is_updating = False
 
     def text(self) -> str:
-        """The setting and its values as the command line takes them, in SI; "" for none.
-
-        Raises
-        ------
-        ValueError
-            For what is no number.
-        """
+        """The setting and its values in SI, "" for none; a ValueError for what is no number."""
         name = self.name.value
         if not name:
             return ""

@@ -42,7 +42,7 @@ class CommandTab(ABC):
     """
 
     def __init__(self, state: PageState, tab: str, *fields: Any) -> None:
-        self.state, self._tab, self.report = state, tab, tab
+        self.state, self._tab = state, tab
         self.job: Job | None = None
         self._done: dict[str, Files] = {}
         self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
@@ -73,6 +73,11 @@ class CommandTab(ABC):
     @abstractmethod
     def words(self) -> str:
         """What it does, or what it cannot be started without."""
+
+    @property
+    def report(self) -> str:
+        """What is started, and shown."""
+        return self._tab
 
     @property
     def written(self) -> Files:
@@ -140,14 +145,13 @@ class Reports(CommandTab):
             **looks("words"),
         )
         super().__init__(state, "Reports", self.kind)
-        self.kind.param.watch(lambda event: self.choose(event.new), "value")
-        self.choose(self.kind.value)
+        self.kind.param.watch(lambda event: self.show(), "value")
         self.start()
 
-    def choose(self, report: str) -> None:
-        """Show another report."""
-        self.report = report
-        self.show()
+    @property
+    def report(self) -> str:
+        """The report that is chosen."""
+        return self.kind.value
 
     @property
     def command(self) -> Command:

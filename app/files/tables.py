@@ -35,13 +35,7 @@ def use_of(table: Table, settings: Settings, axes: Axes) -> str:
 def read_as(
     use: str, table: Table, source: str, settings: Settings, axes: Axes
 ) -> tuple[Content, str]:
-    """What a table has that is used as a loop or a path, and what was understood.
-
-    Raises
-    ------
-    SettingError
-        If its columns are not those of this use, or are refused.
-    """
+    """What a table has that is used as a loop or a path, and what was understood."""
     if use != LOOP:
         return with_path(settings, use, table)
     loop = loop_in(table, source, axes)
@@ -73,11 +67,6 @@ def renamed(table: Table, heads: str) -> Table:
     """A table with other names and units of its columns, between commas.
 
     One name more is that of a last column, the number of each row from 0.
-
-    Raises
-    ------
-    SettingError
-        For fewer or more names.
     """
     columns = [column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))]
     width = len(table.columns)
