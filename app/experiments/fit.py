@@ -25,8 +25,8 @@ from solver.study.page import Panel, PanelAxis, PanelCurve
 
 MEASURED = "measured.csv"
 NO_LOOP = (
-    "Open a table of displacement and force, with time if you have it. It is drawn beside the run, "
-    "here and on the loop of the tab Live."
+    "Open a table of displacement and force, with time if you have it. It is drawn here, and on "
+    "the loop of the tab Live beside the run."
 )
 NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
