@@ -131,8 +131,6 @@ class WhatIf:
         text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
         return chart_of(plan, rows, 0, text, logarithmic=SCALES[self._scale.value])
 
-    # Fields
-
     def _show(self) -> None:
         """Show the question, of which another scene may know nothing, and have it answered.
 
@@ -193,8 +191,6 @@ class WhatIf:
             texts = {SETTINGS: dump(answer(self.state.settings))}
             self._job = Job(["mesh", SETTINGS, "--of", self.question.of], texts)
         self.look()
-
-    # Chart
 
     def _draw(self) -> None:
         """Show what has come."""
