@@ -80,8 +80,7 @@ class WhatIf:
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
         self.mesh = button(MESH, self._on_mesh, icon="grid_on", **look)
         self._ready = {
-            title: button(title, partial(self._on_ready, title), description=text, **look)
-            for title, text in TEXTS["questions"].items()
+            title: button(title, partial(self._on_ready, title), **look) for title in READY
         }
         self.message = changing_text(margin=(2, 8))
         self._meshed = changing_text(margin=(10, 8))
@@ -200,7 +199,9 @@ class WhatIf:
         words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
-        self.message.object = f"{sweep.message} {words}".strip()
+        texts = TEXTS["questions"].items()
+        told = [text for title, text in texts if READY[title](settings) == self.question]
+        self.message.object = " ".join([sweep.message, words, *told]).strip()
         self._chart.show(self.chart())
 
 
