@@ -11,12 +11,13 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import pandas as pd
+import panel as pn
 from bokeh.embed import components
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
 from app.units import unit_for
-from app.views.colors import FORCE, REFERENCE
+from app.views.colors import REFERENCE
 from solver.arrays import Array
 from solver.study.page import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, PlotSection, Runs
 
@@ -36,7 +37,6 @@ STYLE = """<style>
   repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
 .key { margin-right: 1rem; white-space: nowrap; }
 </style>"""
-Point = tuple[float, float]
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
@@ -79,6 +79,27 @@ def _key(curve: PanelCurve) -> str:
     return f'<span class="key">{mark} {escape(curve.label)}</span>'
 
 
+class LiveChart:
+    """A chart that is drawn anew as it fills; `view` has it below its legend."""
+
+    def __init__(self) -> None:
+        self._keys = pn.pane.HTML("", margin=(4, 8))
+        self._figure = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        self.view = pn.Column(self._keys, self._figure, sizing_mode="stretch_width")
+        self._drawn: list[Any] = []
+
+    def show(self, chart: Chart) -> None:
+        """Show a chart, in the figure of the last one if it has the same axes and curves."""
+        axes = chart.x, chart.y, chart.scale if isinstance(chart, Map) else chart.y
+        legend, data = keys([chart]), in_units(chart)
+        drawn = [legend, *((axis.quantity, axis.names, axis.logarithmic) for axis in axes)]
+        if drawn == self._drawn:
+            self._pipe.send(data)
+            return
+        self._drawn, self._keys.object, self._pipe = drawn, legend, hv.streams.Pipe(data=data)
+        self._figure.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
+
+
 def in_units(chart: Chart) -> Chart:
     """A chart in the units that one reads; the engine gives it in SI."""
     runs = chart.runs
@@ -107,8 +128,8 @@ def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
     return replace(axis, unit=unit.name, limits=limits), unit.factor
 
 
-def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
-    """A chart, and a place on its axes that is marked, as HoloViews' elements."""
+def overlay(chart: Chart) -> hv.Overlay:
+    """A chart as HoloViews' elements."""
     title = chart.title
     if isinstance(chart, Map):
         made = _of_map(chart)
@@ -116,13 +137,11 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
         title += f" ({chart.scale.unit})" if chart.scale.unit else ""
         x_limits, y_limits = edges(xs, chart.x)[[0, -1]], edges(ys, chart.y)[[0, -1]]
     else:
-        made = _of_panel(chart, here)
+        made = _of_panel(chart)
         xs, ys = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
         x_limits, y_limits = (axis.limits or (None, None) for axis in (chart.x, chart.y))
-    ring = hv.Points([here] if np.isfinite(here).all() else [], ["x", "y"])
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
-    look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5, "framewise": True}
-    return hv.Overlay([*made, ring.opts(**look)]).opts(
+    return hv.Overlay([element.opts(framewise=True) for element in made]).opts(
         title=title,
         logx=chart.x.logarithmic,
         logy=chart.y.logarithmic,
@@ -166,7 +185,7 @@ def _table(runs: Runs) -> pd.DataFrame:
     return pd.DataFrame({"x": runs.x, "y": runs.y, "said": np.array(runs.said, dtype=object)})
 
 
-def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
+def _of_panel(panel: Panel) -> Iterator[hv.Element]:
     for curve in panel.curves:
         yield from _of_curve(panel, curve)
     if panel.runs is None:
@@ -175,8 +194,6 @@ def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
     low, high = panel.y.limits or (0.0, 1.0)
     # What has no value stands at the upper edge.
     top = high * (low / high) ** 0.03 if panel.y.logarithmic else high - 0.03 * (high - low)
-    line = hv.Curve(([here[0]] * 2, [low, high]), "x", "y")
-    yield line.opts(color=FORCE, line_dash="dotted", line_width=1.5)
     looks = {
         "color": np.array(COLORS)[panel.runs.hues],
         "fill_alpha": panel.runs.holds * 1.0,

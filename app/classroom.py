@@ -20,7 +20,7 @@ from panel.io.state import set_curdoc
 
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
-from app.server import address_for_others, how_to_open
+from app.server import HOW_TO_OPEN, address_for_others
 from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
 from app.widgets import button, dialog
@@ -291,10 +291,9 @@ class ClassDialog:
     def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
-        self._act = button("", self._leave_or_return, variant="text")
-        self._code = button("Code", lambda: self.open(), variant="text")
-        parts = self._message, self._act, self._code
-        self.view = pn.Row(*parts, visible=False, margin=0, align="center", css_classes=["class"])
+        self._again = button("Follow again", lambda: member.enter(member.left), variant="text")
+        look = {"visible": False, "margin": 0, "align": "center", "css_classes": ["class"]}
+        self.view = pn.Row(self._message, self._again, **look)
         self.dialog = dialog("A class", width_option="sm")
         member.param.watch(lambda event: self._show(), "message")
 
@@ -322,7 +321,7 @@ class ClassDialog:
             svg = segno.make(link, error="m").svg_inline(scale=6, light="#fff", omitsize=True)
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
-            below = how_to_open()
+            below = HOW_TO_OPEN
         return [pn.pane.HTML(large + below), button("End the class", self._leave)]
 
     def _begin(self) -> None:
@@ -341,18 +340,8 @@ class ClassDialog:
         self._member.leave()
         self.dialog.open = False
 
-    def _leave_or_return(self) -> None:
-        member = self._member
-        if member.room is None:
-            member.enter(member.left)
-        else:
-            self._leave()
-
     def _show(self) -> None:
         member = self._member
         self._message.object = escape(member.message)
-        here = "End the class" if member.leads else "Go on by myself"
-        label = "Follow again" if member.room is None else here
-        self._act.param.update(label=label, visible=bool(member.room or member.left))
-        self._code.visible = member.leads
+        self._again.visible = member.room is None and bool(member.left)
         self.view.visible = bool(member.message)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import panel as pn
@@ -187,7 +186,7 @@ class SettingControl:
             self._state.drag(self.name, self._from_slider(place))
 
     def _release(self, place: float) -> None:
-        """Run what the slider is let go at; where that is refused, the nearest that holds."""
+        """Run what the slider is let go at; where that is refused, the last that held."""
         if self._is_updating:
             return
         self._is_dragged = False
@@ -205,13 +204,10 @@ class SettingControl:
 
 
 class Controls:
-    """All controls of the present scene: the chief ones, and groups that open.
+    """All controls of the present scene: the chief ones, and groups that open."""
 
-    `copy` is that of `files_panel`.
-    """
-
-    def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
-        self._state, self._copy = state, copy
+    def __init__(self, state: PageState) -> None:
+        self._state = state
         self._controls: list[SettingControl] = []
         pictures = {
             f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(kind.icon)
@@ -270,7 +266,7 @@ class Controls:
             controls = [SettingControl(name, self._state) for name in names]
             self._controls += controls
             settings = pn.Column(*(control.view for control in controls), margin=0)
-            view = settings if names else files_panel(self._state, self._copy, WIDTH)
+            view = settings if names else files_panel(self._state, WIDTH)
             self._groups[place] = (title, view)
 
 

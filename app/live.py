@@ -70,11 +70,8 @@ class Live:
         """
         self._is_open = True
         self.arrange(kinds)
-        scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
-        scene.sizing_mode = "stretch_both"
-        timeline.sizing_mode = "stretch_both"
-        self._scene.append(scene)
-        self._timeline.append(timeline)
+        for place, view in zip((self._scene, self._timeline), self._views, strict=True):
+            place.append(pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both"))
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._timeline, self._plots])
 
@@ -87,7 +84,7 @@ class Live:
             self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":
             self._cards = self._all[:PRESENTED]
-        self._above.visible = not state.is_asked and state.view != "embed"
+        self._above.visible = not state.is_asked
         self._figures.visible = not state.is_asked
         # Without plots the scene has all the height.
         self._plots.css_classes = ["plots"] if self._cards else []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +15,14 @@ from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
-from app.files.export import offers
+from app.files.export import LOOK, offers
 from app.files.link import Link, read, show
 from app.lessons.guide import Guide
 from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import dialog, looks, wrapped
-from solver.settings import Settings
+from app.widgets import button, dialog, looks, wrapped
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -34,6 +32,7 @@ COMPACT = {
         "& header": {"overflowX": "auto"},
     },
 }
+WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 
 
@@ -47,7 +46,7 @@ class Page:
         self.state = state
         document = pn.state.curdoc
         browser = Browser(name="browser")
-        link = Link(state, browser)
+        self._link = Link(state, browser)
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
@@ -63,13 +62,14 @@ class Page:
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        self._away, self._words = dialog("Take away"), glossary()
+        self._away = dialog("Take away")
+        self._words = dialog("Keys and words", pn.pane.Markdown(WORDS), width_option="md")
         dialogs = *self._guide.dialogs.values(), self._class.dialog, self._away, self._words
         for each in dialogs:
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
-            sidebar=[Controls(state, link.copy).view],
+            sidebar=[Controls(state).view],
             sidebar_width=320,
             header=[self._header()],
             main=[self._main],
@@ -144,7 +144,8 @@ class Page:
 
     def _take_away(self) -> None:
         """Offer to save what is seen."""
-        self._away[:] = offers(self.state, list(self._live.display.views))
+        link = button("Copy link", self._link.copy, icon="link", **LOOK)
+        self._away[:] = [link, *offers(self.state, list(self._live.display.views))]
         self._away.open = True
 
     def _help(self) -> None:
@@ -153,18 +154,10 @@ class Page:
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
-            if tab == "Reports":
-                made = Reports(self.state)
-            else:
-                made = {"What if": WhatIf, "Fit": FitTab}[tab](self.state, self._open_run)
-            self._tabs[tab] = made.view
+            kind = {"What if": WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
+            self._tabs[tab] = kind(self.state).view
         self._place()
         self._live.look()
-
-    def _open_run(self, settings: Settings) -> None:
-        """Show a run on the live tab."""
-        self.state.tab = TABS[0]
-        self.state.adopt(settings)
 
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
@@ -182,7 +175,7 @@ class Page:
     def _dress(self) -> None:
         """Have the plots that belong here, and the controls where there is room for them.
 
-        A lesson has those that it speaks of; a view for a projector, or a frame, shows a run alone.
+        A lesson has those that it speaks of; the view for a projector shows a run alone.
         """
         self._place()
         is_bare = self.state.view != "page"
@@ -210,15 +203,3 @@ def open_page() -> pmui.Page:
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template
-
-
-def glossary() -> pmui.Dialog:
-    """A dialog of the keys, and of what words mean."""
-    texts = tomllib.loads((Path(__file__).parent / "glossary.toml").read_text(encoding="utf-8"))
-    tables = pn.pane.HTML("".join(map(_table, texts.values())), sizing_mode="stretch_width")
-    return dialog("Keys and words", tables, width_option="md")
-
-
-def _table(entries: dict[str, str]) -> str:
-    rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in entries.items())
-    return f'<table style="text-align:left;font-size:14px;margin-bottom:12px">{rows}</table>'

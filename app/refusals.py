@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from typing import Any
 
-import param
-
 from app.units import Unit, number, unit_of, units_of_points
 from solver.definitions import CurveParameter, about, allowed
 from solver.refusal import RefusedError
@@ -14,8 +12,6 @@ from solver.settings import Settings
 
 EXACT = 10
 """Digits of what is refused: a value beside the end of a range is told from it."""
-HALVINGS = 12
-"""Of a slider's way, by which the last value that holds is sought."""
 LONGEST = 40
 """Characters of a text that is refused."""
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
@@ -88,20 +84,3 @@ def _written(value: object, unit: Unit | None = None) -> str:
         return (unit or Unit(""))(value, EXACT)
     text = str(value)
     return f"“{text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'}”"
-
-
-def nearest_allowed(settings: Settings, name: str, value: float) -> float:
-    """The value, or the one that holds nearest to it, on the way there from what is set."""
-    is_whole = isinstance(settings.definitions()[name], param.Integer)
-    nearest, refused, candidate = getattr(settings, name), value, value
-    for _ in range(HALVINGS):
-        try:
-            settings.with_change(name, candidate)
-            nearest = candidate
-        except RefusedError:
-            refused = candidate
-        middle = 0.5 * (nearest + refused)
-        candidate = round(middle) if is_whole else float(f"{middle:.3g}")
-        if candidate in (nearest, refused):
-            break
-    return nearest

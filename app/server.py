@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import logging
 import os
-import socket
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
-from urllib.parse import SplitResult, urlsplit
+from urllib.parse import urlsplit
 
 import panel as pn
 from tornado.httpserver import HTTPServer
@@ -30,8 +28,12 @@ LONGEST = 16_000
 """Characters of an address; what is longer is refused (414)."""
 RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
-DOCUMENTATION = "192.0.2.1"
-"""An address that is nobody's (RFC 5737)."""
+HOW_TO_OPEN = (
+    "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start the "
+    "server with <code>BOKEH_ALLOW_WS_ORIGIN=NAME:5006</code>, and open "
+    "<b>http://NAME:5006/app</b>: NAME is what others call this machine, 5006 is its port."
+)
+"""What whoever serves a page as localhost has to do that others reach it (HTML)."""
 QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
 
@@ -68,46 +70,11 @@ def most_pages() -> int:
 
 
 def address_for_others() -> str:
-    """Address of this page without its query, as other machines reach it; "" if they cannot."""
-    here = _address()
-    if not is_local(here.hostname or ""):
-        return here.geturl()
-    port = f":{here.port}" if here.port else ""
-    allowed = os.environ.get("BOKEH_ALLOW_WS_ORIGIN", "").split(",")
-    names = [f"{name}{port}" for name in names_of_machine()]
-    reached = next((name for name in names if "*" in allowed or name in allowed), "")
-    return here._replace(netloc=reached).geturl() if reached else ""
-
-
-def how_to_open() -> str:
-    """What whoever serves a page as localhost has to do that others reach it (HTML)."""
-    name, port = names_of_machine()[0], _address().port or 80
-    return (
-        "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start "
-        f"the server with <code>BOKEH_ALLOW_WS_ORIGIN={name}:{port}</code>, and open "
-        f"<b>http://{name}:{port}/app</b>."
-    )
-
-
-def _address() -> SplitResult:
-    """The address of this page without its query."""
+    """Address of this page without its query; "" where it has a name that each machine is by."""
     location = pn.state.location
-    return urlsplit(location.href.partition("?")[0] if location is not None else "")
-
-
-def is_local(host: str) -> bool:
-    """Whether a name is what every machine calls itself."""
-    return host in ("", "localhost", "::1") or host.startswith("127.")
-
-
-def names_of_machine() -> tuple[str, ...]:
-    """What others call this machine: its name, and its address in the network."""
-    names = [socket.gethostname()]
-    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        # Nothing is sent: it only chooses the way that a packet would take.
-        probe.connect((DOCUMENTATION, 9))
-        names.append(probe.getsockname()[0])
-    return tuple(name for name in names if not is_local(name)) or ("THIS-MACHINE",)
+    address = location.href.partition("?")[0] if location is not None else ""
+    host = urlsplit(address).hostname or "localhost"
+    return "" if host in ("localhost", "::1") or host.startswith("127.") else address
 
 
 def configure() -> None:

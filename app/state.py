@@ -14,7 +14,7 @@ import param
 from app import messages
 from app.frame import Frame, Selection
 from app.messages import Needs, Order, Pace, Ready, Report, Start, Step
-from app.refusals import message_of, nearest_allowed
+from app.refusals import message_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
@@ -37,8 +37,8 @@ PACES = {
     "fastest": math.inf,
 }
 TABS = ["Live", "What if", "Fit", "Reports"]
-VIEWS = ["page", "present", "embed"]
-"""With controls, for a projector, for a frame in another page."""
+VIEWS = ["page", "present"]
+"""With controls, for a projector."""
 
 
 @dataclass(frozen=True)
@@ -153,15 +153,17 @@ class PageState(param.Parameterized):
         return True
 
     def drag(self, name: str, value: float) -> None:
-        """Follow a slider as far as is allowed; the answer alone is shown until it is let go."""
-        allowed = nearest_allowed(self.settings, name, value)
-        settings = self.settings.with_change(name, allowed)
+        """Follow a slider where that is allowed; the answer alone is shown until it is let go."""
+        try:
+            settings = self.settings.with_change(name, value)
+        except RefusedError:
+            return
         # The worker begins while the page follows.
         self._start(answer(settings), is_dragged=True)
         self.param.update(refusal="", settings=settings)
 
     def release(self, name: str, value: float) -> None:
-        """Run what a slider or an arrow is let go at; where that is refused, the nearest before."""
+        """Run what a slider or an arrow is let go at; where that is refused, the last before."""
         self.change(**{name: value})
         if self.is_dragged:
             self.run()

@@ -98,11 +98,11 @@ def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
     ],
 )
 def test_a_part_that_is_refused_is_told_and_the_rest_holds(query: str, told: str) -> None:
-    place, refusal = read(f"?peak=1100&{query}&view=embed")
+    place, refusal = read(f"?peak=1100&{query}&view=present")
     assert told in refusal
     assert refusal.startswith("From the address: ")
     assert refusal.endswith(".")
-    assert (place["settings"].peak, place["view"]) == (1100.0, "embed")
+    assert (place["settings"].peak, place["view"]) == (1100.0, "present")
 
 
 def test_settings_whose_path_was_refused_go_to_the_worker_all_the_same() -> None:

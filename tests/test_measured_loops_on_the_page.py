@@ -11,7 +11,7 @@ from bars import SMALL
 
 from app.experiments.fit import FitTab
 from app.files.opener import TableOpener
-from app.files.tables import BOTH, LOOP, TABLES
+from app.files.tables import LOOP, TABLES
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
@@ -52,7 +52,8 @@ def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     assert "passed over" not in made.message.object
     made.heads.value = "Weg [µm], Kraft [kN], time [ms]"
     assert state.brought.times.tolist() == pytest.approx([0.0, 1e-3, 2e-3, 3e-3, 4e-3])
-    made.use.value = f"{BOTH}load"
+    made.use.value = "load"
+    assert state.brought is not None
     assert state.settings.load[:2] == ((0.0, 0.0), (1e-3, 500.0))
     assert state.settings.duration == pytest.approx(4e-3)
     made.heads.value = "Weg [µm], Kraft [kN], time [min]"
@@ -104,9 +105,8 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
 
 
 def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
-    opened: list[Settings] = []
     state = PageState(bar(friction=0.2, contact_stiffness=3.0), tab="Fit")
-    tab = FitTab(state, opened.append)
+    tab = FitTab(state)
     assert tab.start_button.disabled
     state.brought = loop_of_a_run(bar(friction=0.37))
     assert tab.start_button.disabled
@@ -121,10 +121,9 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     assert not folder.exists()
     assert "standard error" in tab.page.object, tab.progress.object
     tab.use()
-    (settings,) = opened
-    assert (settings.friction, settings.contact_stiffness) == (0.37, 8.0)
-    assert settings.finish == state.settings.finish
-    state.brought = None
+    assert state.tab == "Live"
+    assert (state.settings.friction, state.settings.contact_stiffness) == (0.37, 8.0)
+    state.param.update(tab="Fit", brought=None)
     assert tab.start_button.disabled
     assert "standard error" in tab.page.object
     tab.end()
@@ -132,7 +131,7 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
 
 def test_a_fit_is_cancelled_or_refused_in_words_and_leaves_nothing() -> None:
     state = PageState(bar(), tab="Fit")
-    tab = FitTab(state, lambda settings: None)
+    tab = FitTab(state)
     state.brought = loop_of_a_run(bar(load="random"))
     tab.chosen.value = ["friction"]
     tab.start()

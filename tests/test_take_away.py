@@ -107,7 +107,7 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     _, frame = ended("bar")
     # As many plots as a page has in sight.
     views = page("bar")[1][:6]
-    text = offline_page(frame, views, Selection(), None, "svg")
+    text = offline_page(frame, views, Selection(), None)
     assert "<script src" not in text
     assert "<link" not in text
     match = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
@@ -128,5 +128,5 @@ def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
         *names
     }
     assert sum(name.endswith(".csv") for name in names) == 1 + len(views)
-    for offer in offered[2:5]:
+    for offer in offered[1:4]:
         assert offer.callback().getvalue()

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from html import escape
 
-import holoviews as hv
-import numpy as np
 import pandas as pd
-import panel as pn
 import panel_material_ui as pmui
 
-from app.charts import in_units, keys, overlay
+from app.charts import LiveChart
 from app.experiments.jobs import OUT, SETTINGS
-from app.experiments.reports import LOOKS, Command, CommandTab, Files
+from app.experiments.reports import LOOKS, Command, CommandTab
 from app.files.opener import TableOpener
 from app.files.tables import TABLES, axes_on
-from app.state import PageState
+from app.state import TABS, PageState
 from app.widgets import button
 from solver.checked import dump
 from solver.definitions import about
 from solver.files import settings_from_toml
-from solver.settings import Settings
 from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP
@@ -30,30 +25,22 @@ from solver.study.page import Panel, PanelAxis, PanelCurve
 
 MEASURED = "measured.csv"
 NO_LOOP = (
-    "Open a table of displacement and force, with time if you have it. It is drawn beside the run, "
-    "here and on the loop of the tab Live."
+    "Open a table of displacement and force, with time if you have it. It is drawn here, and on "
+    "the loop of the tab Live beside the run."
 )
 NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
 
 class FitTab(CommandTab):
-    """The tab: the state has the measured loop and where the settings begin.
+    """The tab: the state has the measured loop and where the settings begin."""
 
-    `open_run` opens the run of some settings on the live tab.
-    """
-
-    def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
-        self._open_run = open_run
+    def __init__(self, state: PageState) -> None:
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
         self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
         self.use_button = button("Use these settings", self.use, icon="check", **LOOKS)
-        self._keys = pn.pane.HTML("", margin=(4, 8))
-        self._pipe = hv.streams.Pipe(data=None)
-        self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
-        super().__init__(state, "Fit", {}, opener.view, self.chosen)
-        # Of its own visibility the chart would tell Bokeh's figure, which knows no such thing.
-        self._drawn = pn.Column(self._keys, self._chart, visible=False, sizing_mode="stretch_width")
-        self.view.append(self._drawn)
+        self._chart = LiveChart()
+        super().__init__(state, "Fit", opener.view, self.chosen)
+        self.view.append(self._chart.view)
         self.buttons.insert(1, self.use_button)
         self.chosen.param.watch(lambda event: self.show(), "value")
         self.show()
@@ -74,18 +61,13 @@ class FitTab(CommandTab):
         if loop is None or not names:
             return None
         arguments = ("fit", SETTINGS, "--with", MEASURED, "--vary", names, "--out", OUT)
-        return arguments, ((SETTINGS, dump(self.state.settings)), (MEASURED, loop.csv()))
+        return arguments, {SETTINGS: dump(self.state.settings), MEASURED: loop.csv()}
 
     @property
     def words(self) -> str:
         """What it does, and what is missing."""
         missing = NO_LOOP if self.measured is None else "" if self.chosen.value else NO_SETTING
         return f"Settings with which the run is as near to a measured loop as can be. {missing}"
-
-    @property
-    def written(self) -> Files:
-        """What is shown: what the last fit has written, whatever is set now."""
-        return next(reversed(self._done.values()), {})
 
     def show(self) -> None:
         """Offer the settings that can be fitted, and show the last fit."""
@@ -105,24 +87,17 @@ class FitTab(CommandTab):
             self._draw()
 
     def _draw(self) -> None:
-        """Draw the measured loop, the run of the page, and the nearest so far, until the report."""
+        """Draw the measured loop and the nearest so far, until there is the report."""
         chart = self._panel() if self.job is not None or not self.written else None
-        self._drawn.visible = chart is not None
-        if chart is None:
-            return
-        self._keys.object = keys([chart])
-        self._pipe.send(in_units(chart))
-        if self._chart.object is None:
-            self._chart.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
+        self._chart.view.visible = chart is not None
+        if chart is not None:
+            self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
-        measured, frame = self.measured, self.state.frame
+        measured = self.measured
         if measured is None:
             return None
         curves = [PanelCurve("measured", measured.displacement, measured.force, 5, "points")]
-        if frame is not None and frame.run.settings.scene == self.state.settings.scene:
-            loop = np.asarray(frame.loop, dtype=float)
-            curves.append(PanelCurve("run of the page", *loop, 0, "dotted"))
         file = None if self.job is None else self.job.folder / OUT / LOOP
         if file is not None and file.exists():
             _, across, up = pd.read_csv(file).to_numpy().T
@@ -131,7 +106,8 @@ class FitTab(CommandTab):
         return Panel(escape(measured.source), x, y, tuple(curves))
 
     def use(self) -> None:
-        """Have the page run with what was found, in as many digits as one reads."""
+        """Run what was found on the live tab, in as many digits as one reads."""
         found = settings_from_toml(self.written[SETTINGS].decode())
         values = {name: getattr(found, name) for name in fittable(found)}
-        self._open_run(found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()}))
+        self.state.tab = TABS[0]
+        self.state.adopt(found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()}))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import logging
 import os
-import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -31,7 +30,7 @@ LIMIT = 60.0
 """Seconds that a run of a sweep may take: nobody waits longer for a point of a chart."""
 PROCESSES = "processes"
 VARIABLE = "SLIPFRONT_EXECUTOR"
-"""Of the environment: where sweeps and reports run."""
+"""Of the environment: where sweeps run."""
 SETTINGS = "settings.toml"
 OUT = "out"
 
@@ -45,21 +44,15 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
         document.on_session_destroyed(lambda context: end())
 
 
-def server_executor() -> str:
-    """Text that names where this server's sweeps and reports run."""
-    return os.environ.get(VARIABLE) or PROCESSES
-
-
 @cache
 def executor() -> Executor:
-    """What runs the commands of all pages: a process at a time, or the server's cluster.
+    """What runs the commands of all pages: a process at a time, which write here.
 
     Two at a time would spoil each other's measurements, and thirty the server.
     """
-    named, stack = server_executor(), ExitStack()
+    stack = ExitStack()
     atexit.register(stack.close)
-    on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
-    return stack.enter_context(opened(on, n_calls=1))
+    return stack.enter_context(opened(f"{PROCESSES}:1", n_calls=1))
 
 
 class Job:
@@ -129,14 +122,12 @@ class Job:
 def share_of(named: str, users: int) -> str:
     """What each of so many sweeps has of an executor: of a cluster, which has a queue, all.
 
-    A queue for all would have everybody wait for the longest run of anybody. Where no number is
-    named, one processor is left to the pages, but of two none: the processes are niced.
+    A queue for all would have everybody wait for the longest run of anybody.
     """
-    if not re.fullmatch(rf"{PROCESSES}(:[1-9]\d*)?", named):
-        return named
-    _, _, count = named.partition(":")
-    width = int(count) if count else max(processors() - 1, min(processors(), 2))
-    return f"{PROCESSES}:{max(1, width // users)}"
+    kind, _, named_count = named.partition(":")
+    count = named_count or str(processors())
+    is_local = kind == PROCESSES and count.isdecimal()
+    return f"{PROCESSES}:{max(1, int(count) // users)}" if is_local else named
 
 
 class Sweep:
@@ -152,7 +143,6 @@ class Sweep:
         self.rows: list[Row] = []
         self.message = ""
         self._is_cancelled = threading.Event()
-        self._began = time.monotonic()
         self.thread = threading.Thread(target=self._go, name="sweep", daemon=True)
         self.thread.start()
 
@@ -163,10 +153,8 @@ class Sweep:
 
     @property
     def progress(self) -> str:
-        """How many runs have come, and how long the others will take if it goes on so."""
-        done, size = len(self.rows), self.plan.size
-        left = (time.monotonic() - self._began) / max(done, 1) * (size - done)
-        return f"{done} of {size} runs" + (f", {left:.0f} s left" if done else "")
+        """How many runs have come."""
+        return f"{len(self.rows)} of {self.plan.size} runs"
 
     def cancel(self) -> None:
         """End it; what has come so far stays."""
@@ -174,7 +162,7 @@ class Sweep:
 
     def _go(self) -> None:
         self._under_way.add(self)
-        on = share_of(server_executor(), len(self._under_way))
+        on = share_of(os.environ.get(VARIABLE) or PROCESSES, len(self._under_way))
         try:
             with opened(on, patience(LIMIT)) as where:
                 self.rows.extend(

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 import param
@@ -22,7 +21,6 @@ from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantity import Quantity
 from solver.study.sweep.plan import Plan, plan_of
 
@@ -35,12 +33,8 @@ GRAMMAR = (
 VALUES, COARSE = 13, 10
 """Values of a range, and along each side of a map."""
 TENTH, HUNDREDTH = 0.1, 0.01
-CUTS = (1, 2, 5, 10, 20)
-"""Numbers of substructures that are compared."""
 COURSES = (4, 6, 8, 10)
 """Courses of bricks that are compared: all runs take less than a minute."""
-BESIDE = ("peak_friction", "end_displacement", "stiffness", "dissipation", "stuck_share")
-"""Taken of every run for the table and other charts: together 1 to 6 % of its time (measured)."""
 
 
 @dataclass(frozen=True)
@@ -56,15 +50,8 @@ class Question:
         return " ".join((*self.vary, self.of))
 
     def plan(self, settings: Settings) -> Plan:
-        """The runs that answer it, everything else as in some settings.
-
-        Raises
-        ------
-        RefusedError
-            For whatever of it cannot be run.
-        """
-        beside = [name for name in BESIDE if QUANTITIES[name].applies(settings)]
-        plan = plan_of(self.asked(settings), self.vary, [self.of, *beside])
+        """The runs that answer it, everything else as in some settings; they may be refused."""
+        plan = plan_of(self.asked(settings), self.vary, [self.of])
         for name in plan.idle():
             can = "settings that do something here"
             raise RefusedError(name, "varied", can, "vary another setting")
@@ -102,8 +89,7 @@ def question_of(text: str, settings: Settings) -> Question:
     is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
     if is_known and not question.refusal(settings):
         return question
-    ready = filter(None, (make(settings) for make in READY.values()))
-    return next((each for each in ready if not each.refusal(settings)), iterations_over_k(settings))
+    return next(ready for make in READY.values() if (ready := make(settings)) is not None)
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -163,67 +149,33 @@ def _bricks(settings: Settings) -> Question | None:
     return _iterations(settings, HUNDREDTH, f"courses={courses}", "multiscale=true,false")
 
 
-def _fretting(settings: Settings) -> Question | None:
-    across, up = _load(settings), settings.behind().get("top y")
-    return _over(settings, "sliding_share", COARSE, across, up) if has_cycles(settings) else None
+def _energy(settings: Settings, count: int, *others: str) -> Question | None:
+    """Energy over other settings and the load, from a tenth of what their sliders reach on.
 
-
-def _shakedown(settings: Settings) -> Question | None:
-    """Not of rods that stick rigidly: a load at their end has no limit, as the mesh is refined."""
-    is_rigid_rod = settings.kind != "plane" and np.isinf(settings.law.stiffness)
-    if not has_a_limit(settings) or is_rigid_rod:
-        return None
-    return _over(settings, "shakedown_factor", COARSE, "friction")
-
-
-def _load(settings: Settings) -> str | None:
-    """Name of the setting that says how large the load is, where a number does."""
-    known = variable(settings)
-    names = (name for name in settings.LOADS if name in known)
-    return next((name for name in names if isinstance(known[name], param.Number)), None)
-
-
-def _over(settings: Settings, of: str, count: int, *names: str | None) -> Question | None:
-    """Ask over settings, from a tenth of what their sliders reach on; None without one of them.
-
-    The values of a single one that is positive have even ratios.
+    None where no number says how large the load is, or one of the others does nothing. The values
+    of a load alone that is positive have even ratios.
     """
     known, vary = variable(settings), []
-    for name in names:
-        if name is None or not isinstance(known.get(name), param.Number):
-            return None
+    numbers = [name for name in known if isinstance(known[name], param.Number)]
+    loads = [name for name in settings.LOADS if name in numbers]
+    if not loads or not {*others} <= {*numbers}:
+        return None
+    for name in (*others, loads[0]):
         end = known[name].softbounds[getattr(settings, name) >= 0.0]
         low, high = sorted((TENTH * end, end))
-        is_log = len(names) == 1 and end > 0.0
+        is_log = not others and end > 0.0
         vary.append(f"{name}={low:g}:{high:g}:{count}{LOG * is_log}")
-    return Question(tuple(vary), of)
-
-
-def _cuts(settings: Settings) -> Question | None:
-    if "substructures" not in variable(settings):
-        return None
-    allowed = []
-    for cut in CUTS:
-        with contextlib.suppress(RefusedError):
-            settings.replace(substructures=cut)
-            allowed.append(str(cut))
-    cuts = ",".join(allowed)
-    return _iterations(settings, TENTH, proposed(settings, "k_scale"), f"substructures={cuts}")
+    return Question(tuple(vary), "dissipation")
 
 
 TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))
 """A word on each question and report, by what its button says."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
     # Small ones take its third power along rods (Masing).
-    "Energy over amplitude": lambda given: _over(given, "dissipation", VALUES, _load(given)),
+    "Energy over amplitude": lambda given: _energy(given, VALUES),
     "Iterations over k": iterations_over_k,
-    "Iterations over k and substructures": _cuts,
     "Iterations over bricks": _bricks,
-    "Energy over friction and load": lambda given: _over(
-        given, "dissipation", COARSE, "friction", _load(given)
-    ),
-    "Fretting map": _fretting,
-    "Shakedown limit": _shakedown,
+    "Energy over friction and load": lambda given: _energy(given, COARSE, "friction"),
 }
 """Questions that are ready, by what their buttons say."""
 
@@ -260,13 +212,7 @@ class Span:
         self._is_updating = False
 
     def text(self) -> str:
-        """The setting and its values as the command line takes them, in SI; "" for none.
-
-        Raises
-        ------
-        ValueError
-            For what is no number.
-        """
+        """The setting and its values in SI, "" for none; a ValueError for what is no number."""
         name = self.name.value
         if not name:
             return ""

@@ -13,42 +13,38 @@ from app.experiments.jobs import OUT, SETTINGS, Job, follow
 from app.experiments.questions import TEXTS
 from app.state import PageState
 from app.widgets import button, changing_text, download, looks, wrapped
-from app.worker.references import has_reference
 from solver.checked import dump
 from solver.study.proof import PAGE
 
 WORDS: dict[str, str] = TEXTS["reports"]
-FIGURES, STUDY, STABILITY, PROOF = "The paper's figures", "Study", "Stability", "Proof"
-NO_REFERENCE = (
-    "The reference to measure errors by would take too long here: choose fewer bodies or "
-    "elements, or the command line."
-)
+COMMANDS = {
+    "The paper's figures": ("figures",),
+    "Study": ("study", SETTINGS),
+    "Stability": ("stability", "--quick"),
+    "Proof": ("proof",),
+}
+"""By what is said of them in `WORDS`."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
-KEPT = 12
-"""Reports that a server keeps for all of its pages."""
 FRAME = (
     '<iframe title="{title}" srcdoc="{page}" '
     'style="width: 100%; height: calc(100vh - 240px); min-height: 300px; border: 0"></iframe>'
 )
-Command = tuple[tuple[str, ...], tuple[tuple[str, str], ...]]
-"""Arguments, and the names and texts of files that these name."""
+Command = tuple[tuple[str, ...], dict[str, str]]
+"""Arguments, and the texts of files that these name."""
 Files = dict[str, bytes]
-DONE: dict[Command, Files] = {}
-"""Files of finished reports, by the command that wrote them."""
 
 
 class CommandTab(ABC):
     """A tab with fields for a command, which is started there, and whose report is read there.
 
-    `job` is the command that is waiting or runs, `page` shows the report, `files` has buttons that
-    save what the command has written, which is kept in `done`; `buttons` are all buttons.
+    `report` is the one that is chosen, of which `page` shows the last, and `files` has buttons that
+    save what was written; `job` is the command that is waiting or runs, `buttons` are all buttons.
     """
 
-    def __init__(
-        self, state: PageState, tab: str, done: dict[Command, Files], *fields: Any
-    ) -> None:
-        self.state, self._tab, self._done = state, tab, done
+    def __init__(self, state: PageState, tab: str, *fields: Any) -> None:
+        self.state, self._tab = state, tab
         self.job: Job | None = None
+        self._done: dict[str, Files] = {}
         self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
         self.cancel_button = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
         self._words = changing_text(margin=(0, 8))
@@ -65,7 +61,7 @@ class CommandTab(ABC):
             sizing_mode="stretch_width",
             css_classes=[tab.lower()],
         )
-        state.param.watch(lambda event: self.show(), ["settings", "tab", "brought"])
+        state.param.watch(lambda *events: self.show(), ["settings", "tab", "brought"])
         follow(self.look, self.end)
 
     @property
@@ -79,16 +75,20 @@ class CommandTab(ABC):
         """What it does, or what it cannot be started without."""
 
     @property
+    def report(self) -> str:
+        """What is started, and shown."""
+        return self._tab
+
+    @property
     def written(self) -> Files:
-        """What is shown: the files that the command of the fields has written."""
-        return self._done.get(self.command, {})
+        """What the last report has written, whatever is set now."""
+        return self._done.get(self.report, {})
 
     def start(self) -> None:
         """Have the command run, in place of the one before."""
         self.end()
-        self._running = self.command
-        arguments, texts = self._running
-        self.job = Job(arguments, dict(texts))
+        self._started = self.report
+        self.job = Job(*self.command)
         self.show()
         self.look()
 
@@ -109,14 +109,11 @@ class CommandTab(ABC):
         job = self.job
         if job is None:
             return
-        kind = self._running[0][0].capitalize()
-        self.progress.object = f"{kind}: {job.progress}" if job.progress else ""
+        self.progress.object = f"{self._started}: {job.progress}" if job.progress else ""
         if not job.is_over:
             return
         if not job.failure:
-            self._done[self._running] = job.files
-            while len(self._done) > KEPT:
-                self._done.pop(next(iter(self._done)))
+            self._done[self._started] = job.files
         self.end()
         self.show()
 
@@ -136,61 +133,35 @@ class CommandTab(ABC):
 
 
 class Reports(CommandTab):
-    """The tab of the reports of the command line; `kind` is the one that is chosen."""
+    """The tab of the reports of the command line, of which `kind` chooses one."""
 
     def __init__(self, state: PageState) -> None:
         self.kind = pmui.RadioButtonGroup(
             label="",
-            options=list(WORDS),
-            value=FIGURES,
+            options=list(COMMANDS),
+            value=next(iter(COMMANDS)),
             size="small",
             margin=(6, 6),
             **looks("words"),
         )
-        self._has_paused = False
-        super().__init__(state, "Reports", DONE, self.kind)
+        super().__init__(state, "Reports", self.kind)
         self.kind.param.watch(lambda event: self.show(), "value")
-        self.show()
-        if not self.written:
-            self.start()
+        self.start()
 
     @property
-    def command(self) -> Command | None:
-        """The command of the report that is chosen, if it can be made."""
-        if self._has_no_reference:
-            return None
-        arguments = {
-            FIGURES: ["figures"],
-            STUDY: ["study", SETTINGS],
-            STABILITY: ["stability", "--quick"],
-            PROOF: ["proof"],
-        }[self.kind.value]
-        texts = ((SETTINGS, dump(self.state.settings)),) if SETTINGS in arguments else ()
-        return (*arguments, "--out", OUT), texts
+    def report(self) -> str:
+        """The report that is chosen."""
+        return self.kind.value
+
+    @property
+    def command(self) -> Command:
+        """The command of the report that is chosen."""
+        return (*COMMANDS[self.report], "--out", OUT), {SETTINGS: dump(self.state.settings)}
 
     @property
     def words(self) -> str:
-        """What it is of, and why it cannot be made."""
-        return WORDS[self.kind.value] + self._has_no_reference * f" {NO_REFERENCE}"
-
-    @property
-    def _has_no_reference(self) -> bool:
-        return self.kind.value == STUDY and not has_reference(self.state.settings)
-
-    def start(self) -> None:
-        """Have the chosen report made; the page's run waits while methods are timed."""
-        super().start()
-        state = self.state
-        self._has_paused = self.kind.value == STUDY and state.running and not state.is_over
-        if self._has_paused:
-            state.pause()
-
-    def end(self) -> None:
-        """Leave nothing behind."""
-        super().end()
-        if self._has_paused:
-            self._has_paused = False
-            self.state.go_on()
+        """What it is of."""
+        return WORDS[self.report]
 
 
 def shown(files: Files) -> str:

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-from typing import Any
 
-import holoviews as hv
-import numpy as np
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.events import Tap
 
-from app.charts import in_units, keys, overlay
+from app.charts import LiveChart
 from app.experiments.jobs import SETTINGS, Job, Sweep, follow
 from app.experiments.questions import (
     FIELD,
@@ -24,54 +19,45 @@ from app.experiments.questions import (
     quantities,
     question_of,
 )
-from app.refusals import message_of
-from app.state import ANSWER, PageState, answer
-from app.units import sizes_of, unit_for
+from app.state import PageState, answer
+from app.units import unit_for
 from app.widgets import button, changing_text, download
 from solver.checked import dump
-from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.mesh import decides
-from solver.study.page import Chart, Map
+from solver.study.page import Chart
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep.plan import Plan
-from solver.study.sweep.report import chart_of, counts, csv_of, is_map
+from solver.study.sweep.report import chart_of, counts, csv_of
 
 MESH = "Is the mesh fine enough?"
 SCALES = {"automatic": None, "linear": False, "logarithmic": True}
-NEAR = 0.04
-"""Share of the axes up to which a tap hits a point."""
 
 
 class WhatIf:
-    """The tab: the state has the question, and all that does not vary.
+    """The tab: the state has the question, and all that does not vary."""
 
-    `open_run` opens the run of some settings on the live tab.
-    """
-
-    def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
-        self.state, self._open_run = state, open_run
+    def __init__(self, state: PageState) -> None:
+        self.state = state
         self.question = Question((), "")
         self.sweep: Sweep | None = None
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
         self._is_updating = False
-        self._is_logarithmic: bool | None = None
         self._make_fields()
-        self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        self._chart = LiveChart()
         table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
         self.view = pn.Column(
-            pn.FlexBox(*self._ready.values(), self._help),
+            pn.FlexBox(*self._ready.values()),
             *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._scale, self._start, self._cancel),
             self.message,
-            self._keys,
-            self._chart,
+            self._chart.view,
             pn.FlexBox(table, self.mesh, self._meshed),
             sizing_mode="stretch_width",
             css_classes=["what-if"],
         )
-        state.param.watch(lambda event: self._show(), ["settings", "tab", "question"])
+        state.param.watch(lambda *events: self._show(), ["settings", "tab", "question"])
         follow(self.look, self.end)
         self._show()
 
@@ -95,10 +81,8 @@ class WhatIf:
         self._ready = {
             title: button(title, partial(self._on_ready, title), **look) for title in READY
         }
-        self._help = changing_text(margin=(2, 8))
         self.message = changing_text(margin=(2, 8))
         self._meshed = changing_text(margin=(10, 8))
-        self._keys = pn.pane.HTML("", margin=(4, 8))
 
     def start(self) -> None:
         """Have the question answered, in place of the one before."""
@@ -108,7 +92,6 @@ class WhatIf:
             return
         self.cancel()
         self.sweep = Sweep(self.question.plan(self.state.settings))
-        self._is_logarithmic = None
         self._draw()
 
     def cancel(self) -> None:
@@ -141,13 +124,10 @@ class WhatIf:
         return csv_of(self.sweep.plan, sorted(self.sweep.rows, key=lambda row: row.number))
 
     def chart(self) -> Chart:
-        """What has come so far, in the units that are read."""
+        """What has come so far."""
         plan, rows = self.sweep.plan, list(self.sweep.rows)
         text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
-        scale = SCALES[self._scale.value]
-        return in_units(chart_of(plan, rows, 0, text, logarithmic=scale))
-
-    # Fields
+        return chart_of(plan, rows, 0, text, logarithmic=SCALES[self._scale.value])
 
     def _show(self) -> None:
         """Show the question, of which another scene may know nothing, and have it answered.
@@ -173,7 +153,6 @@ class WhatIf:
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
         if self.sweep is None or self.question != before:
-            self._help.object = ""
             self.start()
         else:
             self._draw()
@@ -193,17 +172,14 @@ class WhatIf:
             refusal = question.refusal(settings)
         except ValueError as problem:
             refusal = f"{problem}."
-        self._start.disabled, self._help.object = bool(refusal), ""
+        self._start.disabled = bool(refusal)
         self.message.object = refusal
         if not refusal:
             self.question = question
             self.state.question = str(question)
 
     def _on_ready(self, title: str) -> None:
-        self._help.object = TEXTS["questions"][title]
-        self.question = READY[title](self.state.settings)
-        self.state.question = str(self.question)
-        self.start()
+        self.state.question = str(READY[title](self.state.settings))
 
     def _on_mesh(self) -> None:
         """Have the quantity taken on three meshes and three numbers of instants, or no more."""
@@ -214,63 +190,18 @@ class WhatIf:
             self._job = Job(["mesh", SETTINGS, "--of", self.question.of], texts)
         self.look()
 
-    # Chart
-
     def _draw(self) -> None:
-        """Show what has come, and where the page's settings stand."""
+        """Show what has come."""
         sweep, settings = self.sweep, self.state.settings
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
         words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
-        self.message.object = f"{sweep.message} {words}".strip()
-        chart = self.chart()
-        data = chart, _place_of(sweep.plan, chart, settings)
-        scale = chart.scale if isinstance(chart, Map) else chart.y
-        if scale.logarithmic is self._is_logarithmic:
-            self._pipe.send(data)
-            return
-        self._is_logarithmic, self._keys.object = scale.logarithmic, keys([chart])
-        self._pipe = hv.streams.Pipe(data=data)
-        self._chart.object = hv.DynamicMap(
-            lambda data: overlay(*data).opts(hooks=[self._listen]), streams=[self._pipe]
-        )
-
-    def _listen(self, plot: Any, _element: Any) -> None:
-        """Listen to taps, as HoloViews' own stream does not on overlays."""
-        if not plot.handles.get("is_tapped"):
-            plot.handles["is_tapped"] = True
-            plot.state.on_event(Tap, lambda event: self.open_at(event.x, event.y))
-
-    def open_at(self, x: float, y: float) -> None:
-        """Open the run of the point at a place on the chart, as the page shows runs."""
-        chart, page = self.chart(), self.state.settings
-        place = nearest(chart, x, y)
-        if self.sweep is None or place is None:
-            return
-        plan = self.sweep.plan
-        try:
-            settings = plan.settings_at(int(chart.runs.numbers[place]))
-        except RefusedError as refusal:
-            self.state.refusal = message_of(refusal, page)
-            return
-        ends = {"accuracy", *(ANSWER if settings.finish != "none" else ())}
-        ends -= {axis.name for axis in plan.axes}
-        self._open_run(settings.replace(**{name: getattr(page, name) for name in ends}))
-
-
-def nearest(chart: Chart, x: float, y: float) -> int | None:
-    """Number in the chart of the run that is meant by a place on it; None where there is none."""
-    known, away = np.flatnonzero(np.isfinite(chart.runs.y)), 0.0
-    if not known.size:
-        return None
-    for axis, values, at in ((chart.x, chart.runs.x, x), (chart.y, chart.runs.y, y)):
-        scale = np.log if axis.logarithmic else np.asarray
-        places = scale(values[known])
-        away = np.hypot(away, (places - scale(at)) / (np.ptp(places) or 1.0))
-    nearest = int(away.argmin())
-    return int(known[nearest]) if isinstance(chart, Map) or away[nearest] < NEAR else None
+        texts = TEXTS["questions"].items()
+        told = [text for title, text in texts if READY[title](settings) == self.question]
+        self.message.object = " ".join([sweep.message, words, *told]).strip()
+        self._chart.show(self.chart())
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
@@ -278,16 +209,3 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
     varied = {axis.name: None for axis in plan.axes}
     is_same_scene = settings.scene == plan.settings.scene
     return is_same_scene and settings.values() | varied == plan.settings.values() | varied
-
-
-def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
-    """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
-    place = [np.nan, np.nan]
-    axes = plan.axes[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
-    for i, axis in enumerate(axes):
-        value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
-        if axis.is_numeric:
-            place[i] = value / sizes_of(axis.unit).get(unit, 1.0)
-        elif value in axis.values:
-            place[i] = axis.values.index(value)
-    return place[0], place[1]

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from base64 import b64encode
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -82,25 +81,19 @@ def history_table(frame: Frame) -> str:
 def plot_table(view: View, frame: Frame) -> str:
     """What a plot shows (CSV, with comments that begin with #): a line for each point of a curve.
 
-    Columns are those of the plot's sources, in the units of its axes; paths are numbered.
+    Columns are those of the plot's sources, in the units of its axes; paths are numbered, and a
+    curve has the name of its source.
     """
     axes = [*view.figure.xaxis[:1], *view.figure.yaxis[:1]]
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
-    items = [item for legend in view.figure.legend for item in legend.items]
     tables = []
     for key, source in view.sources.items():
-        labels = [
-            str(getattr(item.label, "value", None))
-            for item in items
-            for other in item.renderers
-            if other.name == key
-        ]
         table = pd.DataFrame({name: list(column) for name, column in source.data.items()})
         paths = [name for name in table if any(np.ndim(cell) for cell in table[name])]
         if paths:
             table[paths] = table[paths].map(np.ravel)
             table = table.explode(paths).rename_axis("path").reset_index()
-        table.insert(0, "curve", " / ".join(labels))
+        table.insert(0, "curve", key)
         tables.append(table)
     return _csv(frame, [view.name, *names], pd.concat(tables))
 
@@ -113,14 +106,14 @@ def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
 
 
 def offline_page(
-    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None, backend: str
+    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None
 ) -> str:
-    """A run as one page that needs nothing beside it (HTML): its plots at all instants, its tables.
+    """A run as one page that needs nothing beside it (HTML): its plots at all instants.
 
     Views and ghost are those in sight, which are not touched. The save buttons of the plots write
-    PNG, or SVG with the backend "svg".
+    SVG.
     """
-    copies = _copies(views, backend)
+    copies, settings = _copies(views), escape(dump(frame.run.settings))
     instants, end = frame.run.instants, float(frame.run.instants[-1])
     columns = thinned(len(instants), MOST_INSTANTS)
     at = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
@@ -136,7 +129,7 @@ def offline_page(
             caption,
             *(view.figure for view in copies if view.name in HEIGHTS),
             grid(rest, ncols=2, sizing_mode="stretch_width"),
-            Div(text=_below(frame, views), sizing_mode="stretch_width"),
+            Div(text=f"<details><summary>All settings</summary><pre>{settings}</pre></details>"),
             sizing_mode="stretch_width",
         )
     )
@@ -161,12 +154,12 @@ def offline_page(
     )
 
 
-def _copies(views: Sequence[View], backend: str) -> list[View]:
+def _copies(views: Sequence[View]) -> list[View]:
     """Views of the same kinds, with figures of their own, in which nothing is dragged."""
     copies = [type(view)(view.state) for view in views]
     for view in copies:
         made = view.figure
-        made.output_backend = backend
+        made.output_backend = "svg"
         made.sizing_mode, made.height = "stretch_width", HEIGHTS.get(view.name, HEIGHT)
         made.tools = [tool for tool in made.tools if not isinstance(tool, PointDrawTool)]
         for tool in made.select({"type": SaveTool}):
@@ -192,24 +185,6 @@ def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS
     return CustomJS(args=moved, code=SHOW)
 
 
-def _tables(frame: Frame, views: Iterable[View]) -> dict[str, Callable[[], str]]:
-    """What makes the tables of what is seen (CSV), by title."""
-    plots = {view.name: partial(plot_table, view, frame) for view in views}
-    return {"All iterations": partial(history_table, frame), **plots}
-
-
-def _below(frame: Frame, views: Sequence[View]) -> str:
-    """Tables and settings (HTML)."""
-    links = ", ".join(
-        f'<a download="{slug(title)}.csv" href="data:text/csv;base64,'
-        f'{b64encode(make().encode()).decode()}">{slug(title)}.csv</a>'
-        for title, make in _tables(frame, views).items()
-    )
-    settings = escape(dump(frame.run.settings))
-    below = f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
-    return f"<p>Numbers: {links}.</p>{below}"
-
-
 def offers(state: PageState, views: Sequence[View]) -> list[Any]:
     """Buttons that save what there is of what is seen: the run, and what the views show."""
     frame = state.frame
@@ -217,18 +192,13 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
         return [pmui.Typography("There is no run yet.")]
     page = partial(offline_page, frame, views, state.selection, state.ghost)
     files = {
-        "The run as one page (.html)": (".html", partial(page, "canvas")),
-        "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
+        "The run as one page, to save plots from as SVG (.html)": (".html", page),
         "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
     }
-    files |= {
-        f"{title} (.csv)": (f"-{slug(title)}.csv", make)
-        for title, make in _tables(frame, views).items()
-    }
+    tables = {"All iterations": partial(history_table, frame)}
+    tables |= {view.name: partial(plot_table, view, frame) for view in views}
+    for title, make in tables.items():
+        slug = title.lower().replace(" ", "-").replace("/", "-")
+        files[f"{title} (.csv)"] = f"-{slug}.csv", make
     name = f"slipfront-{frame.run.settings.scene}"
     return [download(label, name + end, make, **LOOK) for label, (end, make) in files.items()]
-
-
-def slug(title: str) -> str:
-    """A title in the name of a file."""
-    return title.lower().replace(" ", "-").replace("/", "-")

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from contextlib import suppress
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
@@ -27,8 +25,6 @@ SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 DEFAULTS = {name: PageState.param[name].default for name in SHARED}
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
-MOST_TOLD = 3
-"""Refusals that are told of one address."""
 
 Place = dict[str, Any]
 """What an address says, by the names of `PageState`: `settings` in any case; the room is "class" in
@@ -66,11 +62,11 @@ class Link:
             is_same = self._location.search == query
             self._location.search = f"{query}&" if is_same else query
 
-    def copy(self) -> str:
-        """Have the browser copy the whole link; what it had to leave out."""
+    def copy(self) -> None:
+        """Have the browser copy the whole link."""
         self._browser.copied = ""
         self._browser.copied, message = link_of(self._state)
-        return message
+        pn.state.notifications.info(f"The link to what is shown is copied. {message}")
 
     def go(self, query: str) -> None:
         """Bring the page to an address."""
@@ -174,9 +170,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     place["settings"] = _together(
         base, {name: parse(text) for name, text in pairs.items()}, refused
     )
-    told = "; ".join(text.rstrip(".") for text in refused[:MOST_TOLD])
-    if len(refused) > MOST_TOLD:
-        told += f"; and {len(refused) - MOST_TOLD} more"
+    told = "; ".join(text.rstrip(".") for text in refused)
     return place, f"From the address: {told}." if refused else ""
 
 
@@ -196,24 +190,17 @@ def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str
     return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE))), {}
 
 
-def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> Settings:
-    """Settings with as many values as hold together; the others are refused."""
-    with suppress(RefusedError):
-        return base.replace(**values)
-    messages = {}
-    # A method comes first, as it brings values of others.
-    for name in sorted(values, key=lambda name: name != "method"):
+def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Settings:
+    """Settings with as many values as hold together; the others are refused, one by one."""
+    while True:
         try:
-            base = base.replace(**{name: values[name]})
+            return base.replace(**values)
         except RefusedError as refusal:
+            name = refusal.name if refusal.name in values else next(reversed(values))
+            value = values.pop(name)
             is_known = refusal.name in base.definitions()
-            message = message_of(refusal, base, name, values[name])
-            messages[name] = message if is_known else f"{name[:40]}: {refusal.remedy}"
-    if len(messages) < len(values):
-        # One that was refused may hold beside one that came later.
-        return _together(base, {name: values[name] for name in messages}, refused)
-    refused.extend(messages.values())
-    return base
+            message = message_of(refusal, base, name, value)
+            refused.append(message if is_known else f"{name[:40]}: {refusal.remedy}")
 
 
 def too_long(settings: Settings) -> list[str]:

@@ -11,7 +11,6 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.files.tables import (
-    BOTH,
     LOOP,
     TABLES,
     Content,
@@ -47,22 +46,15 @@ SHOWN = 5
 """Lines of a table that are shown."""
 
 
-def files_panel(state: PageState, copy: Callable[[], str], width: int) -> pn.Column:
-    """Buttons that copy the link, save and reset settings and open files.
-
-    `copy` has the browser copy the link to what is shown; it returns what it had to leave out.
-    """
+def files_panel(state: PageState, width: int) -> pn.Column:
+    """Buttons that save and reset settings and open files."""
     look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
     opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
-
-    def copy_link() -> None:
-        opener.message.object = f"The link to what is shown is copied. {copy()}"
 
     def reset() -> None:
         state.adopt(default_settings(state.settings.scene))
 
     return pn.Column(
-        button("Copy link", copy_link, icon="link", variant="outlined", **look),
         download("Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look),
         opener.view,
         button("All settings to default", reset, icon="restart_alt", variant="outlined", **look),
@@ -118,20 +110,20 @@ class TableOpener:
         if not self.file.value:
             return
         self._table = None
-        contents = self._take(partial(self._read, self.file.filename, self.file.value))
+        content = self._take(partial(self._read, self.file.filename, self.file.value))
         self.columns_button.visible = self._table is not None
-        if any(isinstance(content, MeasuredLoop) for content in contents):
+        if isinstance(content, MeasuredLoop):
             self.show()
 
-    def _read(self, source: str, data: bytes) -> tuple[list[Content], str]:
+    def _read(self, source: str, data: bytes) -> tuple[Content, str]:
         state, axes = self._state, axes_on(self._state)
         if source.lower().endswith(".toml"):
             settings = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
-            return [settings], f"{source}: settings of the scene {settings.scene}."
+            return settings, f"{source}: settings of the scene {settings.scene}."
         table = table_of(data, source)
         if not is_a_loop(data, source):
             results = read_results(data, source, state.settings)
-            return [results], f"{source}: {results.message}."
+            return results, f"{source}: {results.message}."
         self._table, self._source = table, source
         names = [name.replace(",", " ") for name in names_of(table)]
         cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
@@ -146,14 +138,8 @@ class TableOpener:
 
     def _offer(self, use: str) -> None:
         """Offer what a table may be used as in this scene."""
-        settings, axes = self._state.settings, axes_on(self._state)
-        units = {unit for _, unit in axes}
-        kinds = {"Measured loop": LOOP}
-        for name, definition in paths_of(settings).items():
-            title = about(definition).title
-            kinds[title] = name
-            if settings.curve_units(name)[1] in units:
-                kinds[f"Measured loop, and {title}"] = f"{BOTH}{name}"
+        paths = paths_of(self._state.settings).items()
+        kinds = {"Measured loop": LOOP, **{about(path).title: name for name, path in paths}}
         self._is_updating = True
         self.use.param.update(options=kinds, value=use if use in kinds.values() else LOOP)
         self._is_updating = False
@@ -163,24 +149,23 @@ class TableOpener:
         if not self._is_updating and self._table is not None:
             self._take(self._read_as)
 
-    def _read_as(self) -> tuple[list[Content], str]:
+    def _read_as(self) -> tuple[Content, str]:
         table, settings = renamed(self._table, self.heads.value), self._state.settings
         return read_as(self.use.value, table, self._source, settings, axes_on(self._state))
 
-    def _take(self, read: Callable[[], tuple[list[Content], str]]) -> list[Content]:
-        """What is read, which the page shows or runs; nothing where it is refused, as is said."""
-        contents = list[Content]()
+    def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
+        """What is read, which the page shows or runs; None where it is refused, as is said."""
+        content = None
         try:
-            contents, message = read()
+            content, message = read()
         except RefusedError as refused:
             self._state.refusal = message = message_of(refused, self._state.settings)
         self.message.object = self._understood.object = message
-        for content in contents:
-            if isinstance(content, Settings):
-                self._state.adopt(content)
-            else:
-                self._state.brought = content
-        return contents
+        if isinstance(content, Settings):
+            self._state.adopt(content)
+        elif content is not None:
+            self._state.brought = content
+        return content
 
     def _forget(self) -> None:
         self.message.object = ""

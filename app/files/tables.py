@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 
 from app.state import PageState
 from solver.columns import column_of
@@ -18,8 +19,8 @@ from solver.study.measured_loop import Axes, MeasuredLoop, columns_of, loop_in
 from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
-LOOP, BOTH = "loop", "loop and "
-"""What a table is used as, beside the name of a path alone; the second is before one."""
+LOOP = "loop"
+"""What a table is used as, if it is not the name of a path."""
 Content = Settings | OtherResults | MeasuredLoop
 
 
@@ -33,22 +34,12 @@ def use_of(table: Table, settings: Settings, axes: Axes) -> str:
 
 def read_as(
     use: str, table: Table, source: str, settings: Settings, axes: Axes
-) -> tuple[list[Content], str]:
-    """What a table has that is used as a loop, a path, or both, and what was understood.
-
-    Raises
-    ------
-    SettingError
-        If its columns are not those of this use, or are refused.
-    """
-    contents, messages = list[Content](), list[str]()
-    if use.startswith(LOOP):
-        loop = loop_in(table, source, axes)
-        contents, messages = [loop], [f"{source}: {loop.message}."]
+) -> tuple[Content, str]:
+    """What a table has that is used as a loop or a path, and what was understood."""
     if use != LOOP:
-        changed, message = with_path(settings, use.removeprefix(BOTH), table)
-        contents, messages = [*contents, changed], [*messages, message]
-    return contents, " ".join(messages)
+        return with_path(settings, use, table)
+    loop = loop_in(table, source, axes)
+    return loop, f"{source}: {loop.message}."
 
 
 def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
@@ -69,22 +60,13 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 def table_of(data: bytes | str, source: str) -> Table:
     """Table of a file, whatever it is of."""
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError("the table", source, "a table of time and value", remedy)
-
-    return read_table(data, refuse)
+    return read_table(data, partial(SettingError, "the table", source, "a table of time and value"))
 
 
 def renamed(table: Table, heads: str) -> Table:
     """A table with other names and units of its columns, between commas.
 
     One name more is that of a last column, the number of each row from 0.
-
-    Raises
-    ------
-    SettingError
-        For fewer or more names.
     """
     columns = [column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))]
     width = len(table.columns)

@@ -43,8 +43,7 @@ def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
 
     They are called again with each frame.
     """
-    place = f"<small>Case {list(CASES).index(case.name) + 1} of {len(CASES)}</small>"
-    head = f"{place}\n\n### {case.title}\n\n**{_raised(case.question)}**"
+    head = f"### {case.title}\n\n**{_raised(case.question)}**"
     known = f"*{_raised(case.formula)}*. {_raised(case.how)}\n\n<small>{case.source}</small>"
     change = f"{known}\n\n#### What to change first\n\n{case.change}"
     return [lambda: head, lambda: _known_beside_found(case, state), lambda: change]

@@ -55,11 +55,6 @@ def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
     return tuple(KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
 
 
-def place_of(lesson: Lesson) -> str:
-    """Which of all lessons it is."""
-    return f"Lesson {list(LESSONS).index(lesson.name) + 1} of {len(LESSONS)}"
-
-
 def readings_of(lesson: Lesson) -> list[str]:
     """Names of the quantities in what a lesson says."""
     return list(dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))))

@@ -21,7 +21,6 @@ from app.lessons.catalogue import (
     filled,
     kinds_of,
     parts_of,
-    place_of,
     plots_of,
     readings_of,
     settings_of,
@@ -159,16 +158,15 @@ class Guide:
 
     def _parts(self, lesson: Lesson) -> list[Any]:
         """The question, and after the choice the answer with what explains it."""
-        title = f"<small>{place_of(lesson)}</small>\n\n### {lesson.title}"
         figures = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
         question = [*self._paragraphs((f"**{lesson.question}**",)), self._choices]
         explore = text_button("Explore freely", self._end, variant="text")
         if self._state.is_asked:
-            paragraphs = self._paragraphs((title, *lesson.text))
+            paragraphs = self._paragraphs((f"### {lesson.title}", *lesson.text))
             return [*paragraphs, *figures, *question, explore]
         explanation = self._paragraphs(lesson.explanation)
         buttons = pn.FlexBox(*self._onward(lesson), explore, margin=(8, 0))
-        head = self._paragraphs((title,))
+        head = self._paragraphs((f"### {lesson.title}",))
         return [*head, *question, self._verdict(lesson), *figures, *explanation, buttons]
 
     def _verdict(self, lesson: Lesson) -> pmui.Alert:

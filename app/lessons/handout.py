@@ -13,7 +13,7 @@ from jinja2 import Template
 from markdown_it import MarkdownIt
 
 from app.charts import library
-from app.lessons.catalogue import filled, kinds_of, place_of, without_controls
+from app.lessons.catalogue import filled, kinds_of, without_controls
 from app.lessons.curve import DrawnCurve
 from app.server import address_for_others
 from app.state import PageState
@@ -52,7 +52,6 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
         title=lesson.title,
         template=Template(PAGE, autoescape=True),
         template_variables={
-            "place": place_of(lesson),
             "library": library(),
             "text": _html(lesson.text, state),
             "question": lesson.question,
