@@ -11,7 +11,7 @@ from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.picture import bands
-from app.views.rope import StressRanges, Unrolled, WireSection
+from app.views.rope import WireSection
 from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
 from app.views.timeline import Timeline, paths_of
 from app.worker.references import ReferenceCache
@@ -151,7 +151,7 @@ def test_bands_end_where_a_wire_goes_behind() -> None:
 
 def test_other_views_show_every_instant(frame: Frame) -> None:
     state = PageState(frame.run.settings)
-    for kind in (Stress, Timeline, WireSection, Unrolled, StressRanges):
+    for kind in (Stress, Timeline, WireSection):
         if kind.applies(frame.run.settings):
             view = kind(state)
             _ = view.figure

@@ -1,4 +1,4 @@
-"""Hysteresis: force over displacement, cycle by cycle, and where the last cycle wears bodies."""
+"""Hysteresis: force over displacement, and what each cycle of a load takes."""
 
 from __future__ import annotations
 
@@ -6,10 +6,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from bokeh.models import Range1d
 
 from app.frame import Floats, Frame, Selection
-from app.units import unit_for
 from app.views.axis import whole
 from app.views.colors import (
     BESIDE,
@@ -147,31 +145,3 @@ class CycleEnergy(CyclePlot):
         self.x.span(0.5, count + 0.5)
         self.y.hold(frame.stage, [0.0], energy, 1.1 * energy)
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
-
-
-class Fretting(CyclePlot):
-    """Slip and friction work of the last cycle along the interface."""
-
-    name = "Fretting"
-
-    def _make(self) -> None:
-        made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
-        work = self.add("work", color=ERROR, width=4, alpha=0.7)
-        slip = self.add("slip", color=LATIN, width=2)
-        self.legend("work", "slip")
-        hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
-
-    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
-        """Show both, each over its largest value, which the legend has."""
-        run = frame.run
-        name = selection.interface_of(run)
-        x = run.interfaces[name].positions
-        if len(x) != len(cycles["slip"]):
-            return
-        self.x.hold((run.number, name), x)
-        work, slip = (float(cycles[name].max(initial=0.0)) for name in ("work", "slip"))
-        unit = "J/m²" if run.settings.kind == "plane" else "J/m"
-        title = f"friction work, at most {work:.3g} {unit}"
-        self.draw("work", x, cycles["work"] / (work or 1.0), title)
-        title = f"slip, at most {unit_for(slip, 'm')(slip)}"
-        self.draw("slip", x, cycles["slip"] / (slip or 1.0), title)

@@ -32,10 +32,10 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
-from app.frame import Bytes, Floats, Frame, Selection
+from app.frame import Floats, Frame, Selection
 from app.state import PageState
-from app.views.axis import Axis, edges
-from app.views.colors import CUT, KEYS, STATUS
+from app.views.axis import Axis
+from app.views.colors import CUT
 from solver.settings import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -182,18 +182,6 @@ class View:
 
     def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
         return ColumnDataSource(columns, **self._selects)
-
-    def add_status(self) -> GlyphRenderer:
-        """An image of statuses, and a mark for each in the legend."""
-        self.mark(KEYS)
-        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        return self.add("status", "Image", "image x y dw dh", color_mapper=colors)
-
-    def draw_status(self, status: Bytes, x: Floats, y: Floats) -> None:
-        """Draw statuses, shape (n_y, n_x), about places in SI."""
-        (left, right), (low, high) = self.x(edges(x)[[0, -1]]), self.y(edges(y)[[0, -1]])
-        size = {"dw": [right - left], "dh": [high - low]}
-        self.fill("status", image=[status], x=[left], y=[low], **size)
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
         """Marks that stand in the legend only, by name; they share a glyph, as each costs time."""

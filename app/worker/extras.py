@@ -84,23 +84,15 @@ def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     """The iterate, cycle by cycle of its load; None where that has none.
 
     "columns" of the instants at which cycles begin, and the last one ends, (n_cycles + 1,);
-    "energy" that friction takes in each, (n_cycles,), J; "slip" to and fro, m, and friction "work",
-    J/m or J/m^2, of the last one at the points of the selected interface; "text", what becomes of
-    slip.
+    "energy" that friction takes in each, (n_cycles,), J; "text", what becomes of slip.
     """
     found = cycles_of(sampler.settings, iterate)
     if not len(found):
         return None
-    name = needs.interface if needs.interface in sampler.rows else next(iter(sampler.rows))
-    laws = list(sampler.problem.rubbing.values())
-    before = laws[: list(sampler.rows).index(name)]
-    points = sum(len(law.positions) for law in before) + sampler.rows[name]
     slipped = bool(found.slip.any() or found.before.any())
     return {
         "columns": np.searchsorted(sampler.columns, found.ends),
         "energy": floats(found.energy),
-        "slip": floats(found.slip[points, -1]),
-        "work": floats(found.work[points, -1] / sampler.lengths(name)),
         "text": _fate_text(found) if slipped else "nothing slips",
     }
 
