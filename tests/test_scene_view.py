@@ -116,10 +116,9 @@ def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     state.send = sent.append
     picture = view.picture
     assert picture is not None
-    handle = next(one for one in picture.handles if one.setting == "peak")
-    arrows = next(each for each in picture.arrows if each.act.symbol == "F")
+    arrows = next(each for each in picture.draggable if each.setting == "peak")
     half = picture.layout.page(0.5 * (arrows.base[0] + arrows.handles[0]), 0.0)
-    start = picture.layout.page(handle.place, 0.0)
+    start = picture.layout.page(arrows.handle, 0.0)
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
     assert isinstance(sent[-1], Start)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -32,10 +32,12 @@ RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)]
 class Arrows:
     """Those of what acts, at an instant, px from the middle of the bodies' foot.
 
-    There are n of them: none where its value is nearly zero.
+    There are n of them: none where its value is nearly zero. The setting behind the act is set by
+    dragging the longest.
     """
 
     act: Act
+    setting: str | None
     places: Array
     """Where it acts, shape (m, 2)."""
     base: Array
@@ -68,15 +70,19 @@ class Arrows:
         return np.concatenate([gapped(shafts), self.handles if is_spread else self.handles[:0]])
 
     @property
-    def longest(self) -> int:
-        """The one that is dragged."""
+    def _longest(self) -> int:
         return int(np.hypot(*(self.handles - self.base).T).argmax())
 
-    def scaled(self, setting: float, pointer: Array) -> float:
-        """The setting behind the value with which the handle of the longest is under a pointer."""
-        base = self.base[self.longest]
-        along = self.handles[self.longest] - base
-        return float(setting * ((pointer - base) @ along) / (along @ along))
+    @property
+    def handle(self) -> Array:
+        """The end of the longest."""
+        return self.handles[self._longest]
+
+    def scaled(self, present: float, pointer: Array) -> float:
+        """The setting with which the handle is under a pointer, by its present value."""
+        base = self.base[self._longest]
+        along = self.handle - base
+        return float(present * ((pointer - base) @ along) / (along @ along))
 
 
 class Word(NamedTuple):
@@ -100,19 +106,19 @@ def color_of(act: Act) -> str:
 
 
 def arrows_of(
-    act: Act, places: Array, layout: Layout, peaks: Mapping[str, float], column: int
+    act: Act, setting: str | None, places: Array, layout: Layout, peak: float, column: int
 ) -> Arrows:
     """The arrows of what acts at an instant, the column of its values.
 
-    An arrow of the value in `peaks` has full length; `places` is where the act's have gone, shape
-    (m, 2), px from the middle of the foot.
+    An arrow of the peak has full length; `places` is where the act's have gone, shape (m, 2), px
+    from the middle of the foot.
     """
     towards = np.asarray(act.towards)
     towards = towards[:, column] if towards.ndim > 1 else towards
     away, aside = np.array(act.away), is_aside(act)
     side = act.where.partition(" ")[0]
     now = np.broadcast_to(act.values.T[column], len(places))
-    share = np.clip(now / peaks[act.where], -1.6, 1.6)
+    share = np.clip(now / peak, -1.6, 1.6)
     is_shown = np.abs(share) >= LEAST
     base = places[is_shown] + (beside(layout.description, side) * away if aside else 0.0)
     span = layout.arrow * share[is_shown, None] * towards
@@ -124,7 +130,7 @@ def arrows_of(
         along = np.linspace(0.0, 1.0, 9)[:, None]
         height = BOW * np.hypot(*span.T)[:, None, None] * 4.0 * along * (1.0 - along)
         lines = lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
-    return Arrows(act, places, base, handles, lines)
+    return Arrows(act, setting, places, base, handles, lines)
 
 
 def words_of(layout: Layout, acts: Sequence[Arrows], column: int) -> list[Word]:
@@ -192,7 +198,7 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
         elif hold.kind == "rollers":
             lines.append(_rollers(edge, away))
         elif hold.kind == "support":
-            lines.append(hatched(_support(layout, factor, edge), away))
+            lines.append(hatched(_support(layout, factor, edge, hold.gap), away))
         elif hold.kind == "spring":
             wall = edge[0, 0] + WALL * away[0] + shift[0]
             lines.append(_spring(feet[int(hold.side == "right")], float(wall), away))
@@ -210,25 +216,14 @@ def hatched(edge: Array, away: Array) -> Array:
     return np.concatenate([gapped(edge[None]), gapped(np.stack([points, ends], axis=1))])
 
 
-def gap_of(layout: Layout, factor: float) -> Array | None:
-    """The gap below the bodies as it is drawn, (n, 2) from the middle of their foot, px.
-
-    It is magnified as displacements are, and at most so deep.
-    """
-    for hold in layout.description.holds:
-        if hold.gap is not None:
-            depth = np.minimum(hold.gap * factor * layout.scale[1], DEEPEST)
-            x = np.linspace(-0.5, 0.5, len(depth)) * layout.size[0] * layout.scale[0]
-            return np.stack([x, -depth], axis=1)
-    return None
-
-
-def _support(layout: Layout, factor: float, edge: Array) -> Array:
+def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> Array:
     if layout.description.height is None:
         below = (PITCH - THICKNESS) * layout.description.length * layout.scale[1]
         return np.asarray(edge - [0.0, max(below, BAND + 1.0)])
-    gap = gap_of(layout, factor)
-    edge = edge if gap is None else gap
+    if gap is not None:
+        # It is magnified as displacements are.
+        depth = np.minimum(gap * factor * layout.scale[1], DEEPEST)
+        edge = np.stack([np.linspace(*edge[:, 0], len(depth)), -depth], axis=1)
     beyond = np.array([[-3.0 * BEYOND, 0.0], [3.0 * BEYOND, 0.0]]) + edge[[0, -1]]
     return np.concatenate([beyond[:1], edge, beyond[1:]]) - [0.0, 0.5 * BAND + 1.5]
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrows, Word, arrows_of, color_of, gap_of, gapped, strokes_of, words_of
+from app.views.acts import Arrows, Word, arrows_of, color_of, gapped, strokes_of, words_of
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
 from app.views.layout import BAND, IMAGE, LETTER, Layout, turned
 from solver.arrays import Array
@@ -21,18 +21,6 @@ MECHANISM = 0.12
 Columns = dict[str, Any]
 Strokes = list[tuple[Array, str, float]]
 """Lines, NaN between them, with a colour and a width, px."""
-
-
-class Handle(NamedTuple):
-    """What can be dragged: the setting's name, and its place, px from the middle of the foot.
-
-    The value is the setting, by the one at present and where the pointer is.
-    """
-
-    setting: str
-    place: Array
-    color: str
-    value: Callable[[float, Array], float]
 
 
 @dataclass(eq=False)
@@ -77,35 +65,17 @@ class Picture:
     @cached_property
     def arrows(self) -> list[Arrows]:
         """Those of all that acts."""
-        layout, peaks, now = self.layout, self.peaks, self._now
-        return [
-            arrows_of(act, self._follow(act.places * layout.size), layout, peaks, now)
-            for act in self._described.acts
-        ]
+        layout, arrows = self.layout, []
+        for act in self._described.acts:
+            setting, peak = self.behind.get(act.where), self.peaks[act.where]
+            places = self._follow(act.places * layout.size)
+            arrows.append(arrows_of(act, setting, places, layout, peak, self._now))
+        return arrows
 
-    @cached_property
-    def handles(self) -> list[Handle]:
-        """All that can be dragged."""
-        handles = []
-        for arrows in self.arrows:
-            name = self.behind.get(arrows.act.where)
-            if name is not None and len(arrows.handles):
-                place = arrows.handles[arrows.longest]
-                handles.append(Handle(name, place, color_of(arrows.act), arrows.scaled))
-        gap = gap_of(self.layout, self.factor)
-        if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
-            depth = -float(gap[-1, 1])
-            # What is behind a gap is a radius: the larger, the shallower.
-            handles.append(
-                Handle("radius", gap[-1], EDGE, lambda r, at: r * depth / max(-float(at[1]), 2.0))
-            )
-        if "break" in self.behind and len(self._at_break):
-            place = self.nodes[self._at_break].mean(axis=(0, 1))
-            scale, middle = self.layout.scale[0], 0.5 * self._described.length
-            handles.append(
-                Handle(self.behind["break"], place, FORCE, lambda _, at: at[0] / scale + middle)
-            )
-        return handles
+    @property
+    def draggable(self) -> list[Arrows]:
+        """Those with a setting behind them."""
+        return [arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)]
 
     def columns(self, *, with_status: bool) -> dict[str, Columns]:
         """Columns of all sources, by their names, with the status of what rubs or without."""
@@ -114,14 +84,18 @@ class Picture:
         if any(hold.kind == "image" for hold in self._described.holds):
             # The bodies go on below, turned by half a turn, as far as there is room.
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
-        x, y = self._page(np.reshape([handle.place for handle in self.handles], (-1, 2))).T
+        x, y = self._page(np.reshape([each.handle for each in self.draggable], (-1, 2))).T
         heads = [(gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows]
         return {
             "image": _pair(self._page(image)),
             "bodies": _pair(self._page(parts)),
             "strokes": self._columns(self._strokes(self._bands() if with_status else [])),
             "heads": self._columns(heads),
-            "marks": {"x": x, "y": y, "line_color": [handle.color for handle in self.handles]},
+            "marks": {
+                "x": x,
+                "y": y,
+                "line_color": [color_of(each.act) for each in self.draggable],
+            },
             "words": self._words(),
         }
 

@@ -14,10 +14,11 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import number, unit_for
+from app.views.acts import Arrows
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
 from app.views.layout import layout_of, without_acts
-from app.views.picture import Handle, Picture
+from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -47,7 +48,7 @@ class Scene(View):
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
-        self._held: tuple[Handle, Picture] | None = None
+        self._held: tuple[Arrows, Picture] | None = None
         for event, react in (
             (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
         ):  # fmt: skip
@@ -121,13 +122,13 @@ class Scene(View):
                 self.update(*self._shown)
 
     def _hold(self, event: Any) -> None:
-        """Take hold of the handle under the pointer."""
+        """Take hold of the arrow whose handle is under the pointer."""
         picture = self.picture
-        if picture is None or not picture.handles:
+        if picture is None or not picture.draggable:
             return
         at = picture.to_local(event.x, event.y)
-        nearest = min(picture.handles, key=lambda handle: float(np.hypot(*(handle.place - at))))
-        if np.hypot(*(nearest.place - at)) <= NEAR:
+        nearest = min(picture.draggable, key=lambda each: float(np.hypot(*(each.handle - at))))
+        if np.hypot(*(nearest.handle - at)) <= NEAR:
             self._held = nearest, picture
             self.state.is_dragged = True
 
@@ -143,10 +144,10 @@ class Scene(View):
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
-        handle, picture = self._held
-        present = float(getattr(picture.frame.run.settings, handle.setting))
-        dragged = handle.value(present, picture.to_local(event.x, event.y))
-        low, high = self.state.settings.definitions()[handle.setting].softbounds
+        arrows, picture = self._held
+        present = float(getattr(picture.frame.run.settings, arrows.setting))
+        dragged = arrows.scaled(present, picture.to_local(event.x, event.y))
+        low, high = self.state.settings.definitions()[arrows.setting].softbounds
         return float(f"{np.clip(dragged, min(low, present), max(high, present)):.3g}")
 
     def _select(self, event: Any) -> None:
