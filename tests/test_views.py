@@ -258,6 +258,15 @@ def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> 
     assert isinstance(card.seen, AxialForces)
 
 
+def test_a_view_that_comes_in_sight_later_has_the_type_of_a_projector() -> None:
+    early, late = (HysteresisLoop(PageState(default_settings("bar"))) for _ in range(2))
+    assert early.figure is not None
+    for view in (early, late):
+        view.magnify("20px")
+        assert view.figure.legend[0].styles["font-size"] == "20px"
+        assert view.figure.xaxis[0].major_label_text_font_size == "20px"
+
+
 def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     frame = frames_of("bar")[1]
     state = PageState(frame.run.settings, frame=frame, newest=frame)

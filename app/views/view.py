@@ -90,19 +90,17 @@ class View:
         self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
         self._filter = AllIndices()
         self._make()
-        self.magnify(self._type)
+        size, self._type = self._type, TEXT
+        self.magnify(size)
         return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
-        if size != self._type:
-            self._type = size
-            if self._made is not None:
-                self._size_type()
-
-    def _size_type(self) -> None:
-        """Size what is written, each by itself: an em is 13 pixels to axes, whatever the style."""
-        made, size, keep = self._made, self._type, CustomJS(code=KEEP)
+        made, keep, is_same = self._made, CustomJS(code=KEEP), size == self._type
+        self._type = size
+        if is_same or made is None:
+            return
+        # Each by itself: an em is 13 pixels to axes, whatever the style.
         for model in (made, *made.legend):
             model.styles = {**model.styles, "font-size": size}
         for words in made.select(models.Text):
