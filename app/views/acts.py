@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from app.units import Unit, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
-from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
+from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, on_side
@@ -85,15 +83,6 @@ class Arrows:
         return float(present * ((pointer - base) @ along) / (along @ along))
 
 
-class Word(NamedTuple):
-    """A text, px from the middle of the bodies' foot, and on which side of it is its anchor."""
-
-    text: str
-    place: Array
-    align: str
-    color: str
-
-
 def gapped(lines: Array) -> Array:
     """Lines of as many points each, shape (n, k, 2), as one, with NaN behind each."""
     gaps = np.full((len(lines), 1, 2), np.nan)
@@ -133,18 +122,7 @@ def arrows_of(
     return Arrows(act, setting, places, base, handles, lines)
 
 
-def words_of(layout: Layout, acts: Sequence[Arrows], column: int) -> list[Word]:
-    """What acts in words; what presses from above and below alike is said once."""
-    above = [arrows.act for arrows in acts if arrows.act.where.startswith("top")]
-    return [
-        Word(text_of(act, column), *_anchor(arrows, layout), color_of(act))
-        for arrows in acts
-        if not (act := arrows.act).where.startswith("bottom")
-        or not any(is_opposite(act, each) for each in above)
-    ]
-
-
-def _anchor(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
+def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     """Where the words of what acts stand, and on which side of them that is."""
     act, places = arrows.act, arrows.places
     side, aside, (away, up) = act.where.partition(" ")[0], is_aside(act), act.away

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import Floats, Frame, Selection
+from app.frame import Frame, Selection
 from app.views.axis import whole
 from app.views.colors import (
     BESIDE,
@@ -22,6 +22,9 @@ from app.views.colors import (
 )
 from app.views.view import ExtraView, View, hover
 from app.worker.geometry import thinned
+from solver.arrays import Array
+from solver.study.comparison import DISPLACEMENT, OtherResults
+from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.cycles import cycles_in
 
 MOST_LOOPS = 12
@@ -54,7 +57,8 @@ class HysteresisLoop(View):
         self.y.rename(*run.up)
         exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
         reference = nothing if run.reference_loop is None else run.reference_loop
-        beside = _beside(frame)
+        brought = (frame.extras.get("beside") or {}).get("brought")
+        beside = _beside(brought, frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
             curves = frame.loop[row], exact[row], reference[row], beside[row]
             axis.hold(frame.stage, *curves, [0.0], margin=0.08)
@@ -63,23 +67,21 @@ class HysteresisLoop(View):
         self.draw("reference", *reference)
         self.draw("exact", *exact)
         self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
-        name = (frame.extras.get("beside") or {}).get("name", "another program")
-        self.draw("beside", *beside, name)
+        self.draw("beside", *beside, brought.source if brought else "")
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
 
 
-def _beside(frame: Frame) -> tuple[Floats, Floats]:
+def _beside(brought: OtherResults | MeasuredLoop | None, frame: Frame) -> tuple[Array, Array]:
     """A measured loop; or another program's displacement of the end, under the run's load."""
-    beside, instants = frame.extras.get("beside"), frame.run.instants
-    if beside is not None and beside["quantity"] == "loop":
-        return beside["loop"][0], beside["loop"][1]
-    if beside is None or beside["quantity"] != "displacement":
+    if isinstance(brought, MeasuredLoop):
+        return brought.displacement, brought.force
+    if brought is None or brought.quantity != DISPLACEMENT:
         return np.zeros(0), np.zeros(0)
-    x, t = beside["x"], beside["t"]
+    x, t, instants = brought.positions, brought.times, frame.run.instants
     end = x[np.abs(x - frame.run.geometry.description.length).argmin()]
     rows = np.flatnonzero((x == end) & (t <= instants[-1]))
     rows = rows[np.argsort(t[rows])]
-    return beside["values"][rows], np.interp(t[rows], instants, frame.loop[1])
+    return brought.values[rows], np.interp(t[rows], instants, frame.loop[1])
 
 
 class CyclePlot(ExtraView):

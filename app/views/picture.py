@@ -11,9 +11,9 @@ import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrows, Word, arrows_of, color_of, gapped, strokes_of, words_of
+from app.views.acts import Arrows, anchor_of, arrows_of, color_of, gapped, strokes_of, text_of
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
-from app.views.layout import BAND, IMAGE, LETTER, Layout, turned
+from app.views.layout import BAND, IMAGE, LETTER, Layout, is_opposite, turned
 from solver.arrays import Array
 
 MECHANISM = 0.12
@@ -192,22 +192,31 @@ class Picture:
 
     def _words(self) -> Columns:
         """What acts, and the slope; moved inwards where it would be cut."""
-        words, layout = words_of(self.layout, self.arrows, self._now), self.layout
-        places = [self._page(word.place) for word in words]
+        layout, texts, places, aligns, colors = self.layout, [], [], [], []
+        above = [act for act in self._described.acts if act.where.startswith("top")]
+        for arrows in self.arrows:
+            act, (place, align) = arrows.act, anchor_of(arrows, layout)
+            # What presses from above and below alike is said once.
+            if not act.where.startswith("bottom") or not any(is_opposite(act, a) for a in above):
+                texts.append(text_of(act, self._now))
+                places.append(self._page(place))
+                aligns.append(align)
+                colors.append(color_of(act))
         if self._described.tilt is not None:
             corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, 4.0])
-            angle = number(float(np.degrees(self.tilt)))
-            words.append(Word(f"slope {angle}°", corner, "left", FORCE))
+            texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
             places.append(corner + layout.origin)
+            aligns.append("left")
+            colors.append(FORCE)
         x, y = np.reshape(places, (-1, 2)).T
-        widths = np.array([LETTER * len(word.text) + 4.0 for word in words])
-        left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[word.align] for word in words]
+        widths = np.array([LETTER * len(text) + 4.0 for text in texts])
+        left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[align] for align in aligns]
         return {
             "x": np.clip(x, left, np.maximum(layout.width - widths + left, left)),
             "y": np.clip(y, 8.0, layout.height - 8.0),
-            "text": [word.text for word in words],
-            "text_align": [word.align for word in words],
-            "text_color": [word.color for word in words],
+            "text": texts,
+            "text_align": aligns,
+            "text_color": colors,
         }
 
 

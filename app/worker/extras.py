@@ -184,50 +184,26 @@ def _pairs(sizes: Sizes) -> Floats:
 
 
 def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Results of another program and their distance to the iterate, if they are of its scene.
+    """What was "brought", a measured loop or results of another program, if it is of this scene.
 
-    "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
-    displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
-    iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.
-    Of a measured loop "loop", (2, n_rows), instead of what is of places.
+    And the relative "distance" of the iterate to it, NaN where both share too few rows.
     """
-    brought = needs.brought
+    brought, loop, distance = needs.brought, sampler.loop, np.nan
     if isinstance(brought, MeasuredLoop):
-        return _loop_beside(brought, sampler, iterate)
-    if brought is None or brought.scene != sampler.settings.scene:
+        if brought.units != (loop.across[1], loop.up[1]):
+            return None
+        with suppress(SettingError):
+            distance = LoopComparison(brought, loop, sampler.problem).of(iterate)
+    elif brought is None or brought.scene != sampler.settings.scene:
         return None
-    laid = _comparison(brought, sampler, needs.interface)
-    return {
-        "name": brought.source,
-        "quantity": brought.quantity,
-        "x": floats(brought.positions),
-        "t": floats(brought.times),
-        "values": floats(brought.values),
-        "distance": laid.of(iterate),
-        "interface": laid.interface,
-    }
+    else:
+        distance = _comparison(brought, sampler, needs.interface).of(iterate)
+    return {"brought": brought, "distance": distance}
 
 
 @lru_cache(maxsize=1)
 def _comparison(brought: OtherResults, sampler: Sampler, interface: str) -> Comparison:
     return Comparison(brought, sampler.problem, interface)
-
-
-def _loop_beside(
-    measured: MeasuredLoop, sampler: Sampler, iterate: Iterate
-) -> dict[str, Any] | None:
-    """A measured loop and its distance to the iterate, if it is of the same quantities."""
-    loop, distance = sampler.loop, np.nan
-    if measured.units != (loop.across[1], loop.up[1]):
-        return None
-    with suppress(SettingError):
-        distance = LoopComparison(measured, loop, sampler.problem).of(iterate)
-    return {
-        "name": measured.source,
-        "quantity": "loop",
-        "loop": floats(np.stack([measured.displacement, measured.force])),
-        "distance": distance,
-    }
 
 
 EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -208,35 +207,24 @@ class DrawnMesh(Drawn):
         middle of the other, (n_joints, 3, 2, n_instants), m; on a support they end there. "forces"
         are their sizes, (n_joints, n_instants), N.
         """
-        lines, forces = [], []
-        for name, (places, above, below) in self._joints.items():
-            components = self._problem.contact_places[name]
+        problem, lines, forces = self._problem, [], []
+        middles = np.zeros((problem.n_dofs, 2, 1))
+        for grid, part in zip(self._inside.grids, problem.substructures, strict=True):
+            middles[part.dofs, :, 0] = self._inside.nodes[grid].mean(axis=(0, 1))
+        for name, law in problem.rubbing.items():
+            _, pairs = np.unique(law.points, return_index=True)
+            above, *below = (problem.row_dofs[rows[pairs]] for rows in law.tangent.sides)
             normal, tangential = (
-                iterate.contact_force[own][:, self._columns] for own in components
+                iterate.contact_force[own][:, self._columns] for own in problem.contact_places[name]
             )
             pressed = np.maximum(normal, 0.0)
             whole = pressed.sum(axis=0)
             share = pressed / np.where(whole > 0.0, whole, 1.0)
-            point = places.T @ np.where(whole > 0.0, share, 1.0 / len(places))
-            ends = above, point, point if below is None else below
-            lines.append(np.stack(np.broadcast_arrays(*ends)))
+            point = problem.positions[above].T @ np.where(whole > 0.0, share, 1.0 / len(above))
+            end = middles[below[0][0]] if below else point
+            lines.append(np.stack(np.broadcast_arrays(middles[above[0]], point, end)))
             forces.append(np.hypot(whole, tangential.sum(axis=0)))
         return {"lines": floats(np.stack(lines)), "forces": floats(np.stack(forces))}
-
-    @cached_property
-    def _joints(self) -> dict[str, tuple[Array, Array, Array | None]]:
-        """Points of each joint, (n_points, 2), and middles of its bricks, (2, 1), m."""
-        problem, inside = self._problem, self._inside
-        middles = np.zeros((problem.n_dofs, 2))
-        for grid, part in zip(inside.grids, problem.substructures, strict=True):
-            middles[part.dofs] = inside.nodes[grid].mean(axis=(0, 1))
-        joints = {}
-        for name, law in problem.rubbing.items():
-            _, pairs = np.unique(law.points, return_index=True)
-            sides = [problem.row_dofs[rows[pairs]] for rows in law.tangent.sides]
-            ends = [middles[dofs[0]][:, None] for dofs in sides]
-            joints[name] = problem.positions[sides[0]], ends[0], (*ends, None)[1]
-        return joints
 
     def nodes_of(self, displacement: Array) -> Floats:
         """Displacement of the nodes, (n_nodes, 2), of that of degrees of freedom, (n_dofs,), m."""
