@@ -25,21 +25,18 @@ class ContactForce(View):
 
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N/m"))
-        both = "friction", "pressure"
-        for name in both:
-            self.source(name, "x", "latin", "reference")
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.add("exact", color=EXACT, width=8, alpha=0.35)
-        area = {"x": "x", "y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
-        for name in both:
-            self.add("error", "VArea", on=name, **area)
+        area = {"y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
+        for name in ("friction", "pressure"):
+            self.add("error", "VArea", "x", also="latin reference", on=name, **area)
         self.add("bound", color=REFERENCE, dash="dashed")
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         lines = [
-            self.add(name, on=name, x="x", y="latin", color=color, width=2.5)
+            self.add(name, y="latin", color=color, width=2.5)
             for name, color in (("pressure", PRESSURE), ("friction", LATIN))
         ]
         self.legend(

@@ -85,8 +85,6 @@ class Layout:
 
 def turned(points: Array, angle: float) -> Array:
     """Points turned about the origin, (..., 2)."""
-    if angle == 0.0:
-        return np.asarray(points)
     cos, sin = math.cos(angle), math.sin(angle)
     return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
 

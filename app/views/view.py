@@ -157,15 +157,15 @@ class View:
         on: str = "",
         **look: Any,
     ) -> GlyphRenderer:
-        """A glyph of Bokeh's, columns called as its properties, or one on another one's source.
+        """A glyph of Bokeh's, columns called as its properties, on a source called as it or `on`.
 
-        Its source has also other columns, for whoever hovers.
+        The source has also other columns, for whoever hovers, or other glyphs on it.
         """
-        if not on:
-            on, look = name, {column: column for column in columns.split()} | look
-            self.source(name, *columns.split(), *also.split())
-        kind = getattr(models, glyph)
-        return self._render(self.sources[on], kind(**visuals(kind, look)), name)
+        kind, own = getattr(models, glyph), columns.split()
+        if (on or name) not in self.sources:
+            self.sources[on or name] = self._source({each: [] for each in (*own, *also.split())})
+        look = {column: column for column in own} | look
+        return self._render(self.sources[on or name], kind(**visuals(kind, look)), name)
 
     def _render(
         self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
@@ -173,10 +173,6 @@ class View:
         without = {f"{state}_glyph": None for state in ("selection", "nonselection", "muted")}
         view = CDSView(filter=self._filter)
         return self._made.add_glyph(source, glyph, name=name, view=view, **without)
-
-    def source(self, name: str, *columns: str) -> None:
-        """Add an empty source."""
-        self.sources[name] = self._source({column: [] for column in columns})
 
     def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
         return ColumnDataSource(columns, **self._selects)

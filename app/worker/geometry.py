@@ -113,12 +113,8 @@ class DrawnRods(Drawn):
         self._force, self._elements = AxialForce(problem, columns), np.concatenate(middles)
         self._broken = None if description.broken is None else description.broken[0]
         mesh = mesh_of(grids, np.arange(len(rods)))
+        self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
         super().__init__(problem, description, columns, mesh, positions)
-
-    @property
-    def extras(self) -> Extras:
-        """Stress, and the force in each rod."""
-        return {"stress": self._stress, "axial force": self._axial_force}
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Axial force, as rods have no height."""
@@ -163,7 +159,9 @@ class DrawnMesh(Drawn):
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         self._inside = inside = problem.inside
         self._poisson, self._state = (settings.values()[name] for name in ("poisson", "plane"))
-        self._has_bricks = bool(settings.features.bricks)
+        self.extras: Extras = {"stress": self._stress}
+        if settings.features.bricks:
+            self.extras["thrust"] = self._thrust
         most = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
         share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)
@@ -185,11 +183,6 @@ class DrawnMesh(Drawn):
         mesh = mesh_of([inside.nodes[grid] for grid in grids], np.arange(len(grids)))
         description = settings.structure().described()
         super().__init__(problem, description, columns, mesh, problem.positions)
-
-    @property
-    def extras(self) -> Extras:
-        """Stress, and lines of thrust through bricks."""
-        return {"stress": self._stress} | ({"thrust": self._thrust} if self._has_bricks else {})
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Von Mises' equivalent stress, its mean in every quadrilateral."""

@@ -74,14 +74,12 @@ class Sampler:
             else replace(curve, up=curve.up[:, self.columns])
             for curve in curves
         )
-        self.run = replace(self.run, exact=exact)
+        known: dict[str, Any] = {"exact": exact}
         if reference is not None:
-            self.run = replace(
-                self.run,
-                reference=self._contact(reference, self.problem.rubbing),
-                reference_loop=self._loop(reference),
-                reference_seconds=reference.seconds,
-            )
+            known["reference"] = self._contact(reference, self.problem.rubbing)
+            known["reference_loop"] = self._loop(reference)
+            known["reference_seconds"] = reference.seconds
+        self.run = replace(self.run, **known)
 
     def collapse(self, collapse: Collapse) -> None:
         """Add the mechanism by which the structure begins to fail, and when."""

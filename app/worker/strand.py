@@ -67,20 +67,13 @@ class DrawnRope:
         self._points_moved = self._moved(rows, np.nan_to_num(heights))
         points = floats(np.stack([self._z[rows], heights], axis=1))
         self.geometry = Geometry(description=description, points=points, chains=chains, **mesh)
+        self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
+        self.extras["section"] = self._section
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the strand is bent, which is given, and where its wires slip."""
         status = iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
         return DeformedGeometry(self._nodes_moved, self._points_moved, status.astype(np.int8))
-
-    @property
-    def extras(self) -> Extras:
-        """Stress, the force in the selected wire, and a section."""
-        return {
-            "stress": self._stress,
-            "axial force": self._axial_force,
-            "section": self._section,
-        }
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Mean stress over the section of every wire."""
