@@ -117,8 +117,8 @@ def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     picture = view.picture
     assert picture is not None
     arrows = next(each for each in picture.draggable if each.setting == "peak")
-    half = picture.layout.page(0.5 * (arrows.base[0] + arrows.handles[0]), 0.0)
-    start = picture.layout.page(arrows.handle, 0.0)
+    half = picture.page(0.5 * (arrows.base[0] + arrows.handles[0]))
+    start = picture.page(arrows.handle)
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
     assert isinstance(sent[-1], Start)
@@ -176,7 +176,7 @@ def test_a_tap_selects_the_substructure_that_is_there() -> None:
     geometry = view.picture.frame.run.geometry  # type: ignore[union-attr]
     quad = int(np.flatnonzero(geometry.parts == 2)[0])
     middle = view.picture.nodes[geometry.quads[quad]].mean(axis=0)  # type: ignore[union-attr]
-    x, y = view.picture.layout.page(middle, 0.0)  # type: ignore[union-attr]
+    x, y = view.picture.page(middle)  # type: ignore[union-attr]
     view._select(SimpleNamespace(x=x, y=y))
     assert view.state.selection.substructure == 2
 

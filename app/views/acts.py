@@ -167,7 +167,7 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
     for hold in layout.description.holds:
         first, last = layout.local(on_side(hold.side, [0.0, 1.0]) * layout.size)
         moved = 0.0 if hold.moved is None else hold.moved[column]
-        shift = layout.shift(np.array([moved, 0.0]), factor)
+        shift = np.array([moved * factor * layout.scale[0], 0.0])
         edge = np.array([first + share * (last - first) for share in hold.stretch])
         away = np.array(OUTWARD[hold.side])
         if hold.kind == "clamp":

@@ -61,14 +61,6 @@ class Layout:
         """Pixels from the middle of the foot, along the bodies, of places in m, (..., 2)."""
         return np.asarray((places - self.size * [0.5, 0.0]) * self.scale)
 
-    def shift(self, moved: Array, factor: float) -> Array:
-        """Pixels of magnified displacements, (..., 2)."""
-        return np.asarray(moved * (factor * self.scale))
-
-    def page(self, local: Array, tilt: float) -> Array:
-        """Pixels of the figure, of such that are turned with the bodies by an angle, rad."""
-        return turned(local, tilt) + self.origin
-
     def fitting(self, largest: Array, factor: float | None) -> float:
         """Factor on displacements: the present one as long as motion is seen and has room.
 

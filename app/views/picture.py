@@ -84,18 +84,15 @@ class Picture:
         if any(hold.kind == "image" for hold in self._described.holds):
             # The bodies go on below, turned by half a turn, as far as there is room.
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
-        x, y = self._page(np.reshape([each.handle for each in self.draggable], (-1, 2))).T
+        handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
+        marks = {"line_color": [color_of(arrows.act) for arrows in self.draggable]}
         heads = [(gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows]
         return {
-            "image": _pair(self._page(image)),
-            "bodies": _pair(self._page(parts)),
+            "image": self._line(image),
+            "bodies": self._line(parts),
             "strokes": self._columns(self._strokes(self._bands() if with_status else [])),
             "heads": self._columns(heads),
-            "marks": {
-                "x": x,
-                "y": y,
-                "line_color": [color_of(each.act) for each in self.draggable],
-            },
+            "marks": self._line(handles) | marks,
             "words": self._words(),
         }
 
@@ -103,14 +100,18 @@ class Picture:
         """Outline of another run's bodies at the same scale, on the page."""
         geometry: Geometry = frame.run.geometry
         nodes = self._moved(geometry.nodes, frame.deformed.nodes[:, :, column])
-        return _pair(self._page(_drawn(geometry.rims, nodes)))
+        return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
         """Outline of the bodies as they begin to collapse, on the page."""
         size = float(np.abs(moved).max(initial=0.0)) or 1.0
         shown = MECHANISM * self.layout.top / size * moved
         nodes = self.layout.local(self._geometry.nodes + shown)
-        return _pair(self._page(_drawn(self._geometry.outlines, nodes)))
+        return self._line(_drawn(self._geometry.outlines, nodes))
+
+    def page(self, local: Array) -> Array:
+        """Pixels of the figure, of places from the middle of the foot, along the bodies."""
+        return turned(local, self.tilt) + self.layout.origin
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""
@@ -118,14 +119,15 @@ class Picture:
 
     def many(self, lines: Array) -> Columns:
         """Lines or patches, (n, k, 2), on the page, each by itself."""
-        x, y = np.moveaxis(np.round(self._page(lines), 1), -1, 0)
+        x, y = np.moveaxis(np.round(self.page(lines), 1), -1, 0)
         return {"xs": x.tolist(), "ys": y.tolist()}
 
-    def _page(self, local: Array) -> Array:
-        return self.layout.page(local, self.tilt)
+    def _line(self, local: Array) -> Columns:
+        x, y = self.page(local).T.astype(np.float32)
+        return {"x": x, "y": y}
 
     def _moved(self, places: Array, moved: Array) -> Array:
-        return self.layout.local(places) + self.layout.shift(moved, self.factor)
+        return self.layout.local(places) + moved * (self.factor * self.layout.scale)
 
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
@@ -145,7 +147,7 @@ class Picture:
 
     def _columns(self, strokes: Strokes) -> Columns:
         """On the page; binary arrays, which go fast to the browser."""
-        pages = [self._page(line).T.astype(np.float32) for line, _, _ in strokes]
+        pages = [self.page(line).T.astype(np.float32) for line, _, _ in strokes]
         return {
             "xs": [x for x, _ in pages],
             "ys": [y for _, y in pages],
@@ -199,7 +201,7 @@ class Picture:
             # What presses from above and below alike is said once.
             if not act.where.startswith("bottom") or not any(is_opposite(act, a) for a in above):
                 texts.append(text_of(act, self._now))
-                places.append(self._page(place))
+                places.append(self.page(place))
                 aligns.append(align)
                 colors.append(color_of(act))
         if self._described.tilt is not None:
@@ -241,8 +243,3 @@ def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
 def _drawn(lines: Array, nodes: Array) -> Array:
     """Places of lines, (n, 2), NaN behind each."""
     return np.append(nodes, [[np.nan, np.nan]], axis=0)[lines]
-
-
-def _pair(line: Array) -> Columns:
-    x, y = line.T.astype(np.float32)
-    return {"x": x, "y": y}

@@ -80,7 +80,6 @@ class View:
         self.state, self._type = state, TEXT
         self._made: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
-        self._marks: dict[str, tuple[GlyphRenderer, int]] = {}
         self._items: dict[str, LegendItem] = {}
 
     @cached_property
@@ -183,7 +182,8 @@ class View:
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
         look = {"marker": "square", "size": 10, "color": "color"} | look
         marks = self._render(self._source(columns), Scatter(**visuals(Scatter, look)))
-        self._marks |= {name: (marks, place) for place, name in enumerate(colors)}
+        for place, name in enumerate(colors):
+            self._items[name] = LegendItem(renderers=[marks], index=place)
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their own names or by titles.
@@ -195,15 +195,11 @@ class View:
         drawn = {r.name: r for r in reversed(self._made.renderers) if r.name in titles}
         columns = {column for each in drawn.values() for column in each.data_source.data}
         nowhere = self._source({column: [np.nan] for column in columns})
-        copies = {
-            name: (self._render(nowhere, each.glyph, name), None) for name, each in drawn.items()
-        }
-        marks = self._marks | copies
-        self._items = {
-            name: LegendItem(label=value(title), renderers=[marks[name][0]], index=marks[name][1])
-            for name, title in titles.items()
-        }
-        box = legend(self._made, list(self._items.values()), place)
+        for name, each in drawn.items():
+            self._items[name] = LegendItem(renderers=[self._render(nowhere, each.glyph, name)])
+        for name, title in titles.items():
+            self._items[name].label = value(title)
+        box = legend(self._made, [self._items[name] for name in titles], place)
         box.click_policy = "hide"
         box.js_on_event(LegendItemClick, CustomJS(args={"plot": self._made}, code=HIDE))
         return box

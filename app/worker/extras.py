@@ -37,8 +37,7 @@ MOST_MODES = 5
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in every substructure, over the largest of all."""
     parts = decompositions(iterate.problem, iterate.boundary_force, is_force=True)
-    values = [part.values for part in parts]
-    shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
+    shown = [parts[place].values[:MOST_VALUES] for place in thinned(len(parts), MOST_SPECTRA)]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
     return [floats(np.asarray(part) / largest) for part in shown]
 
