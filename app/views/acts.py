@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -26,23 +25,38 @@ RADIUS = 4.0
 RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)], axis=1)
 
 
-@dataclass(frozen=True, eq=False)
 class Arrows:
-    """Those of what acts, at an instant, px from the middle of the bodies' foot.
+    """Arrows of what acts at an instant, px from the middle of the bodies' foot.
 
-    There are n of them: none where its value is nearly zero. The setting behind the act is set by
-    dragging the longest.
+    There are n of them: none where the value is nearly zero; one of the `peak` has full length.
+    `lines` go from tails to heads, (n, k, 2), at `places` that have moved, (m, 2). The longest is
+    dragged by one of its ends, and sets what is behind the act: `base`, (n, 2), is where an end
+    would be at the value 0, `handles` where it is.
     """
 
-    act: Act
-    setting: str | None
-    places: Array
-    """Where it acts, shape (m, 2)."""
-    base: Array
-    handles: Array
-    """Where an end would be at the value 0, and where this end is, shape (n, 2)."""
-    lines: Array
-    """From tails to heads, shape (n, k, 2)."""
+    def __init__(
+        self, act: Act, setting: str | None, places: Array, layout: Layout, peak: float, column: int
+    ) -> None:
+        self.act, self.setting, self.places = act, setting, places
+        towards = np.asarray(act.towards)
+        towards = towards[:, column] if towards.ndim > 1 else towards
+        away, aside = np.array(act.away), is_aside(act)
+        side = act.where.partition(" ")[0]
+        now = np.broadcast_to(act.values.T[column], len(places))
+        share = np.clip(now / peak, -1.6, 1.6)
+        is_shown = np.abs(share) >= LEAST
+        room = beside(layout.description, side) if aside else 0.0
+        self.base = base = places[is_shown] + room * away
+        span = layout.arrow * share[is_shown, None] * towards
+        pushes = (span @ away < 0.0)[:, None] & (not aside) & (side != "body")
+        self.handles = handles = np.where(pushes, base - span, base + span)
+        lines = np.stack([np.where(pushes, handles, base), np.where(pushes, base, handles)], axis=1)
+        if act.unit == "1/m":
+            # What bends is a bow.
+            along = np.linspace(0.0, 1.0, 9)[:, None]
+            height = BOW * np.hypot(*span.T)[:, None, None] * 4.0 * along * (1.0 - along)
+            lines = lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
+        self.lines = lines
 
     @cached_property
     def _along(self) -> Array:
@@ -92,34 +106,6 @@ def gapped(lines: Array) -> Array:
 def color_of(act: Act) -> str:
     """The colour of what is given: a displacement, or a force."""
     return DISPLACEMENT if act.unit in ("m", "1/m") else FORCE
-
-
-def arrows_of(
-    act: Act, setting: str | None, places: Array, layout: Layout, peak: float, column: int
-) -> Arrows:
-    """The arrows of what acts at an instant, the column of its values.
-
-    An arrow of the peak has full length; `places` is where the act's have gone, shape (m, 2), px
-    from the middle of the foot.
-    """
-    towards = np.asarray(act.towards)
-    towards = towards[:, column] if towards.ndim > 1 else towards
-    away, aside = np.array(act.away), is_aside(act)
-    side = act.where.partition(" ")[0]
-    now = np.broadcast_to(act.values.T[column], len(places))
-    share = np.clip(now / peak, -1.6, 1.6)
-    is_shown = np.abs(share) >= LEAST
-    base = places[is_shown] + (beside(layout.description, side) * away if aside else 0.0)
-    span = layout.arrow * share[is_shown, None] * towards
-    pushes = (span @ away < 0.0)[:, None] & (not aside) & (side != "body")
-    handles = np.where(pushes, base - span, base + span)
-    lines = np.stack([np.where(pushes, handles, base), np.where(pushes, base, handles)], axis=1)
-    if act.unit == "1/m":
-        # What bends is a bow.
-        along = np.linspace(0.0, 1.0, 9)[:, None]
-        height = BOW * np.hypot(*span.T)[:, None, None] * 4.0 * along * (1.0 - along)
-        lines = lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
-    return Arrows(act, setting, places, base, handles, lines)
 
 
 def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrows, anchor_of, arrows_of, color_of, gapped, strokes_of, text_of
+from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text_of
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
 from app.views.layout import BAND, IMAGE, LETTER, Layout, is_opposite, turned
 from solver.arrays import Array
@@ -35,8 +35,6 @@ class Picture:
     """Where bodies lie, and how much displacements are magnified."""
     peaks: Mapping[str, float]
     """Values of arrows of full length, by what acts."""
-    behind: Mapping[str, str]
-    """Settings behind what acts, by where it does."""
 
     def __post_init__(self) -> None:
         self._geometry = self.frame.run.geometry
@@ -65,11 +63,11 @@ class Picture:
     @cached_property
     def arrows(self) -> list[Arrows]:
         """Those of all that acts."""
-        layout, arrows = self.layout, []
+        layout, behind, arrows = self.layout, self.frame.run.settings.behind(), []
         for act in self._described.acts:
-            setting, peak = self.behind.get(act.where), self.peaks[act.where]
+            setting, peak = behind.get(act.where), self.peaks[act.where]
             places = self._follow(act.places * layout.size)
-            arrows.append(arrows_of(act, setting, places, layout, peak, self._now))
+            arrows.append(Arrows(act, setting, places, layout, peak, self._now))
         return arrows
 
     @property
@@ -105,7 +103,7 @@ class Picture:
     def mechanism(self, moved: Array) -> Columns:
         """Outline of the bodies as they begin to collapse, on the page."""
         size = float(np.abs(moved).max(initial=0.0)) or 1.0
-        shown = MECHANISM * self.layout.top / size * moved
+        shown = MECHANISM * self.layout.size[1] / size * moved
         nodes = self.layout.local(self._geometry.nodes + shown)
         return self._line(_drawn(self._geometry.outlines, nodes))
 
@@ -142,7 +140,7 @@ class Picture:
         body, place = self._described.broken
         x, y = self._geometry.nodes.T
         is_there = np.abs(x - place) < 1e-4 * self._described.length
-        row = np.floor(y * self._described.bodies / self.layout.top)
+        row = np.floor(y * self._described.bodies / self.layout.size[1])
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
@@ -183,7 +181,9 @@ class Picture:
         """What rubs, by its status, on a rim where there is contact."""
         status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
         lines = bands(self.points, chains, status)
-        width = min(BAND, 0.35 * self.layout.top * self.layout.scale[1] / self._described.bodies)
+        width = min(
+            BAND, 0.35 * self.layout.size[1] * self.layout.scale[1] / self._described.bodies
+        )
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
         rims = [line for kind, line in lines.items() if kind != OPEN]

@@ -88,16 +88,14 @@ class Scene(View):
             self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
-        self.picture = picture = Picture(
-            frame, run.column(selection.phase), layout, self._factor, self._peaks,
-            run.settings.behind(),
-        )  # fmt: skip
+        column = run.column(selection.phase)
+        self.picture = picture = Picture(frame, column, layout, self._factor, self._peaks)
         for name, columns in picture.columns(with_status=self.shows_status).items():
             self.fill(name, **columns)
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
             past = picture.ghost(ghost, ghost.run.column(selection.phase))
-        if run.mechanism is not None and run.instants[picture.column] >= run.collapses_at:
+        if run.mechanism is not None and run.instants[column] >= run.collapses_at:
             past = picture.mechanism(run.mechanism)
         self.fill("ghost", **past)
         self.show("open", any(each.bound is None for each in run.interfaces.values()))
