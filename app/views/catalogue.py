@@ -5,10 +5,9 @@ from __future__ import annotations
 from app.views.bases import ClipErrors, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
-from app.views.loops import CycleEnergy, Cycles, HysteresisLoop
+from app.views.loops import CycleEnergy, Cycles, HysteresisLoop, SlipPlane
 from app.views.rope import AxialForces, WireSection
 from app.views.scene import Stress, Thrust
-from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap
 from app.views.view import View
 

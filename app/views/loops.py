@@ -1,4 +1,4 @@
-"""Hysteresis: force over displacement, and what each cycle of a load takes."""
+"""Loops: force over displacement, cycle by cycle, and the slip of a point over that of another."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import Frame, Selection
+from app.frame import Floats, Frame, Selection
+from app.views.acts import gapped
 from app.views.axis import whole
 from app.views.colors import (
     BESIDE,
+    DISPLACEMENT,
     ERROR,
     EXACT,
+    FORWARD,
     GHOST,
     LATIN,
     REFERENCE,
@@ -23,12 +26,15 @@ from app.views.colors import (
 from app.views.view import ExtraView, View, hover
 from app.worker.geometry import thinned
 from solver.arrays import Array
-from solver.study.comparison import DISPLACEMENT, OtherResults
+from solver.laws import FrictionLaw
+from solver.study import comparison
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.cycles import cycles_in
 
 MOST_LOOPS = 12
 """Loops that are drawn at most; more cannot be told apart."""
+FAR = 10.0
+"""Times the plot of two slips by which a line goes beyond it."""
 
 
 class HysteresisLoop(View):
@@ -71,11 +77,13 @@ class HysteresisLoop(View):
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
 
 
-def _beside(brought: OtherResults | MeasuredLoop | None, frame: Frame) -> tuple[Array, Array]:
+def _beside(
+    brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
+) -> tuple[Array, Array]:
     """A measured loop; or another program's displacement of the end, under the run's load."""
     if isinstance(brought, MeasuredLoop):
         return brought.displacement, brought.force
-    if brought is None or brought.quantity != DISPLACEMENT:
+    if brought is None or brought.quantity != comparison.DISPLACEMENT:
         return np.zeros(0), np.zeros(0)
     x, t, instants = brought.positions, brought.times, frame.run.instants
     end = x[np.abs(x - frame.run.geometry.description.length).argmin()]
@@ -147,3 +155,60 @@ class CycleEnergy(CyclePlot):
         self.x.span(0.5, count + 0.5)
         self.y.hold(frame.stage, [0.0], energy, 1.1 * energy)
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
+
+
+class SlipPlane(View):
+    """Where two points have slipped, and the lines between which both stick."""
+
+    name = "Slip plane"
+    needs = frozenset({"slips"})
+
+    # Two points rub, whose friction follows from what presses them.
+    applies = staticmethod(
+        lambda settings: (
+            settings.features.opens
+            and settings.features.jumps == 4
+            and settings.law == FrictionLaw()
+        )
+    )
+
+    def _make(self) -> None:
+        self.begin(("left slip", "m"), ("right slip", "m"))
+        self.add("room", "Patch", color=DISPLACEMENT, alpha=0.3)
+        self.add("left", color=LATIN, width=1.5)
+        self.add("right", color=FORWARD, width=1.5)
+        self.add("path", color=REFERENCE, width=2)
+        self.add("now", "Scatter", color=ERROR, size=10)
+        self.mark({"held": UNSEEN})
+        self.legend(
+            left="left slips", right="right slips", path="so far", room="free in the last cycle",
+            held="contact alone holds the block",
+        )  # fmt: skip
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show where both have slipped so far, and the lines at which they slip now."""
+        slips, column = frame.extras.get("slips", {}), frame.run.column(selection.phase)
+        self.show("held", slips is None)
+        if not slips:
+            for name in self.sources:
+                self.draw(name, [], [])
+            return
+        slip, corners = slips["slip"], slips["room"].T
+        both = np.concatenate([slip, corners], axis=1)
+        for axis, values in zip((self.x, self.y), both, strict=True):
+            axis.hold(frame.run.number, values, margin=0.1)
+        self.draw("room", *corners)
+        self.draw("path", *slip[:, : column + 1])
+        self.draw("now", *slip[:, [column]])
+        far = FAR * np.ptp(both, axis=1).max()
+        for number, name in enumerate(("left", "right")):
+            rows = slice(number, None, 2)
+            self.draw(name, *_lines(slips["matrix"][rows], slips["limit"][rows, column], far))
+
+
+def _lines(matrix: Floats, limit: Floats, far: float) -> Floats:
+    """Lines A w = b as one curve broken by NaN, shape (2, n)."""
+    sizes = np.linalg.norm(matrix, axis=1)
+    feet = matrix * (limit / sizes**2)[:, None]
+    along = far * np.stack([-matrix[:, 1], matrix[:, 0]], axis=1) / sizes[:, None]
+    return gapped(np.stack([feet - along, feet + along], axis=1)).T

@@ -84,11 +84,19 @@ class Picture:
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
         handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
         marks = {"line_color": [color_of(arrows.act) for arrows in self.draggable]}
-        heads = [(gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows]
+        rims, bands = _drawn(self._geometry.rims, self.nodes), self._bands() if with_status else []
+        # The last are on top.
+        strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3), *bands]
+        strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))
+        heads: Strokes = []
+        for arrows in self.arrows:
+            color, width = color_of(arrows.act), 1.6 if len(arrows.lines) > 3 else 3.2
+            strokes.append((arrows.strokes, color, width))
+            heads.append((gapped(arrows.heads), color, 1.0))
         return {
             "image": self._line(image),
             "bodies": self._line(parts),
-            "strokes": self._columns(self._strokes(self._bands() if with_status else [])),
+            "strokes": self._columns(strokes),
             "heads": self._columns(heads),
             "marks": self._line(handles) | marks,
             "words": self._words(),
@@ -152,20 +160,6 @@ class Picture:
             "line_color": [color for _, color, _ in strokes],
             "line_width": [width for _, _, width in strokes],
         }
-
-    def _strokes(self, bands: Strokes) -> Strokes:
-        """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
-        acts: Strokes = [
-            (each.strokes, color_of(each.act), 1.6 if len(each.lines) > 3 else 3.2)
-            for each in self.arrows
-        ]
-        return [
-            (_drawn(self._geometry.rims, self.nodes), EDGE, 1.4),
-            (self._holds(), EDGE, 1.3),
-            *bands,
-            (gapped(self.nodes[self._at_break]), ERROR, 3.0),
-            *acts,
-        ]
 
     def _holds(self) -> Array:
         layout, length = self.layout, self._described.length
