@@ -32,7 +32,7 @@ NARROW = 560.0
 
 
 class Layout:
-    """From metres to pixels, of bodies in a figure of so many pixels.
+    """From metres to pixels, of bodies in a figure of so many pixels; bare ones show no acts.
 
     The bodies have the `size` in m, length and height as they are drawn. `scale` is in pixels per
     metre, along x and y, which differ for rods alone; `origin` is the middle of their foot, px. An
@@ -41,9 +41,12 @@ class Layout:
     none.
     """
 
-    def __init__(self, geometry: Geometry, width: float, height: float, key_rows: int) -> None:
-        self.width, self.height, self.key_rows = width, height, key_rows
-        description, top = geometry.description, float(geometry.nodes[:, 1].max())
+    def __init__(
+        self, geometry: Geometry, is_bare: bool, width: float, height: float, key_rows: int
+    ) -> None:
+        self.is_bare, self.width, self.height, self.key_rows = is_bare, width, height, key_rows
+        described, top = geometry.description, float(geometry.nodes[:, 1].max())
+        description = replace(described, acts=()) if is_bare else described
         arrow = min(max(0.19 * height, 18.0), 38.0)
         left, right, below, above = _margins(description, arrow)
         left, below = left + (0.0 if key_rows else COLUMN), below + FOOT * key_rows
@@ -99,16 +102,10 @@ def is_opposite(act: Act, other: Act) -> bool:
 
 
 @lru_cache(maxsize=16)
-def without_acts(geometry: Geometry) -> Geometry:
-    """A geometry of which nothing is drawn that acts, where that would be in the way."""
-    return replace(geometry, description=replace(geometry.description, acts=()))
-
-
-@lru_cache(maxsize=16)
-def layout_of(geometry: Geometry, width: float, height: float) -> Layout:
+def layout_of(geometry: Geometry, is_bare: bool, width: float, height: float) -> Layout:
     """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
-    below = Layout(geometry, width, height, 2 if width < NARROW else 1)
-    beside = Layout(geometry, width, height, 0)
+    below = Layout(geometry, is_bare, width, height, 2 if width < NARROW else 1)
+    beside = Layout(geometry, is_bare, width, height, 0)
     return beside if beside.scale[0] > below.scale[0] else below
 
 

@@ -75,8 +75,8 @@ class Picture:
         """Those with a setting behind them."""
         return [arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)]
 
-    def columns(self, *, with_status: bool) -> dict[str, Columns]:
-        """Columns of all sources, by their names, with the status of what rubs or without."""
+    def columns(self) -> dict[str, Columns]:
+        """Columns of all sources, by their names; of bare bodies without status of what rubs."""
         parts = _drawn(self._geometry.outlines, self.nodes)
         image = np.zeros((0, 2))
         if any(hold.kind == "image" for hold in self._described.holds):
@@ -84,7 +84,10 @@ class Picture:
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
         handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
         marks = {"line_color": [color_of(arrows.act) for arrows in self.draggable]}
-        rims, bands = _drawn(self._geometry.rims, self.nodes), self._bands() if with_status else []
+        rims, bands = (
+            _drawn(self._geometry.rims, self.nodes),
+            [] if self.layout.is_bare else self._bands(),
+        )
         # The last are on top.
         strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3), *bands]
         strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))

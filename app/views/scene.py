@@ -17,7 +17,7 @@ from app.units import number, unit_for
 from app.views.acts import Arrows
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
-from app.views.layout import layout_of, without_acts
+from app.views.layout import layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
 
@@ -38,7 +38,7 @@ class Scene(View):
     """
 
     name = "Scene"
-    shows_status = True
+    is_bare = False
 
     def _make(self) -> None:
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
@@ -60,7 +60,7 @@ class Scene(View):
     def _draw(self, made: figure) -> None:
         self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
         look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8, "line_alpha": 0.55}
-        self.add("bodies", "Patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
+        self.add("bodies", "Patch", fill_alpha=0.0 if self.is_bare else 0.5, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "MultiLine", "xs ys line_color line_width")
         self.add("heads", "Patches", "xs ys line_color", fill_color="line_color", also="line_width")
@@ -71,7 +71,7 @@ class Scene(View):
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         self.mark(KEYS | {"note": UNSEEN})
-        keys = KEYS if self.shows_status else ()
+        keys = () if self.is_bare else KEYS
         self._keys = self.legend(*keys, "note", place="center")
         self._keys.location = "bottom_left"
 
@@ -79,8 +79,7 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        geometry = run.geometry if self.shows_status else without_acts(run.geometry)
-        layout = layout_of(geometry, *self._size.values())
+        layout = layout_of(run.geometry, self.is_bare, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
@@ -90,7 +89,7 @@ class Scene(View):
         made.x_range.end, made.y_range.end = layout.width, layout.height
         column = run.column(selection.phase)
         self.picture = picture = Picture(frame, column, layout, self._factor, self._peaks)
-        for name, columns in picture.columns(with_status=self.shows_status).items():
+        for name, columns in picture.columns().items():
             self.fill(name, **columns)
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
@@ -167,7 +166,7 @@ class Scene(View):
 class ExtraScene(Scene):
     """The scene without what acts and rubs, but with an extra, as far as the frame has it."""
 
-    shows_status = False
+    is_bare = True
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant, and the extra."""
