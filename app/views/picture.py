@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -23,24 +22,20 @@ Strokes = list[tuple[Array, str, float]]
 """Lines, NaN between them, with a colour and a width, px."""
 
 
-@dataclass(eq=False)
 class Picture:
-    """A frame at one instant."""
+    """A frame at the instant of a column, with displacements magnified by a factor.
 
-    frame: Frame
-    column: int
-    """Of the instant in it."""
-    layout: Layout
-    factor: float
-    """Where bodies lie, and how much displacements are magnified."""
-    peaks: Mapping[str, float]
-    """Values of arrows of full length, by what acts."""
+    Arrows of the values in `peaks` have full length, by where they act.
+    """
 
-    def __post_init__(self) -> None:
-        self._geometry = self.frame.run.geometry
-        self._described = self.layout.description
+    def __init__(
+        self, frame: Frame, column: int, layout: Layout, factor: float, peaks: Mapping[str, float]
+    ) -> None:
+        self.frame, self.column, self.layout = frame, column, layout
+        self._factor, self._peaks = factor, peaks
+        self._geometry, self._described = frame.run.geometry, layout.description
         # Values of a description are not thinned.
-        instant = self.frame.run.instants[self.column]
+        instant = frame.run.instants[column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
         tilt = self._described.tilt
         self.tilt = 0.0 if tilt is None else float(tilt[self._now])
@@ -65,7 +60,7 @@ class Picture:
         """Those of all that acts."""
         layout, behind, arrows = self.layout, self.frame.run.settings.behind(), []
         for act in self._described.acts:
-            setting, peak = behind.get(act.where), self.peaks[act.where]
+            setting, peak = behind.get(act.where), self._peaks[act.where]
             places = self._follow(act.places * layout.size)
             arrows.append(Arrows(act, setting, places, layout, peak, self._now))
         return arrows
@@ -136,7 +131,7 @@ class Picture:
         return {"x": x, "y": y}
 
     def _moved(self, places: Array, moved: Array) -> Array:
-        return self.layout.local(places) + moved * (self.factor * self.layout.scale)
+        return self.layout.local(places) + moved * (self._factor * self.layout.scale)
 
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
@@ -167,7 +162,7 @@ class Picture:
     def _holds(self) -> Array:
         layout, length = self.layout, self._described.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
-        strokes = strokes_of(layout, self.factor, self._now, feet)
+        strokes = strokes_of(layout, self._factor, self._now, feet)
         if self._described.tilt is not None:
             corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
