@@ -103,12 +103,11 @@ class AxialForces(ExtraView):
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
         key = (*frame.stage, *names)
         along = run.interfaces[selection.interface_of(run)].positions
-        bent = [] if stuck is None else [stuck]
-        self.x.hold(key, x, *([] if bent else [along]))
+        self.x.hold(key, x, along)
         ups = [curve.up for curve in known]
-        self.y.hold(key, axial["force"], *ups, *bent, [0.0], margin=0.05)
+        self.y.hold(key, axial["force"], *ups, stuck, [0.0], margin=0.05)
         self.draw("exact", *joined([(curve.across, curve.up[:, column]) for curve in known]))
-        self.draw("stuck", *joined([(x, force[:, column]) for force in bent]))
+        self.draw("stuck", x[: len(stuck)], stuck[:, column])
         colors = iter(COLORS * 2)
         for line, wire in zip(self._lines, names, strict=False):
             color, width = (ERROR, 3.5) if "broken" in wire else (next(colors), 2.0)

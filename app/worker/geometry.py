@@ -124,8 +124,8 @@ class DrawnRods(Drawn):
         """Axial force in some rods at all instants.
 
         "x" of the middles of elements, (n_places,), m; "force", (n_rods, n_places, n_instants), N;
-        "names" of the rods; "stuck", what the force would be if nothing slipped, of a strand that
-        is bent, else None.
+        "names" of the rods; "stuck", what the force would be if nothing slipped, (n_places,
+        n_instants) of a strand that is bent, else (0, n_instants).
         """
         count, broken = int(self._force.wires.max()) + 1, self._broken
         places = thinned(len(self._force.wires) // count, MOST_POINTS)
@@ -139,7 +139,7 @@ class DrawnRods(Drawn):
             "x": floats(self._force.positions[places]),
             "force": floats(forces[np.ix_(shown, places)]),
             "names": names,
-            "stuck": None,
+            "stuck": floats(forces[0, :0]),
         }
 
     def _forces(self, iterate: Iterate) -> Array:
