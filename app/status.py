@@ -90,6 +90,6 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     }
     beside = frame.extras.get("beside")
     if beside is not None:
-        figures[f"Distance to {beside['name']}"] = percent(beside["distance"])
+        figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])
     spans = (f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures.items())
     return "".join(spans)

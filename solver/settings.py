@@ -135,8 +135,8 @@ class Settings(LoadSettings):
     def behind(self) -> Mapping[str, str]:
         """Settings that place or scale what acts on the scene, where any does.
 
-        By what they are behind: "right x" along a side, "body" throughout, "gap", "break". Of
-        several the last counts that is not 0.
+        By what they are behind: "right x" along a side, "body" throughout. Of several the last
+        counts that is not 0.
         """
         settings: dict[str, str] = {}
         for name, definition in self.definitions().items():

@@ -99,7 +99,7 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
     )
     found = runner.frame(Needs(frozenset({"beside"}), brought=off)).extras["beside"]
     assert found["distance"] == pytest.approx(0.1, rel=1e-6)
-    assert found["loop"].shape == (2, len(loop.force))
+    assert found["brought"].force.tolist() == loop.force.tolist()
     moment = MeasuredLoop(loop.displacement, loop.force, None, ("1/m", "N·m"), "rope.csv", "")
     assert runner.frame(Needs(frozenset({"beside"}), brought=moment)).extras["beside"] is None
 

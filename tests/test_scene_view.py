@@ -11,7 +11,7 @@ from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.picture import bands
-from app.views.rope import StressRanges, Unrolled, WireSection
+from app.views.rope import WireSection
 from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
 from app.views.timeline import Timeline, paths_of
 from app.worker.references import ReferenceCache
@@ -116,10 +116,9 @@ def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     state.send = sent.append
     picture = view.picture
     assert picture is not None
-    handle = next(one for one in picture.handles if one.setting == "peak")
-    arrows = next(each for each in picture.arrows if each.act.symbol == "F")
-    half = picture.layout.page(0.5 * (arrows.base[0] + arrows.handles[0]), 0.0)
-    start = picture.layout.page(handle.place, 0.0)
+    arrows = next(each for each in picture.draggable if each.setting == "peak")
+    half = picture.page(0.5 * (arrows.base[0] + arrows.handles[0]))
+    start = picture.page(arrows.handle)
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
     assert isinstance(sent[-1], Start)
@@ -151,7 +150,7 @@ def test_bands_end_where_a_wire_goes_behind() -> None:
 
 def test_other_views_show_every_instant(frame: Frame) -> None:
     state = PageState(frame.run.settings)
-    for kind in (Stress, Timeline, WireSection, Unrolled, StressRanges):
+    for kind in (Stress, Timeline, WireSection):
         if kind.applies(frame.run.settings):
             view = kind(state)
             _ = view.figure
@@ -177,7 +176,7 @@ def test_a_tap_selects_the_substructure_that_is_there() -> None:
     geometry = view.picture.frame.run.geometry  # type: ignore[union-attr]
     quad = int(np.flatnonzero(geometry.parts == 2)[0])
     middle = view.picture.nodes[geometry.quads[quad]].mean(axis=0)  # type: ignore[union-attr]
-    x, y = view.picture.layout.page(middle, 0.0)  # type: ignore[union-attr]
+    x, y = view.picture.page(middle)  # type: ignore[union-attr]
     view._select(SimpleNamespace(x=x, y=y))
     assert view.state.selection.substructure == 2
 

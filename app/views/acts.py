@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from app.units import Unit, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
-from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
+from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, on_side
@@ -28,21 +25,38 @@ RADIUS = 4.0
 RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)], axis=1)
 
 
-@dataclass(frozen=True, eq=False)
 class Arrows:
-    """Those of what acts, at an instant, px from the middle of the bodies' foot.
+    """Arrows of what acts at an instant, px from the middle of the bodies' foot.
 
-    There are n of them: none where its value is nearly zero.
+    There are n of them: none where the value is nearly zero; one of the `peak` has full length.
+    `lines` go from tails to heads, (n, k, 2), at `places` that have moved, (m, 2). The longest is
+    dragged by one of its ends, and sets what is behind the act: `base`, (n, 2), is where an end
+    would be at the value 0, `handles` where it is.
     """
 
-    act: Act
-    places: Array
-    """Where it acts, shape (m, 2)."""
-    base: Array
-    handles: Array
-    """Where an end would be at the value 0, and where this end is, shape (n, 2)."""
-    lines: Array
-    """From tails to heads, shape (n, k, 2)."""
+    def __init__(
+        self, act: Act, setting: str | None, places: Array, layout: Layout, peak: float, column: int
+    ) -> None:
+        self.act, self.setting, self.places = act, setting, places
+        towards = np.asarray(act.towards)
+        towards = towards[:, column] if towards.ndim > 1 else towards
+        away, aside = np.array(act.away), is_aside(act)
+        side = act.where.partition(" ")[0]
+        now = np.broadcast_to(act.values.T[column], len(places))
+        share = np.clip(now / peak, -1.6, 1.6)
+        is_shown = np.abs(share) >= LEAST
+        room = beside(layout.description, side) if aside else 0.0
+        self.base = base = places[is_shown] + room * away
+        span = layout.arrow * share[is_shown, None] * towards
+        pushes = (span @ away < 0.0)[:, None] & (not aside) & (side != "body")
+        self.handles = handles = np.where(pushes, base - span, base + span)
+        lines = np.stack([np.where(pushes, handles, base), np.where(pushes, base, handles)], axis=1)
+        if act.unit == "1/m":
+            # What bends is a bow.
+            along = np.linspace(0.0, 1.0, 9)[:, None]
+            height = BOW * np.hypot(*span.T)[:, None, None] * 4.0 * along * (1.0 - along)
+            lines = lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
+        self.lines = lines
 
     @cached_property
     def _along(self) -> Array:
@@ -68,24 +82,19 @@ class Arrows:
         return np.concatenate([gapped(shafts), self.handles if is_spread else self.handles[:0]])
 
     @property
-    def longest(self) -> int:
-        """The one that is dragged."""
+    def _longest(self) -> int:
         return int(np.hypot(*(self.handles - self.base).T).argmax())
 
-    def scaled(self, setting: float, pointer: Array) -> float:
-        """The setting behind the value with which the handle of the longest is under a pointer."""
-        base = self.base[self.longest]
-        along = self.handles[self.longest] - base
-        return float(setting * ((pointer - base) @ along) / (along @ along))
+    @property
+    def handle(self) -> Array:
+        """The end of the longest."""
+        return self.handles[self._longest]
 
-
-class Word(NamedTuple):
-    """A text, px from the middle of the bodies' foot, and on which side of it is its anchor."""
-
-    text: str
-    place: Array
-    align: str
-    color: str
+    def scaled(self, present: float, pointer: Array) -> float:
+        """The setting with which the handle is under a pointer, by its present value."""
+        base = self.base[self._longest]
+        along = self.handle - base
+        return float(present * ((pointer - base) @ along) / (along @ along))
 
 
 def gapped(lines: Array) -> Array:
@@ -99,46 +108,7 @@ def color_of(act: Act) -> str:
     return DISPLACEMENT if act.unit in ("m", "1/m") else FORCE
 
 
-def arrows_of(
-    act: Act, places: Array, layout: Layout, peaks: Mapping[str, float], column: int
-) -> Arrows:
-    """The arrows of what acts at an instant, the column of its values.
-
-    An arrow of the value in `peaks` has full length; `places` is where the act's have gone, shape
-    (m, 2), px from the middle of the foot.
-    """
-    towards = np.asarray(act.towards)
-    towards = towards[:, column] if towards.ndim > 1 else towards
-    away, aside = np.array(act.away), is_aside(act)
-    side = act.where.partition(" ")[0]
-    now = np.broadcast_to(act.values.T[column], len(places))
-    share = np.clip(now / peaks[act.where], -1.6, 1.6)
-    is_shown = np.abs(share) >= LEAST
-    base = places[is_shown] + (beside(layout.description, side) * away if aside else 0.0)
-    span = layout.arrow * share[is_shown, None] * towards
-    pushes = (span @ away < 0.0)[:, None] & (not aside) & (side != "body")
-    handles = np.where(pushes, base - span, base + span)
-    lines = np.stack([np.where(pushes, handles, base), np.where(pushes, base, handles)], axis=1)
-    if act.unit == "1/m":
-        # What bends is a bow.
-        along = np.linspace(0.0, 1.0, 9)[:, None]
-        height = BOW * np.hypot(*span.T)[:, None, None] * 4.0 * along * (1.0 - along)
-        lines = lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
-    return Arrows(act, places, base, handles, lines)
-
-
-def words_of(layout: Layout, acts: Sequence[Arrows], column: int) -> list[Word]:
-    """What acts in words; what presses from above and below alike is said once."""
-    above = [arrows.act for arrows in acts if arrows.act.where.startswith("top")]
-    return [
-        Word(text_of(act, column), *_anchor(arrows, layout), color_of(act))
-        for arrows in acts
-        if not (act := arrows.act).where.startswith("bottom")
-        or not any(is_opposite(act, each) for each in above)
-    ]
-
-
-def _anchor(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
+def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     """Where the words of what acts stand, and on which side of them that is."""
     act, places = arrows.act, arrows.places
     side, aside, (away, up) = act.where.partition(" ")[0], is_aside(act), act.away
@@ -183,7 +153,7 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
     for hold in layout.description.holds:
         first, last = layout.local(on_side(hold.side, [0.0, 1.0]) * layout.size)
         moved = 0.0 if hold.moved is None else hold.moved[column]
-        shift = layout.shift(np.array([moved, 0.0]), factor)
+        shift = np.array([moved * factor * layout.scale[0], 0.0])
         edge = np.array([first + share * (last - first) for share in hold.stretch])
         away = np.array(OUTWARD[hold.side])
         if hold.kind == "clamp":
@@ -192,7 +162,7 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
         elif hold.kind == "rollers":
             lines.append(_rollers(edge, away))
         elif hold.kind == "support":
-            lines.append(hatched(_support(layout, factor, edge), away))
+            lines.append(hatched(_support(layout, factor, edge, hold.gap), away))
         elif hold.kind == "spring":
             wall = edge[0, 0] + WALL * away[0] + shift[0]
             lines.append(_spring(feet[int(hold.side == "right")], float(wall), away))
@@ -210,25 +180,14 @@ def hatched(edge: Array, away: Array) -> Array:
     return np.concatenate([gapped(edge[None]), gapped(np.stack([points, ends], axis=1))])
 
 
-def gap_of(layout: Layout, factor: float) -> Array | None:
-    """The gap below the bodies as it is drawn, (n, 2) from the middle of their foot, px.
-
-    It is magnified as displacements are, and at most so deep.
-    """
-    for hold in layout.description.holds:
-        if hold.gap is not None:
-            depth = np.minimum(hold.gap * factor * layout.scale[1], DEEPEST)
-            x = np.linspace(-0.5, 0.5, len(depth)) * layout.size[0] * layout.scale[0]
-            return np.stack([x, -depth], axis=1)
-    return None
-
-
-def _support(layout: Layout, factor: float, edge: Array) -> Array:
+def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> Array:
     if layout.description.height is None:
         below = (PITCH - THICKNESS) * layout.description.length * layout.scale[1]
         return np.asarray(edge - [0.0, max(below, BAND + 1.0)])
-    gap = gap_of(layout, factor)
-    edge = edge if gap is None else gap
+    if gap is not None:
+        # It is magnified as displacements are.
+        depth = np.minimum(gap * factor * layout.scale[1], DEEPEST)
+        edge = np.stack([np.linspace(*edge[:, 0], len(depth)), -depth], axis=1)
     beyond = np.array([[-3.0 * BEYOND, 0.0], [3.0 * BEYOND, 0.0]]) + edge[[0, -1]]
     return np.concatenate([beyond[:1], edge, beyond[1:]]) - [0.0, 0.5 * BAND + 1.5]
 

@@ -31,7 +31,7 @@ class Axis:
         self._made, self._side, self._range = made, side, getattr(made, f"{side}_range")
         self._is_log = isinstance(getattr(made, f"{side}_scale"), LogScale)
         self._title, self._si = title, unit
-        self._unit, self._key, self._ends = Unit(""), None, (np.nan, np.nan)
+        self._unit, self._key = Unit(""), None
         self._label()
 
     def __call__(self, values: ArrayLike) -> Floats:
@@ -68,9 +68,7 @@ class Axis:
 
     def span(self, low: float, high: float) -> None:
         """Show what lies between two values on the axis; zooming stays until these change."""
-        ends = float(low), float(high)
-        if ends != self._ends:
-            self._ends = ends
+        if (low, high) != (self._range.reset_start, self._range.reset_end):
             self._range.update(start=low, end=high, reset_start=low, reset_end=high)
 
     def _label(self) -> None:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from app.views.bases import ClipErrors, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
-from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
-from app.views.rope import AxialForces, StressRanges, Unrolled, WireSection
+from app.views.loops import CycleEnergy, Cycles, HysteresisLoop, SlipPlane
+from app.views.rope import AxialForces, WireSection
 from app.views.scene import Stress, Thrust
-from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap
 from app.views.view import View
 
 CARDS: tuple[tuple[type[View], ...], ...] = (
     (Thrust, ContactForce, AxialForces, HysteresisLoop, Stress),
-    (StatusMap, Unrolled, WireSection, SlipPlane, Cycles, CycleEnergy, Fretting),
+    (StatusMap, WireSection, SlipPlane, Cycles, CycleEnergy),
     (Convergence, ErrorTime),
-    (Spectra, SpaceModes, TimeFunctions, StressRanges, ClipErrors),
+    (Spectra, SpaceModes, TimeFunctions, ClipErrors),
 )
 """The views of each card; the first that applies is shown first."""

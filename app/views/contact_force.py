@@ -8,6 +8,7 @@ from app.frame import Floats, Frame, InterfaceFields, Selection
 from app.views.axis import extent
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
 from app.views.view import View, hover, joined
+from solver.study.comparison import FRICTION, OtherResults
 
 ROOM, MOST = 1.15, 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
@@ -24,21 +25,18 @@ class ContactForce(View):
 
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N/m"))
-        both = "friction", "pressure"
-        for name in both:
-            self.source(name, "x", "latin", "reference")
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.add("exact", color=EXACT, width=8, alpha=0.35)
-        area = {"x": "x", "y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
-        for name in both:
-            self.add("error", "VArea", on=name, **area)
+        area = {"y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
+        for name in ("friction", "pressure"):
+            self.add("error", "VArea", "x", also="latin reference", on=name, **area)
         self.add("bound", color=REFERENCE, dash="dashed")
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         lines = [
-            self.add(name, on=name, x="x", y="latin", color=color, width=2.5)
+            self.add(name, y="latin", color=color, width=2.5)
             for name, color in (("pressure", PRESSURE), ("friction", LATIN))
         ]
         self.legend(
@@ -47,7 +45,6 @@ class ContactForce(View):
         )  # fmt: skip
         tips = {"x": "@x{0.000}", "LATIN": "@latin{0.000}", "reference": "@reference{0.000}"}
         hover(made, lines, tips)
-        self._scaled_for: object = None
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the contact forces along the selected interface."""
@@ -90,34 +87,32 @@ class ContactForce(View):
 
     def _scale(self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
-        run = frame.run
-        key = (*frame.stage[:2], name)
-        if key != self._scaled_for:
-            known = run.reference.get(name, fields)
-            bound = run.interfaces[name].bound
-            ends = [known.friction, *exact, *([] if known.pressure is None else [known.pressure])]
-            self._known = extent([*ends, *([] if bound is None else [bound, -bound])])
-            self._scaled_for = key
-            self.x.hold(key, run.interfaces[name].positions)
-        low, high = self._known
+        run, key = frame.run, (*frame.stage[:2], name)
+        known, bound = run.reference.get(name, fields), run.interfaces[name].bound
+        bounds = [] if bound is None else [bound, -bound]
+        low, high = extent([*_given(known), *exact, *bounds])
         most = MOST * max(abs(low), abs(high))
-        least, largest = extent([f for f in (fields.friction, fields.pressure) if f is not None])
-        self.y.hold(key, [ROOM * low, ROOM * high], [max(least, -most), min(largest, most)])
+        self.x.hold(key, run.interfaces[name].positions)
+        self.y.hold(key, [ROOM * low, ROOM * high], np.clip(extent(_given(fields)), -most, most))
 
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its nearest instant, and name it."""
-        beside = frame.extras.get("beside")
-        if beside is None or beside["quantity"] != "friction force":
+        results = (frame.extras.get("beside") or {}).get("brought")
+        if not isinstance(results, OtherResults) or results.quantity != FRICTION:
             self.draw("beside", [], [])
             return
-        near = beside["t"][np.abs(beside["t"] - time).argmin()]
-        rows = beside["t"] == near
-        order = np.argsort(beside["x"][rows])
-        title = f"{beside.get('name', 'another program')}, t = {near:.3g} s"
-        self.draw("beside", beside["x"][rows][order], beside["values"][rows][order], title)
+        near = results.times[np.abs(results.times - time).argmin()]
+        rows = np.flatnonzero(results.times == near)
+        rows = rows[np.argsort(results.positions[rows])]
+        title = f"{results.source}, t = {near:.3g} s"
+        self.draw("beside", results.positions[rows], results.values[rows], title)
 
 
 def _curves(places: Floats, fields: InterfaceFields | None, column: int) -> Floats:
     """Friction, and pressure where it is not given, as one curve, shape (2, n)."""
+    return joined([(places, field[:, column]) for field in _given(fields)])
+
+
+def _given(fields: InterfaceFields | None) -> list[Floats]:
     both = [] if fields is None else [fields.friction, fields.pressure]
-    return joined([(places, field[:, column]) for field in both if field is not None])
+    return [field for field in both if field is not None]

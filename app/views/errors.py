@@ -32,9 +32,8 @@ class ErrorPlot(View):
     """A plot of what the run has come to so far, also where an earlier iterate is gone back to."""
 
     def _newest(self, frame: Frame) -> Frame:
-        newest = self.state.newest
-        is_known = newest is not None and newest.run.number == frame.run.number
-        return newest if newest is not None and is_known else frame
+        newest: Frame = self.state.newest or frame
+        return newest if newest.run.number == frame.run.number else frame
 
     def _plot(
         self, name: str, history: Mapping[str, Floats], across: str, up: str, title: str = ""

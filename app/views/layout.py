@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -31,43 +31,45 @@ NARROW = 560.0
 """Width below which keys take two lines, px."""
 
 
-@dataclass(frozen=True, eq=False)
 class Layout:
-    """From metres to pixels."""
+    """From metres to pixels, of bodies in a figure of so many pixels; bare ones show no acts.
 
-    width: float
-    height: float
-    """Of the figure, px."""
-    description: Description
-    top: float
-    """Height of the bodies as they are drawn, m."""
-    scale: Array
-    """Pixels per metre, along x and y; these differ for rods alone."""
-    origin: Array
-    """The middle of the foot of the bodies, px."""
-    arrow: float
-    """Length of an arrow at its largest value, px."""
-    motion: Array
-    """Pixels that the largest displacement takes at most, along x and y."""
-    key_rows: int
-    """Of the keys below the bodies; 0 where these stand at their left."""
+    The bodies have the `size` in m, length and height as they are drawn. `scale` is in pixels per
+    metre, along x and y, which differ for rods alone; `origin` is the middle of their foot, px. An
+    arrow is `arrow` px long at its largest value; the largest displacement takes `motion` px at
+    most, along x and y. Keys stand below the bodies in `key_rows`, or at their left if there are
+    none.
+    """
 
-    @property
-    def size(self) -> Array:
-        """Length and height of the bodies, m."""
-        return np.array([self.description.length, self.top])
+    def __init__(
+        self, geometry: Geometry, is_bare: bool, width: float, height: float, key_rows: int
+    ) -> None:
+        self.is_bare, self.width, self.height, self.key_rows = is_bare, width, height, key_rows
+        described, top = geometry.description, float(geometry.nodes[:, 1].max())
+        description = replace(described, acts=()) if is_bare else described
+        arrow = min(max(0.19 * height, 18.0), 38.0)
+        left, right, below, above = _margins(description, arrow)
+        left, below = left + (0.0 if key_rows else COLUMN), below + FOOT * key_rows
+        room = np.maximum([width - left - right, height - below - above], 24.0)
+        low, high = _extent(description.length, top, description.tilt)
+        is_long = description.length > LONG * top
+        motion = np.array([0.04 * width, (0.12 if is_long else 0.06) * height])
+        if description.height is None:
+            motion[1] = 0.0
+        scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
+        if description.height is None:
+            scale[1] = min(scale[1], THICK * description.bodies / top)
+        else:
+            scale[:] = scale.min()
+        origin = np.array([left, below]) + 0.5 * (room - (high - low) * scale) - low * scale
+        motion[0] = min(motion[0], 0.12 * description.length * scale[0])
+        self.description, self.arrow = description, arrow
+        self.size = np.array([description.length, top])
+        self.scale, self.origin, self.motion = scale, origin, motion
 
     def local(self, places: Array) -> Array:
         """Pixels from the middle of the foot, along the bodies, of places in m, (..., 2)."""
         return np.asarray((places - self.size * [0.5, 0.0]) * self.scale)
-
-    def shift(self, moved: Array, factor: float) -> Array:
-        """Pixels of magnified displacements, (..., 2)."""
-        return np.asarray(moved * (factor * self.scale))
-
-    def page(self, local: Array, tilt: float) -> Array:
-        """Pixels of the figure, of such that are turned with the bodies by an angle, rad."""
-        return turned(local, tilt) + self.origin
 
     def fitting(self, largest: Array, factor: float | None) -> float:
         """Factor on displacements: the present one as long as motion is seen and has room.
@@ -85,8 +87,6 @@ class Layout:
 
 def turned(points: Array, angle: float) -> Array:
     """Points turned about the origin, (..., 2)."""
-    if angle == 0.0:
-        return np.asarray(points)
     cos, sin = math.cos(angle), math.sin(angle)
     return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
 
@@ -102,38 +102,11 @@ def is_opposite(act: Act, other: Act) -> bool:
 
 
 @lru_cache(maxsize=16)
-def without_acts(geometry: Geometry) -> Geometry:
-    """A geometry of which nothing is drawn that acts, where that would be in the way."""
-    return replace(geometry, description=replace(geometry.description, acts=()))
-
-
-@lru_cache(maxsize=16)
-def layout_of(geometry: Geometry, width: float, height: float) -> Layout:
+def layout_of(geometry: Geometry, is_bare: bool, width: float, height: float) -> Layout:
     """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
-    below = _layout(geometry, width, height, 2 if width < NARROW else 1)
-    beside = _layout(geometry, width, height, 0)
+    below = Layout(geometry, is_bare, width, height, 2 if width < NARROW else 1)
+    beside = Layout(geometry, is_bare, width, height, 0)
     return beside if beside.scale[0] > below.scale[0] else below
-
-
-def _layout(geometry: Geometry, width: float, height: float, key_rows: int) -> Layout:
-    description, top = geometry.description, float(geometry.nodes[:, 1].max())
-    arrow = min(max(0.19 * height, 18.0), 38.0)
-    left, right, below, above = _margins(description, arrow)
-    left, below = left + (0.0 if key_rows else COLUMN), below + FOOT * key_rows
-    room = np.maximum([width - left - right, height - below - above], 24.0)
-    low, high = _extent(description.length, top, description.tilt)
-    is_long = description.length > LONG * top
-    motion = np.array([0.04 * width, (0.12 if is_long else 0.06) * height])
-    if description.height is None:
-        motion[1] = 0.0
-    scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
-    if description.height is None:
-        scale[1] = min(scale[1], THICK * description.bodies / top)
-    else:
-        scale[:] = scale.min()
-    origin = np.array([left, below]) + 0.5 * (room - (high - low) * scale) - low * scale
-    motion[0] = min(motion[0], 0.12 * description.length * scale[0])
-    return Layout(width, height, description, top, scale, origin, arrow, motion, key_rows)
 
 
 def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""Hysteresis: force over displacement, cycle by cycle, and where the last cycle wears bodies."""
+"""Loops: force over displacement, cycle by cycle, and the slip of a point over that of another."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from bokeh.models import Range1d
 
 from app.frame import Floats, Frame, Selection
-from app.units import unit_for
+from app.views.acts import gapped
 from app.views.axis import whole
 from app.views.colors import (
     BESIDE,
+    DISPLACEMENT,
     ERROR,
     EXACT,
+    FORWARD,
     GHOST,
     LATIN,
     REFERENCE,
@@ -24,10 +25,16 @@ from app.views.colors import (
 )
 from app.views.view import ExtraView, View, hover
 from app.worker.geometry import thinned
+from solver.arrays import Array
+from solver.laws import FrictionLaw
+from solver.study import comparison
+from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.cycles import cycles_in
 
 MOST_LOOPS = 12
 """Loops that are drawn at most; more cannot be told apart."""
+FAR = 10.0
+"""Times the plot of two slips by which a line goes beyond it."""
 
 
 class HysteresisLoop(View):
@@ -56,7 +63,8 @@ class HysteresisLoop(View):
         self.y.rename(*run.up)
         exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
         reference = nothing if run.reference_loop is None else run.reference_loop
-        beside = _beside(frame)
+        brought = (frame.extras.get("beside") or {}).get("brought")
+        beside = _beside(brought, frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
             curves = frame.loop[row], exact[row], reference[row], beside[row]
             axis.hold(frame.stage, *curves, [0.0], margin=0.08)
@@ -65,23 +73,23 @@ class HysteresisLoop(View):
         self.draw("reference", *reference)
         self.draw("exact", *exact)
         self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
-        name = (frame.extras.get("beside") or {}).get("name", "another program")
-        self.draw("beside", *beside, name)
+        self.draw("beside", *beside, brought.source if brought else "")
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
 
 
-def _beside(frame: Frame) -> tuple[Floats, Floats]:
+def _beside(
+    brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
+) -> tuple[Array, Array]:
     """A measured loop; or another program's displacement of the end, under the run's load."""
-    beside, instants = frame.extras.get("beside"), frame.run.instants
-    if beside is not None and beside["quantity"] == "loop":
-        return beside["loop"][0], beside["loop"][1]
-    if beside is None or beside["quantity"] != "displacement":
+    if isinstance(brought, MeasuredLoop):
+        return brought.displacement, brought.force
+    if brought is None or brought.quantity != comparison.DISPLACEMENT:
         return np.zeros(0), np.zeros(0)
-    x, t = beside["x"], beside["t"]
+    x, t, instants = brought.positions, brought.times, frame.run.instants
     end = x[np.abs(x - frame.run.geometry.description.length).argmin()]
     rows = np.flatnonzero((x == end) & (t <= instants[-1]))
     rows = rows[np.argsort(t[rows])]
-    return beside["values"][rows], np.interp(t[rows], instants, frame.loop[1])
+    return brought.values[rows], np.interp(t[rows], instants, frame.loop[1])
 
 
 class CyclePlot(ExtraView):
@@ -149,29 +157,58 @@ class CycleEnergy(CyclePlot):
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
 
 
-class Fretting(CyclePlot):
-    """Slip and friction work of the last cycle along the interface."""
+class SlipPlane(View):
+    """Where two points have slipped, and the lines between which both stick."""
 
-    name = "Fretting"
+    name = "Slip plane"
+    needs = frozenset({"slips"})
+
+    # Two points rub, whose friction follows from what presses them.
+    applies = staticmethod(
+        lambda settings: (
+            settings.features.opens
+            and settings.features.jumps == 4
+            and settings.law == FrictionLaw()
+        )
+    )
 
     def _make(self) -> None:
-        made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
-        work = self.add("work", color=ERROR, width=4, alpha=0.7)
-        slip = self.add("slip", color=LATIN, width=2)
-        self.legend("work", "slip")
-        hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
+        self.begin(("left slip", "m"), ("right slip", "m"))
+        self.add("room", "Patch", color=DISPLACEMENT, alpha=0.3)
+        self.add("left", color=LATIN, width=1.5)
+        self.add("right", color=FORWARD, width=1.5)
+        self.add("path", color=REFERENCE, width=2)
+        self.add("now", "Scatter", color=ERROR, size=10)
+        self.mark({"held": UNSEEN})
+        self.legend(
+            left="left slips", right="right slips", path="so far", room="free in the last cycle",
+            held="contact alone holds the block",
+        )  # fmt: skip
 
-    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
-        """Show both, each over its largest value, which the legend has."""
-        run = frame.run
-        name = selection.interface_of(run)
-        x = run.interfaces[name].positions
-        if len(x) != len(cycles["slip"]):
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show where both have slipped so far, and the lines at which they slip now."""
+        slips, column = frame.extras.get("slips", {}), frame.run.column(selection.phase)
+        self.show("held", slips is None)
+        if not slips:
+            for name in self.sources:
+                self.draw(name, [], [])
             return
-        self.x.hold((run.number, name), x)
-        work, slip = (float(cycles[name].max(initial=0.0)) for name in ("work", "slip"))
-        unit = "J/m²" if run.settings.kind == "plane" else "J/m"
-        title = f"friction work, at most {work:.3g} {unit}"
-        self.draw("work", x, cycles["work"] / (work or 1.0), title)
-        title = f"slip, at most {unit_for(slip, 'm')(slip)}"
-        self.draw("slip", x, cycles["slip"] / (slip or 1.0), title)
+        slip, corners = slips["slip"], slips["room"].T
+        both = np.concatenate([slip, corners], axis=1)
+        for axis, values in zip((self.x, self.y), both, strict=True):
+            axis.hold(frame.run.number, values, margin=0.1)
+        self.draw("room", *corners)
+        self.draw("path", *slip[:, : column + 1])
+        self.draw("now", *slip[:, [column]])
+        far = FAR * np.ptp(both, axis=1).max()
+        for number, name in enumerate(("left", "right")):
+            rows = slice(number, None, 2)
+            self.draw(name, *_lines(slips["matrix"][rows], slips["limit"][rows, column], far))
+
+
+def _lines(matrix: Floats, limit: Floats, far: float) -> Floats:
+    """Lines A w = b as one curve broken by NaN, shape (2, n)."""
+    sizes = np.linalg.norm(matrix, axis=1)
+    feet = matrix * (limit / sizes**2)[:, None]
+    along = far * np.stack([-matrix[:, 1], matrix[:, 0]], axis=1) / sizes[:, None]
+    return gapped(np.stack([feet - along, feet + along], axis=1)).T

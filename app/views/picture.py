@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrows, Word, arrows_of, color_of, gap_of, gapped, strokes_of, words_of
+from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text_of
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
-from app.views.layout import BAND, IMAGE, LETTER, Layout, turned
+from app.views.layout import BAND, IMAGE, LETTER, Layout, is_opposite, turned
 from solver.arrays import Array
 
 MECHANISM = 0.12
@@ -23,38 +22,20 @@ Strokes = list[tuple[Array, str, float]]
 """Lines, NaN between them, with a colour and a width, px."""
 
 
-class Handle(NamedTuple):
-    """What can be dragged: the setting's name, and its place, px from the middle of the foot.
+class Picture:
+    """A frame at the instant of a column, with displacements magnified by a factor.
 
-    The value is the setting, by the one at present and where the pointer is.
+    Arrows of the values in `peaks` have full length, by where they act.
     """
 
-    setting: str
-    place: Array
-    color: str
-    value: Callable[[float, Array], float]
-
-
-@dataclass(eq=False)
-class Picture:
-    """A frame at one instant."""
-
-    frame: Frame
-    column: int
-    """Of the instant in it."""
-    layout: Layout
-    factor: float
-    """Where bodies lie, and how much displacements are magnified."""
-    peaks: Mapping[str, float]
-    """Values of arrows of full length, by what acts."""
-    behind: Mapping[str, str]
-    """Settings behind what acts, by where it does."""
-
-    def __post_init__(self) -> None:
-        self._geometry = self.frame.run.geometry
-        self._described = self.layout.description
+    def __init__(
+        self, frame: Frame, column: int, layout: Layout, factor: float, peaks: Mapping[str, float]
+    ) -> None:
+        self.frame, self.column, self.layout = frame, column, layout
+        self._factor, self._peaks = factor, peaks
+        self._geometry, self._described = frame.run.geometry, layout.description
         # Values of a description are not thinned.
-        instant = self.frame.run.instants[self.column]
+        instant = frame.run.instants[column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
         tilt = self._described.tilt
         self.tilt = 0.0 if tilt is None else float(tilt[self._now])
@@ -77,51 +58,45 @@ class Picture:
     @cached_property
     def arrows(self) -> list[Arrows]:
         """Those of all that acts."""
-        layout, peaks, now = self.layout, self.peaks, self._now
-        return [
-            arrows_of(act, self._follow(act.places * layout.size), layout, peaks, now)
-            for act in self._described.acts
-        ]
+        layout, behind, arrows = self.layout, self.frame.run.settings.behind(), []
+        for act in self._described.acts:
+            setting, peak = behind.get(act.where), self._peaks[act.where]
+            places = self._follow(act.places * layout.size)
+            arrows.append(Arrows(act, setting, places, layout, peak, self._now))
+        return arrows
 
-    @cached_property
-    def handles(self) -> list[Handle]:
-        """All that can be dragged."""
-        handles = []
-        for arrows in self.arrows:
-            name = self.behind.get(arrows.act.where)
-            if name is not None and len(arrows.handles):
-                place = arrows.handles[arrows.longest]
-                handles.append(Handle(name, place, color_of(arrows.act), arrows.scaled))
-        gap = gap_of(self.layout, self.factor)
-        if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
-            depth = -float(gap[-1, 1])
-            # What is behind a gap is a radius: the larger, the shallower.
-            handles.append(
-                Handle("radius", gap[-1], EDGE, lambda r, at: r * depth / max(-float(at[1]), 2.0))
-            )
-        if "break" in self.behind and len(self._at_break):
-            place = self.nodes[self._at_break].mean(axis=(0, 1))
-            scale, middle = self.layout.scale[0], 0.5 * self._described.length
-            handles.append(
-                Handle(self.behind["break"], place, FORCE, lambda _, at: at[0] / scale + middle)
-            )
-        return handles
+    @property
+    def draggable(self) -> list[Arrows]:
+        """Those with a setting behind them."""
+        return [arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)]
 
-    def columns(self, *, with_status: bool) -> dict[str, Columns]:
-        """Columns of all sources, by their names, with the status of what rubs or without."""
+    def columns(self) -> dict[str, Columns]:
+        """Columns of all sources, by their names; of bare bodies without status of what rubs."""
         parts = _drawn(self._geometry.outlines, self.nodes)
         image = np.zeros((0, 2))
         if any(hold.kind == "image" for hold in self._described.holds):
             # The bodies go on below, turned by half a turn, as far as there is room.
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
-        x, y = self._page(np.reshape([handle.place for handle in self.handles], (-1, 2))).T
-        heads = [(gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows]
+        handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
+        marks = {"line_color": [color_of(arrows.act) for arrows in self.draggable]}
+        rims, bands = (
+            _drawn(self._geometry.rims, self.nodes),
+            [] if self.layout.is_bare else self._bands(),
+        )
+        # The last are on top.
+        strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3), *bands]
+        strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))
+        heads: Strokes = []
+        for arrows in self.arrows:
+            color, width = color_of(arrows.act), 1.6 if len(arrows.lines) > 3 else 3.2
+            strokes.append((arrows.strokes, color, width))
+            heads.append((gapped(arrows.heads), color, 1.0))
         return {
-            "image": _pair(self._page(image)),
-            "bodies": _pair(self._page(parts)),
-            "strokes": self._columns(self._strokes(self._bands() if with_status else [])),
+            "image": self._line(image),
+            "bodies": self._line(parts),
+            "strokes": self._columns(strokes),
             "heads": self._columns(heads),
-            "marks": {"x": x, "y": y, "line_color": [handle.color for handle in self.handles]},
+            "marks": self._line(handles) | marks,
             "words": self._words(),
         }
 
@@ -129,14 +104,18 @@ class Picture:
         """Outline of another run's bodies at the same scale, on the page."""
         geometry: Geometry = frame.run.geometry
         nodes = self._moved(geometry.nodes, frame.deformed.nodes[:, :, column])
-        return _pair(self._page(_drawn(geometry.rims, nodes)))
+        return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
         """Outline of the bodies as they begin to collapse, on the page."""
         size = float(np.abs(moved).max(initial=0.0)) or 1.0
-        shown = MECHANISM * self.layout.top / size * moved
+        shown = MECHANISM * self.layout.size[1] / size * moved
         nodes = self.layout.local(self._geometry.nodes + shown)
-        return _pair(self._page(_drawn(self._geometry.outlines, nodes)))
+        return self._line(_drawn(self._geometry.outlines, nodes))
+
+    def page(self, local: Array) -> Array:
+        """Pixels of the figure, of places from the middle of the foot, along the bodies."""
+        return turned(local, self.tilt) + self.layout.origin
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""
@@ -144,14 +123,15 @@ class Picture:
 
     def many(self, lines: Array) -> Columns:
         """Lines or patches, (n, k, 2), on the page, each by itself."""
-        x, y = np.moveaxis(np.round(self._page(lines), 1), -1, 0)
+        x, y = np.moveaxis(np.round(self.page(lines), 1), -1, 0)
         return {"xs": x.tolist(), "ys": y.tolist()}
 
-    def _page(self, local: Array) -> Array:
-        return self.layout.page(local, self.tilt)
+    def _line(self, local: Array) -> Columns:
+        x, y = self.page(local).T.astype(np.float32)
+        return {"x": x, "y": y}
 
     def _moved(self, places: Array, moved: Array) -> Array:
-        return self.layout.local(places) + self.layout.shift(moved, self.factor)
+        return self.layout.local(places) + moved * (self._factor * self.layout.scale)
 
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
@@ -166,12 +146,12 @@ class Picture:
         body, place = self._described.broken
         x, y = self._geometry.nodes.T
         is_there = np.abs(x - place) < 1e-4 * self._described.length
-        row = np.floor(y * self._described.bodies / self.layout.top)
+        row = np.floor(y * self._described.bodies / self.layout.size[1])
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
         """On the page; binary arrays, which go fast to the browser."""
-        pages = [self._page(line).T.astype(np.float32) for line, _, _ in strokes]
+        pages = [self.page(line).T.astype(np.float32) for line, _, _ in strokes]
         return {
             "xs": [x for x, _ in pages],
             "ys": [y for _, y in pages],
@@ -179,24 +159,10 @@ class Picture:
             "line_width": [width for _, _, width in strokes],
         }
 
-    def _strokes(self, bands: Strokes) -> Strokes:
-        """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
-        acts: Strokes = [
-            (each.strokes, color_of(each.act), 1.6 if len(each.lines) > 3 else 3.2)
-            for each in self.arrows
-        ]
-        return [
-            (_drawn(self._geometry.rims, self.nodes), EDGE, 1.4),
-            (self._holds(), EDGE, 1.3),
-            *bands,
-            (gapped(self.nodes[self._at_break]), ERROR, 3.0),
-            *acts,
-        ]
-
     def _holds(self) -> Array:
         layout, length = self.layout, self._described.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
-        strokes = strokes_of(layout, self.factor, self._now, feet)
+        strokes = strokes_of(layout, self._factor, self._now, feet)
         if self._described.tilt is not None:
             corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
@@ -207,7 +173,9 @@ class Picture:
         """What rubs, by its status, on a rim where there is contact."""
         status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
         lines = bands(self.points, chains, status)
-        width = min(BAND, 0.35 * self.layout.top * self.layout.scale[1] / self._described.bodies)
+        width = min(
+            BAND, 0.35 * self.layout.size[1] * self.layout.scale[1] / self._described.bodies
+        )
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
         rims = [line for kind, line in lines.items() if kind != OPEN]
@@ -218,22 +186,31 @@ class Picture:
 
     def _words(self) -> Columns:
         """What acts, and the slope; moved inwards where it would be cut."""
-        words, layout = words_of(self.layout, self.arrows, self._now), self.layout
-        places = [self._page(word.place) for word in words]
+        layout, texts, places, aligns, colors = self.layout, [], [], [], []
+        above = [act for act in self._described.acts if act.where.startswith("top")]
+        for arrows in self.arrows:
+            act, (place, align) = arrows.act, anchor_of(arrows, layout)
+            # What presses from above and below alike is said once.
+            if not act.where.startswith("bottom") or not any(is_opposite(act, a) for a in above):
+                texts.append(text_of(act, self._now))
+                places.append(self.page(place))
+                aligns.append(align)
+                colors.append(color_of(act))
         if self._described.tilt is not None:
             corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, 4.0])
-            angle = number(float(np.degrees(self.tilt)))
-            words.append(Word(f"slope {angle}°", corner, "left", FORCE))
+            texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
             places.append(corner + layout.origin)
+            aligns.append("left")
+            colors.append(FORCE)
         x, y = np.reshape(places, (-1, 2)).T
-        widths = np.array([LETTER * len(word.text) + 4.0 for word in words])
-        left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[word.align] for word in words]
+        widths = np.array([LETTER * len(text) + 4.0 for text in texts])
+        left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[align] for align in aligns]
         return {
             "x": np.clip(x, left, np.maximum(layout.width - widths + left, left)),
             "y": np.clip(y, 8.0, layout.height - 8.0),
-            "text": [word.text for word in words],
-            "text_align": [word.align for word in words],
-            "text_color": [word.color for word in words],
+            "text": texts,
+            "text_align": aligns,
+            "text_color": colors,
         }
 
 
@@ -258,8 +235,3 @@ def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
 def _drawn(lines: Array, nodes: Array) -> Array:
     """Places of lines, (n, 2), NaN behind each."""
     return np.append(nodes, [[np.nan, np.nan]], axis=0)[lines]
-
-
-def _pair(line: Array) -> Columns:
-    x, y = line.T.astype(np.float32)
-    return {"x": x, "y": y}

@@ -1,4 +1,4 @@
-"""Views of the wires of a strand: cut, unrolled, how far their stress swings, and their force."""
+"""Views of wires: where a strand is cut, and the force along rods and wires."""
 
 from __future__ import annotations
 
@@ -11,33 +11,26 @@ from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.axis import edges, extent
+from app.views.axis import extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.view import ExtraView, color_bar, hover, joined
 from app.worker.geometry import MOST_WIRES
 
-LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
 COLORS = [color for color in RANKS if color != ERROR]
 """Of wires; the broken one has a colour of its own."""
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
-class RopePlot(ExtraView):
-    """A plot of a strand that is bent; a tap selects a wire."""
+class WireSection(ExtraView):
+    """All wires where a bent strand is cut, coloured by stress and ringed where they slip.
 
-    applies = staticmethod(lambda settings: settings.kind == "helices")
-
-    def _select(self, number: int) -> None:
-        frame = self.state.frame
-        if frame is not None and 0 <= number < len(frame.run.interfaces):
-            self.state.select(interface=list(frame.run.interfaces)[number])
-
-
-class WireSection(RopePlot):
-    """All wires where the strand is cut, coloured by stress and ringed where they slip."""
+    A tap selects a wire.
+    """
 
     name = "Cross-section"
     needs = frozenset({"section"})
+
+    applies = staticmethod(lambda settings: settings.kind == "helices")
 
     def _make(self) -> None:
         made = self.begin(match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d())
@@ -76,65 +69,15 @@ class WireSection(RopePlot):
         )
 
     def _tap(self, event: Any) -> None:
-        cut = self.state.frame and self.state.frame.extras.get("section")
+        frame = self.state.frame
+        cut = frame and frame.extras.get("section")
         if cut is None:
             return
         away = np.hypot(*(cut["centres"] - [event.x, event.y]).T)
-        if away.min() <= cut["radii"][away.argmin()]:
-            self._select(int(cut["wires"][away.argmin()]))
-
-
-class Unrolled(RopePlot):
-    """Stick and slip of every wire at the selected instant, layer upon layer."""
-
-    name = "All wires"
-    needs = frozenset({"all_wires"})
-
-    def _make(self) -> None:
-        made = self.begin()
-        self.add_status()
-        self.add("wire_layers", "HSpan", "y", color=EDGE, line_width=1.5)
-        look = {"fill_alpha": 0, "line_color": ERROR, "line_width": 2}
-        self.add("chosen", "Rect", "x y width height", **look)
-        self.legend("stick", "slip →", "slip ←")
-        made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
-
-    def _show(self, wires: Any, frame: Frame, selection: Selection) -> None:
-        column = frame.run.column(selection.phase)
-        count, places = len(wires["wire_layers"]), wires["places"]
-        ends = edges(places)[[0, -1]]
-        self.x.rename(*(("x", "m") if wires["is_clamped"] else ("polar angle", "°")))
-        self.y.rename("wire" if wires["is_clamped"] else "layer", "")
-        key = frame.run.number, wires["is_clamped"]
-        self.x.hold(key, ends)
-        self.y.hold(key, [0.5, count + 0.5])
-        image = np.ascontiguousarray(wires["status"][:, :, column])
-        self.draw_status(image, places, np.arange(1.0, count + 1.0))
-        self.fill("wire_layers", y=np.flatnonzero(np.diff(wires["wire_layers"])) + 1.5)
-        number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
-        middle, width = self.x([ends.mean()]), self.x([np.ptp(ends)])
-        self.fill("chosen", x=middle, y=[number + 1.0], width=width, height=[1.0])
-
-
-class StressRanges(RopePlot):
-    """How far the stress of every wire swings where it swings most, in the last cycle."""
-
-    name = "Stress range"
-    needs = frozenset({"wire_ranges"})
-
-    def _make(self) -> None:
-        made = self.begin(("wire",), ("range", "Pa"))
-        bars = self.add("bars", "VBar", "x top color", also="layer", width=0.8)
-        hover(made, [bars], {"wire": "@x", "layer": "@layer", "range": "@top"})
-        made.on_event(Tap, lambda event: self._select(round(event.x) - 1))
-
-    def _show(self, found: Any, frame: Frame, selection: Selection) -> None:
-        count = len(found["wire_layers"])
-        self.x.span(0.5, count + 0.5)
-        self.y.hold(frame.stage, [0.0], 1.08 * found["ranges"])
-        colors = [LAYERS[layer % len(LAYERS)] for layer in found["wire_layers"]]
-        top, layer = self.y(found["ranges"]), found["wire_layers"] + 1
-        self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
+        nearest = int(away.argmin())
+        wire = int(cut["wires"][nearest])
+        if away[nearest] <= cut["radii"][nearest] and wire >= 0:
+            self.state.select(interface=list(frame.run.interfaces)[wire])
 
 
 class AxialForces(ExtraView):
@@ -160,12 +103,11 @@ class AxialForces(ExtraView):
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
         key = (*frame.stage, *names)
         along = run.interfaces[selection.interface_of(run)].positions
-        bent = [] if stuck is None else [stuck]
-        self.x.hold(key, x, *([] if bent else [along]))
+        self.x.hold(key, x, along)
         ups = [curve.up for curve in known]
-        self.y.hold(key, axial["force"], *ups, *bent, [0.0], margin=0.05)
+        self.y.hold(key, axial["force"], *ups, stuck, [0.0], margin=0.05)
         self.draw("exact", *joined([(curve.across, curve.up[:, column]) for curve in known]))
-        self.draw("stuck", *joined([(x, force[:, column]) for force in bent]))
+        self.draw("stuck", x[: len(stuck)], stuck[:, column])
         colors = iter(COLORS * 2)
         for line, wire in zip(self._lines, names, strict=False):
             color, width = (ERROR, 3.5) if "broken" in wire else (next(colors), 2.0)

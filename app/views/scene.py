@@ -14,10 +14,11 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import number, unit_for
+from app.views.acts import Arrows
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
-from app.views.layout import layout_of, without_acts
-from app.views.picture import Handle, Picture
+from app.views.layout import layout_of
+from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -37,7 +38,7 @@ class Scene(View):
     """
 
     name = "Scene"
-    shows_status = True
+    is_bare = False
 
     def _make(self) -> None:
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
@@ -47,7 +48,7 @@ class Scene(View):
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
-        self._held: tuple[Handle, Picture] | None = None
+        self._held: tuple[Arrows, Picture] | None = None
         for event, react in (
             (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
         ):  # fmt: skip
@@ -59,7 +60,7 @@ class Scene(View):
     def _draw(self, made: figure) -> None:
         self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
         look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8, "line_alpha": 0.55}
-        self.add("bodies", "Patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
+        self.add("bodies", "Patch", fill_alpha=0.0 if self.is_bare else 0.5, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "MultiLine", "xs ys line_color line_width")
         self.add("heads", "Patches", "xs ys line_color", fill_color="line_color", also="line_width")
@@ -70,7 +71,7 @@ class Scene(View):
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         self.mark(KEYS | {"note": UNSEEN})
-        keys = KEYS if self.shows_status else ()
+        keys = () if self.is_bare else KEYS
         self._keys = self.legend(*keys, "note", place="center")
         self._keys.location = "bottom_left"
 
@@ -78,8 +79,7 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        geometry = run.geometry if self.shows_status else without_acts(run.geometry)
-        layout = layout_of(geometry, *self._size.values())
+        layout = layout_of(run.geometry, self.is_bare, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
@@ -87,16 +87,14 @@ class Scene(View):
             self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
-        self.picture = picture = Picture(
-            frame, run.column(selection.phase), layout, self._factor, self._peaks,
-            run.settings.behind(),
-        )  # fmt: skip
-        for name, columns in picture.columns(with_status=self.shows_status).items():
+        column = run.column(selection.phase)
+        self.picture = picture = Picture(frame, column, layout, self._factor, self._peaks)
+        for name, columns in picture.columns().items():
             self.fill(name, **columns)
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
             past = picture.ghost(ghost, ghost.run.column(selection.phase))
-        if run.mechanism is not None and run.instants[picture.column] >= run.collapses_at:
+        if run.mechanism is not None and run.instants[column] >= run.collapses_at:
             past = picture.mechanism(run.mechanism)
         self.fill("ghost", **past)
         self.show("open", any(each.bound is None for each in run.interfaces.values()))
@@ -121,13 +119,13 @@ class Scene(View):
                 self.update(*self._shown)
 
     def _hold(self, event: Any) -> None:
-        """Take hold of the handle under the pointer."""
+        """Take hold of the arrow whose handle is under the pointer."""
         picture = self.picture
-        if picture is None or not picture.handles:
+        if picture is None or not picture.draggable:
             return
         at = picture.to_local(event.x, event.y)
-        nearest = min(picture.handles, key=lambda handle: float(np.hypot(*(handle.place - at))))
-        if np.hypot(*(nearest.place - at)) <= NEAR:
+        nearest = min(picture.draggable, key=lambda each: float(np.hypot(*(each.handle - at))))
+        if np.hypot(*(nearest.handle - at)) <= NEAR:
             self._held = nearest, picture
             self.state.is_dragged = True
 
@@ -143,10 +141,10 @@ class Scene(View):
 
     def _value(self, event: Any) -> float:
         """The value that the pointer gives what is held, within the range of its slider."""
-        handle, picture = self._held
-        present = float(getattr(picture.frame.run.settings, handle.setting))
-        dragged = handle.value(present, picture.to_local(event.x, event.y))
-        low, high = self.state.settings.definitions()[handle.setting].softbounds
+        arrows, picture = self._held
+        present = float(getattr(picture.frame.run.settings, arrows.setting))
+        dragged = arrows.scaled(present, picture.to_local(event.x, event.y))
+        low, high = self.state.settings.definitions()[arrows.setting].softbounds
         return float(f"{np.clip(dragged, min(low, present), max(high, present)):.3g}")
 
     def _select(self, event: Any) -> None:
@@ -168,7 +166,7 @@ class Scene(View):
 class ExtraScene(Scene):
     """The scene without what acts and rubs, but with an extra, as far as the frame has it."""
 
-    shows_status = False
+    is_bare = True
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant, and the extra."""

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
+from bokeh.models import LinearColorMapper
 
 from app.frame import Floats, Frame, Selection
 from app.views.axis import edges
-from app.views.colors import CUT, ERROR, EXACT, KEYS
+from app.views.colors import CUT, ERROR, EXACT, KEYS, STATUS
 from app.views.view import View, hover, joined
 
 
@@ -23,7 +24,9 @@ class StatusMap(View):
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("t", "s"))
         made.grid.visible = False
-        image = self.add_status()
+        self.mark(KEYS)
+        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
+        image = self.add("status", "Image", "image x y dw dh", color_mapper=colors)
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.6, line_width=1)
         self.add("front", color=EXACT, width=3)
         self.add("ghost", "Segment", "x0 y0 x1 y1", color="#000000", width=1)
@@ -41,7 +44,10 @@ class StatusMap(View):
             return
         self.x.hold((run.number, name), interface.positions)
         self.y.hold((run.number, name), run.instants)
-        self.draw_status(fields.status.T, interface.positions, run.instants)
+        x, y = edges(interface.positions)[[0, -1]], edges(run.instants)[[0, -1]]
+        (left, right), (low, high) = self.x(x), self.y(y)
+        size = {"dw": [right - left], "dh": [high - low]}
+        self.fill("status", image=[fields.status.T], x=[left], y=[low], **size)
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
         self.fill("place", x=self.x([] if selection.place is None else [selection.place]))

@@ -32,10 +32,10 @@ from bokeh.models import (
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
-from app.frame import Bytes, Floats, Frame, Selection
+from app.frame import Floats, Frame, Selection
 from app.state import PageState
-from app.views.axis import Axis, edges
-from app.views.colors import CUT, KEYS, STATUS
+from app.views.axis import Axis
+from app.views.colors import CUT
 from solver.settings import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -80,7 +80,6 @@ class View:
         self.state, self._type = state, TEXT
         self._made: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
-        self._marks: dict[str, tuple[GlyphRenderer, int]] = {}
         self._items: dict[str, LegendItem] = {}
 
     @cached_property
@@ -90,19 +89,17 @@ class View:
         self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
         self._filter = AllIndices()
         self._make()
-        self.magnify(self._type)
+        size, self._type = self._type, TEXT
+        self.magnify(size)
         return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
-        if size != self._type:
-            self._type = size
-            if self._made is not None:
-                self._size_type()
-
-    def _size_type(self) -> None:
-        """Size what is written, each by itself: an em is 13 pixels to axes, whatever the style."""
-        made, size, keep = self._made, self._type, CustomJS(code=KEEP)
+        made, keep, is_same = self._made, CustomJS(code=KEEP), size == self._type
+        self._type = size
+        if is_same or made is None:
+            return
+        # Each by itself: an em is 13 pixels to axes, whatever the style.
         for model in (made, *made.legend):
             model.styles = {**model.styles, "font-size": size}
         for words in made.select(models.Text):
@@ -159,15 +156,15 @@ class View:
         on: str = "",
         **look: Any,
     ) -> GlyphRenderer:
-        """A glyph of Bokeh's, columns called as its properties, or one on another one's source.
+        """A glyph of Bokeh's, columns called as its properties, on a source called as it or `on`.
 
-        Its source has also other columns, for whoever hovers.
+        The source has also other columns, for whoever hovers, or other glyphs on it.
         """
-        if not on:
-            on, look = name, {column: column for column in columns.split()} | look
-            self.source(name, *columns.split(), *also.split())
-        kind = getattr(models, glyph)
-        return self._render(self.sources[on], kind(**visuals(kind, look)), name)
+        kind, own = getattr(models, glyph), columns.split()
+        if (on or name) not in self.sources:
+            self.sources[on or name] = self._source({each: [] for each in (*own, *also.split())})
+        look = {column: column for column in own} | look
+        return self._render(self.sources[on or name], kind(**visuals(kind, look)), name)
 
     def _render(
         self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
@@ -176,24 +173,8 @@ class View:
         view = CDSView(filter=self._filter)
         return self._made.add_glyph(source, glyph, name=name, view=view, **without)
 
-    def source(self, name: str, *columns: str) -> None:
-        """Add an empty source."""
-        self.sources[name] = self._source({column: [] for column in columns})
-
     def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
         return ColumnDataSource(columns, **self._selects)
-
-    def add_status(self) -> GlyphRenderer:
-        """An image of statuses, and a mark for each in the legend."""
-        self.mark(KEYS)
-        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        return self.add("status", "Image", "image x y dw dh", color_mapper=colors)
-
-    def draw_status(self, status: Bytes, x: Floats, y: Floats) -> None:
-        """Draw statuses, shape (n_y, n_x), about places in SI."""
-        (left, right), (low, high) = self.x(edges(x)[[0, -1]]), self.y(edges(y)[[0, -1]])
-        size = {"dw": [right - left], "dh": [high - low]}
-        self.fill("status", image=[status], x=[left], y=[low], **size)
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
         """Marks that stand in the legend only, by name; they share a glyph, as each costs time."""
@@ -201,7 +182,8 @@ class View:
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
         look = {"marker": "square", "size": 10, "color": "color"} | look
         marks = self._render(self._source(columns), Scatter(**visuals(Scatter, look)))
-        self._marks |= {name: (marks, place) for place, name in enumerate(colors)}
+        for place, name in enumerate(colors):
+            self._items[name] = LegendItem(renderers=[marks], index=place)
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their own names or by titles.
@@ -213,15 +195,11 @@ class View:
         drawn = {r.name: r for r in reversed(self._made.renderers) if r.name in titles}
         columns = {column for each in drawn.values() for column in each.data_source.data}
         nowhere = self._source({column: [np.nan] for column in columns})
-        copies = {
-            name: (self._render(nowhere, each.glyph, name), None) for name, each in drawn.items()
-        }
-        marks = self._marks | copies
-        self._items = {
-            name: LegendItem(label=value(title), renderers=[marks[name][0]], index=marks[name][1])
-            for name, title in titles.items()
-        }
-        box = legend(self._made, list(self._items.values()), place)
+        for name, each in drawn.items():
+            self._items[name] = LegendItem(renderers=[self._render(nowhere, each.glyph, name)])
+        for name, title in titles.items():
+            self._items[name].label = value(title)
+        box = legend(self._made, [self._items[name] for name in titles], place)
         box.click_policy = "hide"
         box.js_on_event(LegendItemClick, CustomJS(args={"plot": self._made}, code=HIDE))
         return box

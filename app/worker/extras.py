@@ -37,8 +37,7 @@ MOST_MODES = 5
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in every substructure, over the largest of all."""
     parts = decompositions(iterate.problem, iterate.boundary_force, is_force=True)
-    values = [part.values for part in parts]
-    shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
+    shown = [parts[place].values[:MOST_VALUES] for place in thinned(len(parts), MOST_SPECTRA)]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
     return [floats(np.asarray(part) / largest) for part in shown]
 
@@ -84,23 +83,15 @@ def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     """The iterate, cycle by cycle of its load; None where that has none.
 
     "columns" of the instants at which cycles begin, and the last one ends, (n_cycles + 1,);
-    "energy" that friction takes in each, (n_cycles,), J; "slip" to and fro, m, and friction "work",
-    J/m or J/m^2, of the last one at the points of the selected interface; "text", what becomes of
-    slip.
+    "energy" that friction takes in each, (n_cycles,), J; "text", what becomes of slip.
     """
     found = cycles_of(sampler.settings, iterate)
     if not len(found):
         return None
-    name = needs.interface if needs.interface in sampler.rows else next(iter(sampler.rows))
-    laws = list(sampler.problem.rubbing.values())
-    before = laws[: list(sampler.rows).index(name)]
-    points = sum(len(law.positions) for law in before) + sampler.rows[name]
     slipped = bool(found.slip.any() or found.before.any())
     return {
         "columns": np.searchsorted(sampler.columns, found.ends),
         "energy": floats(found.energy),
-        "slip": floats(found.slip[points, -1]),
-        "work": floats(found.work[points, -1] / sampler.lengths(name)),
         "text": _fate_text(found) if slipped else "nothing slips",
     }
 
@@ -190,50 +181,26 @@ def _pairs(sizes: Sizes) -> Floats:
 
 
 def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Results of another program and their distance to the iterate, if they are of its scene.
+    """What was "brought", a measured loop or results of another program, if it is of this scene.
 
-    "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
-    displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
-    iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.
-    Of a measured loop "loop", (2, n_rows), instead of what is of places.
+    And the relative "distance" of the iterate to it, NaN where both share too few rows.
     """
-    brought = needs.brought
+    brought, loop, distance = needs.brought, sampler.loop, np.nan
     if isinstance(brought, MeasuredLoop):
-        return _loop_beside(brought, sampler, iterate)
-    if brought is None or brought.scene != sampler.settings.scene:
+        if brought.units != (loop.across[1], loop.up[1]):
+            return None
+        with suppress(SettingError):
+            distance = LoopComparison(brought, loop, sampler.problem).of(iterate)
+    elif brought is None or brought.scene != sampler.settings.scene:
         return None
-    laid = _comparison(brought, sampler, needs.interface)
-    return {
-        "name": brought.source,
-        "quantity": brought.quantity,
-        "x": floats(brought.positions),
-        "t": floats(brought.times),
-        "values": floats(brought.values),
-        "distance": laid.of(iterate),
-        "interface": laid.interface,
-    }
+    else:
+        distance = _comparison(brought, sampler, needs.interface).of(iterate)
+    return {"brought": brought, "distance": distance}
 
 
 @lru_cache(maxsize=1)
 def _comparison(brought: OtherResults, sampler: Sampler, interface: str) -> Comparison:
     return Comparison(brought, sampler.problem, interface)
-
-
-def _loop_beside(
-    measured: MeasuredLoop, sampler: Sampler, iterate: Iterate
-) -> dict[str, Any] | None:
-    """A measured loop and its distance to the iterate, if it is of the same quantities."""
-    loop, distance = sampler.loop, np.nan
-    if measured.units != (loop.across[1], loop.up[1]):
-        return None
-    with suppress(SettingError):
-        distance = LoopComparison(measured, loop, sampler.problem).of(iterate)
-    return {
-        "name": measured.source,
-        "quantity": "loop",
-        "loop": floats(np.stack([measured.displacement, measured.force])),
-        "distance": distance,
-    }
 
 
 EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -114,12 +113,8 @@ class DrawnRods(Drawn):
         self._force, self._elements = AxialForce(problem, columns), np.concatenate(middles)
         self._broken = None if description.broken is None else description.broken[0]
         mesh = mesh_of(grids, np.arange(len(rods)))
+        self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
         super().__init__(problem, description, columns, mesh, positions)
-
-    @property
-    def extras(self) -> Extras:
-        """Stress, and the force in each rod."""
-        return {"stress": self._stress, "axial force": self._axial_force}
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Axial force, as rods have no height."""
@@ -129,8 +124,8 @@ class DrawnRods(Drawn):
         """Axial force in some rods at all instants.
 
         "x" of the middles of elements, (n_places,), m; "force", (n_rods, n_places, n_instants), N;
-        "names" of the rods; "stuck", what the force would be if nothing slipped, of a strand that
-        is bent, else None.
+        "names" of the rods; "stuck", what the force would be if nothing slipped, (n_places,
+        n_instants) of a strand that is bent, else (0, n_instants).
         """
         count, broken = int(self._force.wires.max()) + 1, self._broken
         places = thinned(len(self._force.wires) // count, MOST_POINTS)
@@ -144,7 +139,7 @@ class DrawnRods(Drawn):
             "x": floats(self._force.positions[places]),
             "force": floats(forces[np.ix_(shown, places)]),
             "names": names,
-            "stuck": None,
+            "stuck": floats(forces[0, :0]),
         }
 
     def _forces(self, iterate: Iterate) -> Array:
@@ -164,7 +159,9 @@ class DrawnMesh(Drawn):
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         self._inside = inside = problem.inside
         self._poisson, self._state = (settings.values()[name] for name in ("poisson", "plane"))
-        self._has_bricks = bool(settings.features.bricks)
+        self.extras: Extras = {"stress": self._stress}
+        if settings.features.bricks:
+            self.extras["thrust"] = self._thrust
         most = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
         share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)
@@ -187,11 +184,6 @@ class DrawnMesh(Drawn):
         description = settings.structure().described()
         super().__init__(problem, description, columns, mesh, problem.positions)
 
-    @property
-    def extras(self) -> Extras:
-        """Stress, and lines of thrust through bricks."""
-        return {"stress": self._stress} | ({"thrust": self._thrust} if self._has_bricks else {})
-
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Von Mises' equivalent stress, its mean in every quadrilateral."""
         means = []
@@ -208,35 +200,24 @@ class DrawnMesh(Drawn):
         middle of the other, (n_joints, 3, 2, n_instants), m; on a support they end there. "forces"
         are their sizes, (n_joints, n_instants), N.
         """
-        lines, forces = [], []
-        for name, (places, above, below) in self._joints.items():
-            components = self._problem.contact_places[name]
+        problem, lines, forces = self._problem, [], []
+        middles = np.zeros((problem.n_dofs, 2, 1))
+        for grid, part in zip(self._inside.grids, problem.substructures, strict=True):
+            middles[part.dofs, :, 0] = self._inside.nodes[grid].mean(axis=(0, 1))
+        for name, law in problem.rubbing.items():
+            _, pairs = np.unique(law.points, return_index=True)
+            above, *below = (problem.row_dofs[rows[pairs]] for rows in law.tangent.sides)
             normal, tangential = (
-                iterate.contact_force[own][:, self._columns] for own in components
+                iterate.contact_force[own][:, self._columns] for own in problem.contact_places[name]
             )
             pressed = np.maximum(normal, 0.0)
             whole = pressed.sum(axis=0)
             share = pressed / np.where(whole > 0.0, whole, 1.0)
-            point = places.T @ np.where(whole > 0.0, share, 1.0 / len(places))
-            ends = above, point, point if below is None else below
-            lines.append(np.stack(np.broadcast_arrays(*ends)))
+            point = problem.positions[above].T @ np.where(whole > 0.0, share, 1.0 / len(above))
+            end = middles[below[0][0]] if below else point
+            lines.append(np.stack(np.broadcast_arrays(middles[above[0]], point, end)))
             forces.append(np.hypot(whole, tangential.sum(axis=0)))
         return {"lines": floats(np.stack(lines)), "forces": floats(np.stack(forces))}
-
-    @cached_property
-    def _joints(self) -> dict[str, tuple[Array, Array, Array | None]]:
-        """Points of each joint, (n_points, 2), and middles of its bricks, (2, 1), m."""
-        problem, inside = self._problem, self._inside
-        middles = np.zeros((problem.n_dofs, 2))
-        for grid, part in zip(inside.grids, problem.substructures, strict=True):
-            middles[part.dofs] = inside.nodes[grid].mean(axis=(0, 1))
-        joints = {}
-        for name, law in problem.rubbing.items():
-            _, pairs = np.unique(law.points, return_index=True)
-            sides = [problem.row_dofs[rows[pairs]] for rows in law.tangent.sides]
-            ends = [middles[dofs[0]][:, None] for dofs in sides]
-            joints[name] = problem.positions[sides[0]], ends[0], (*ends, None)[1]
-        return joints
 
     def nodes_of(self, displacement: Array) -> Floats:
         """Displacement of the nodes, (n_nodes, 2), of that of degrees of freedom, (n_dofs,), m."""

@@ -74,9 +74,9 @@ class Runner:
     def __init__(
         self, start: Start, references: ReferenceCache, interrupted: Callable[[], bool]
     ) -> None:
-        self.settings, self.is_dragged = start.settings, start.is_dragged
+        self.settings = settings = start.settings
+        self.is_dragged = start.is_dragged
         began = time.perf_counter()
-        settings = start.settings
         problem, latin = discretise(settings), method_of(settings)
         is_compared, most = has_reference(settings), settings.max_iterations
         self.cost: RunCost = run_cost(problem, latin, most, with_reference=is_compared)

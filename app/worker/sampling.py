@@ -74,14 +74,12 @@ class Sampler:
             else replace(curve, up=curve.up[:, self.columns])
             for curve in curves
         )
-        self.run = replace(self.run, exact=exact)
+        known: dict[str, Any] = {"exact": exact}
         if reference is not None:
-            self.run = replace(
-                self.run,
-                reference=self._contact(reference, self.problem.rubbing),
-                reference_loop=self._loop(reference),
-                reference_seconds=reference.seconds,
-            )
+            known["reference"] = self._contact(reference, self.problem.rubbing)
+            known["reference_loop"] = self._loop(reference)
+            known["reference_seconds"] = reference.seconds
+        self.run = replace(self.run, **known)
 
     def collapse(self, collapse: Collapse) -> None:
         """Add the mechanism by which the structure begins to fail, and when."""
@@ -131,11 +129,11 @@ class Sampler:
         else:
             highest = law.by_point(law.tangential.highest)[rows]
             highest = highest[:, self.columns] if highest.shape[1] > 1 else highest
-            bound = floats(highest * self.problem.scales.force / self.lengths(name)[:, None])
+            bound = floats(highest * self.problem.scales.force / self._lengths(name)[:, None])
         cuts = law.positions[np.bincount(law.points) > 1]
         return FrictionInterface(floats(law.positions[rows]), floats(cuts), bound, coefficient)
 
-    def lengths(self, name: str) -> Array:
+    def _lengths(self, name: str) -> Array:
         """Length or area that each shown point of an interface stands for."""
         law = self.problem.rubbing[name]
         return np.asarray(law.by_point(law.weights)[self.rows[name]])
@@ -145,7 +143,7 @@ class Sampler:
     ) -> Mapping[str, InterfaceFields]:
         contact = {}
         for name in names:
-            nodal, lengths = shown.contact(name), self.lengths(name)[:, None]
+            nodal, lengths = shown.contact(name), self._lengths(name)[:, None]
             kept, pressure = np.ix_(self.rows[name], self.columns), nodal.normal_force
             contact[name] = InterfaceFields(
                 floats(nodal.tangential_force[kept] / lengths),

@@ -24,13 +24,11 @@ from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import (
     cut_at,
     stress_at,
-    stress_ranges,
     wire_forces,
     wire_stresses,
 )
 from solver.latin import Iterate
 from solver.settings import Settings
-from solver.study.quantities.cycles import ends_of
 
 A_TURN, FEWEST, MOST = 20, 40, 100
 """Steps along the strand for each turn of an outer wire, and their number in any case."""
@@ -48,7 +46,7 @@ class DrawnRope:
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         rope = settings.structure()
         assert isinstance(rope, Rope)
-        self._rope, self._columns, self._ends = rope, columns, ends_of(settings)
+        self._rope, self._columns = rope, columns
         description = rope.described()
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
@@ -69,22 +67,13 @@ class DrawnRope:
         self._points_moved = self._moved(rows, np.nan_to_num(heights))
         points = floats(np.stack([self._z[rows], heights], axis=1))
         self.geometry = Geometry(description=description, points=points, chains=chains, **mesh)
+        self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
+        self.extras["section"] = self._section
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the strand is bent, which is given, and where its wires slip."""
         status = iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
         return DeformedGeometry(self._nodes_moved, self._points_moved, status.astype(np.int8))
-
-    @property
-    def extras(self) -> Extras:
-        """Stress, and what is shown of all wires and of the selected one."""
-        return {
-            "stress": self._stress,
-            "axial force": self._axial_force,
-            "section": self._section,
-            "all_wires": self._all_wires,
-            "wire_ranges": self._wire_ranges,
-        }
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Mean stress over the section of every wire."""
@@ -209,31 +198,3 @@ class DrawnRope:
             "stress": floats(np.concatenate([stretched[None], stress])),
             "slips": np.concatenate([np.zeros((1, len(columns))), slips]).astype(np.int8),
         }
-
-    def _all_wires(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """Status of every wire, along it.
-
-        "places" along the strand, m, or polar angles, degrees, where it is bent alike all along,
-        and not beside a clamp ("is_clamped"): then each wire stands for its layer; "wire_layers" of
-        them, from 0, (n_wires,); "status", (n_wires, n_places, n_instants).
-        """
-        rope = self._rope
-        kept = thinned(rope.elements - 1, MOST_POINTS)
-        status = iterate.status[:, self._columns].reshape(len(rope.wires), rope.elements - 1, -1)
-        length = rope.seen_length if rope.is_clamped else 180.0
-        return {
-            "places": floats((kept + 1.0) / rope.elements * length),
-            "is_clamped": rope.is_clamped,
-            "wire_layers": np.array([wire.layer for wire in rope.wires]),
-            "status": np.ascontiguousarray(status[:, kept]),
-        }
-
-    def _wire_ranges(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """How far the stress of every wire swings in the last cycle, or throughout without one.
-
-        "wire_layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
-        """
-        last = slice(self._ends[-2], self._ends[-1] + 1) if len(self._ends) > 1 else slice(None)
-        ranges = stress_ranges(self._rope, iterate.displacement, last)
-        layers = np.array([wire.layer for wire in self._rope.wires])
-        return {"wire_layers": layers, "ranges": floats(ranges)}

@@ -68,7 +68,6 @@ class BlockSettings(SideSettings):
         title="Radius R",
         unit="m",
         applies=lambda settings: settings.gap == "parabola",
-        places=("gap",),
     )
     spring = quantity(
         0.0,

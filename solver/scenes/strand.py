@@ -89,7 +89,6 @@ class StrandSettings(Settings):
         "Where the wire is broken, as a share of the length; at the nearest node between the ends.",
         group="Strand",
         title="Position of the break",
-        places=("break",),
         applies=lambda settings: settings.broken > 0,
     )
     elements = count(
