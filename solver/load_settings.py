@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 
 import numpy as np
+import param
 
 from solver.arrays import Array
 from solver.definitions import CurveParameter, Rows, about, count, quantity
@@ -34,6 +35,8 @@ STRAIGHT = 1e-9
 
 class LoadSettings(FrictionSettings):
     """Settings of time and of load paths, beside those of the method and of friction."""
+
+    elements: param.Integer[int]
 
     cycles = count(
         1,
@@ -78,7 +81,7 @@ class LoadSettings(FrictionSettings):
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all bodies."""
-        raise NotImplementedError
+        return self.n_bodies * (self.elements + 1)
 
     @property
     def paths(self) -> tuple[str, ...]:

@@ -221,9 +221,14 @@ class MethodSettings(Checked):
     )
 
     @property
+    def n_bodies(self) -> int:
+        """Number of bodies, each of which is cut."""
+        return 1
+
+    @property
     def n_substructures(self) -> int:
         """Number of substructures in all."""
-        return self.substructures
+        return self.n_bodies * self.substructures
 
     @property
     def k_factors(self) -> tuple[float, float]:

@@ -37,40 +37,11 @@ class Icon(NamedTuple):
     load: str
 
 
-class Features(NamedTuple):
-    """What a scene has under its present settings, for whoever shows or measures it.
-
-    Attributes
-    ----------
-    opens
-        Whether contact may open, so that what presses is an unknown.
-    has_spring
-        Whether a spring holds a body.
-    has_break
-        Whether a body is broken.
-    jumps
-        Components of all contacts, which a reference condenses; none on a rigid support of known
-        bound.
-    bricks
-        Bodies that touch each other at joints, 0 where a body lies on the next all along.
-    loop_is_over_displacement
-        Whether the force of its loop stands over a displacement, m.
-    """
-
-    opens: bool = False
-    has_spring: bool = False
-    has_break: bool = False
-    jumps: int = 0
-    bricks: int = 0
-    loop_is_over_displacement: bool = True
-
-
 class Settings(LoadSettings):
     """Settings of a scene: those of the method, of friction and of time, and its own."""
 
     length: param.Number[float]
     friction: param.Number[float]
-    elements: param.Integer[int]
     """Every scene defines these, where it shows them."""
 
     title: ClassVar[str]
@@ -82,14 +53,16 @@ class Settings(LoadSettings):
     plane bodies."""
     CHIEF: ClassVar[tuple[str, ...]]
     """Settings that a scene is about, in the order in which one thinks of them."""
-    LOADS: ClassVar[tuple[str, ...]]
-    """Settings that say how much it is loaded; the first that applies counts."""
     GROWS: ClassVar[tuple[str, ...]]
     """Settings by which the structure becomes larger as it is, all of them together."""
     MESH: ClassVar[tuple[str, ...]] = ("elements",)
     """Numbers of elements: twice each is a mesh of half the size."""
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
+    opens: ClassVar[bool] = False
+    """Whether contact may open, so that what presses is an unknown."""
+    has_joints: ClassVar[bool] = False
+    """Whether bodies touch each other at joints, and do not lie on the next all along."""
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""
@@ -123,14 +96,23 @@ class Settings(LoadSettings):
         return ()
 
     @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        return Features()
+    def jumps(self) -> int:
+        """Components of all contacts, which a reference condenses; none on a lone rod."""
+        return 0
+
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the force of its loop stands over a displacement, m."""
+        return True
 
     @property
     def n_interfaces(self) -> int:
         """Number of interfaces of which each may have its own mu."""
-        return 1
+        return self.n_bodies - 1
+
+    def has(self, name: str) -> bool:
+        """Whether there is such a setting, which does something and is not 0."""
+        return bool(self.values().get(name)) and self.applies(name)
 
     def behind(self) -> Mapping[str, str]:
         """Settings that place or scale what acts on the scene, where any does.

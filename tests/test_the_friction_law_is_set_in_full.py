@@ -199,7 +199,7 @@ def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_s
         assert not plain.applies(name)
         assert ("per length" in definitions[name].doc) is (name != "strength" and not is_plane)
     has_across = "normal_stiffness" in definitions and given.applies("normal_stiffness")
-    assert has_across is given.features.opens
+    assert has_across is given.opens
     assert not given.applies("friction_ratio")
     assert given.replace(strength="linear").applies("friction_ratio")
 

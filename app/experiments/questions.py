@@ -165,7 +165,8 @@ def _bricks(settings: Settings) -> Question | None:
 
 def _fretting(settings: Settings) -> Question | None:
     across, up = _load(settings), settings.behind().get("top y")
-    return _over(settings, "sliding_share", COARSE, across, up) if has_cycles(settings) else None
+    is_asked = has_cycles(settings) and across != up
+    return _over(settings, "sliding_share", COARSE, across, up) if is_asked else None
 
 
 def _shakedown(settings: Settings) -> Question | None:
@@ -177,10 +178,10 @@ def _shakedown(settings: Settings) -> Question | None:
 
 
 def _load(settings: Settings) -> str | None:
-    """Name of the setting that says how large the load is, where a number does."""
+    """Name of the setting that says how large the load is: what a path reaches, the chief first."""
     known = variable(settings)
-    names = (name for name in settings.LOADS if name in known)
-    return next((name for name in names if isinstance(known[name], param.Number)), None)
+    names = (name for name in (*settings.CHIEF, *known) if name in known)
+    return next((name for name in names if about(known[name]).path), None)
 
 
 def _over(settings: Settings, of: str, count: int, *names: str | None) -> Question | None:

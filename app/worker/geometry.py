@@ -164,7 +164,7 @@ class DrawnMesh(Drawn):
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         self._inside = inside = problem.inside
         self._poisson, self._state = (settings.values()[name] for name in ("poisson", "plane"))
-        self._has_bricks = bool(settings.features.bricks)
+        self._has_bricks = settings.has_joints
         most = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
         share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)

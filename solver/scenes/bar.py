@@ -21,7 +21,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
 from solver.scenes.words import acting, is_steel
-from solver.settings import Features, Icon, Settings
+from solver.settings import Icon, Settings
 
 SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falling")}
 """Those that leave no element without a section."""
@@ -61,14 +61,6 @@ class BarSettings(Settings):
         "k_scale",
     )
     GROWS = ("elements",)
-    LOADS = (
-        "peak",
-        "right_displacement",
-        "left_force",
-        "support_displacement",
-        "temperature",
-        "settlement",
-    )
 
     peak, load = shared.sized_path(
         "load",
@@ -186,11 +178,6 @@ class BarSettings(Settings):
     )
 
     @property
-    def n_nodes(self) -> int:
-        """Number of nodes."""
-        return self.elements + 1
-
-    @property
     def contact_unit(self) -> float:
         """Unit of `contact_stiffness`, N/m^2."""
         mean, _ = self._uneven_section()
@@ -277,11 +264,11 @@ class BarSettings(Settings):
         return f"{'; '.join([head, *clauses])}."
 
     @property
-    def features(self) -> Features:
-        """What it has: a loop over a displacement where an end is pulled or moved."""
+    def loop_is_over_displacement(self) -> bool:
+        """Whether an end is pulled or moved."""
         acting = {name for name in self.paths if self.acts(name)}
         driven = {path for paths in bar_ends.PATHS.values() for path in paths.values()}
-        return Features(loop_is_over_displacement=bool(acting & driven))
+        return bool(acting & driven)
 
     def _bound(self, nodes: Array) -> Array:
         """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""

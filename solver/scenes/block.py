@@ -22,7 +22,7 @@ from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola
 from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 
 def _gap_points(settings: BlockSettings) -> Rows:
@@ -49,7 +49,6 @@ class BlockSettings(SideSettings):
         "substructures",
         "k_scale",
     )
-    LOADS = ("top_tangential_displacement",)
 
     gap = curve(
         "parabola",
@@ -128,12 +127,6 @@ class BlockSettings(SideSettings):
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
 
-    @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        has_spring = bool(self.spring) and self.applies("spring")
-        return super().features._replace(has_spring=has_spring)
-
     def behind(self) -> Mapping[str, str]:
         """Settings behind what acts; where both body forces do, the larger stands for their sum."""
         force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
@@ -184,7 +177,7 @@ class BlockSettings(SideSettings):
             support=Support(gap, self.friction_at_nodes()),
             sides=sides,
             body_force=self._body_force(),
-            spring=Spring(0.0, self.spring) if self.features.has_spring else None,
+            spring=Spring(0.0, self.spring) if self.has("spring") else None,
         )
 
     def sentence(self) -> str:
@@ -202,7 +195,7 @@ class BlockSettings(SideSettings):
             acts += [f"{listed(own)} at its {side}"] if own else []
         if self._body_force() is not None:
             acts.append("loaded all through")
-        if self.features.has_spring:
+        if self.has("spring"):
             acts.append("pulled back by a spring")
         held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
         acts += [f"held at its {side}" for side in held]

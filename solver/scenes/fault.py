@@ -25,7 +25,7 @@ from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stre
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -121,7 +121,8 @@ class FaultSettings(PlaneSettings):
         "substructures",
         "k_scale",
     )
-    LOADS = ("overpressure", "shear_stress")
+    opens = False
+    loop_is_over_displacement = False
 
     overpressure, injection_load = shared.sized_path(
         "injection_load",
@@ -185,9 +186,9 @@ class FaultSettings(PlaneSettings):
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
     @property
-    def features(self) -> Features:
-        """A fault stays closed; its loop is over the fluid, which drives it."""
-        return Features(jumps=self.nodes[0], loop_is_over_displacement=False)
+    def jumps(self) -> int:
+        """Components of all contacts: a fault stays closed."""
+        return self.nodes[0]
 
     def fluid(self, place: Array) -> Array:
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""

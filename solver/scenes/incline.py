@@ -23,7 +23,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 
 class InclineSettings(PlaneSettings):
@@ -38,7 +38,7 @@ class InclineSettings(PlaneSettings):
         load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
     )
     CHIEF = ("slope_load", "seed", "slope", "friction", "substructures", "k_scale")
-    LOADS = ("slope",)
+    loop_is_over_displacement = False
 
     slope, slope_load = shared.sized_path(
         "slope_load",
@@ -88,11 +88,6 @@ class InclineSettings(PlaneSettings):
     young = shared.young("Body", 1e7, (1e6, 1e12))
     elements = redefined(PlaneSettings.param["elements"], 24)
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
-
-    @property
-    def features(self) -> Features:
-        """The loop is over the angle of the slope."""
-        return super().features._replace(has_spring=True, loop_is_over_displacement=False)
 
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""

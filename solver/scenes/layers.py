@@ -28,7 +28,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted, is_steel
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 
 def _graduated(settings: LayersSettings) -> Rows:
@@ -59,7 +59,6 @@ class LayersSettings(PlaneSettings):
         "k_scale",
     )
     GROWS = ("layers",)
-    LOADS = ("deflection", "moment", "force")
     across = "thickness"
 
     pressure, pressure_load = shared.sized_path(
@@ -179,11 +178,6 @@ class LayersSettings(PlaneSettings):
         return self.layers
 
     @property
-    def n_interfaces(self) -> int:
-        """Number of interfaces between the layers."""
-        return self.layers - 1
-
-    @property
     def spans(self) -> tuple[int, ...]:
         """Elements along every layer."""
         return tuple(np.maximum(np.rint(self._shares * self.elements), 1).astype(int).tolist())
@@ -205,10 +199,9 @@ class LayersSettings(PlaneSettings):
         return columns * int(self.substructures_up)
 
     @property
-    def features(self) -> Features:
-        """The loop of a moment is over a rotation."""
-        is_over_displacement = self.bending != "moment"
-        return super().features._replace(loop_is_over_displacement=is_over_displacement)
+    def loop_is_over_displacement(self) -> bool:
+        """Whether it is not that of a moment, over a rotation."""
+        return bool(self.bending != "moment")
 
     def check_together(self) -> None:
         """Refuse lengths and factors on mu that are not one for each layer or interface, too."""

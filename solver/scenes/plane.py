@@ -15,7 +15,7 @@ from solver.definitions import POSITIVE, choice, count, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
-from solver.settings import Features, Settings
+from solver.settings import Settings
 
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
@@ -38,6 +38,7 @@ class PlaneSettings(Settings):
         "substructures_up",
     )
     kind = "plane"
+    opens = True
 
     instants = redefined(Settings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
@@ -59,7 +60,7 @@ class PlaneSettings(Settings):
         group="Contact",
         title="Normal stiffness",
         unit="N/m^3",
-        applies=lambda settings: settings.is_general and settings.features.opens,
+        applies=lambda settings: settings.is_general and settings.opens,
     )
     cohesion = redefined(
         Settings.param["cohesion"],
@@ -190,11 +191,6 @@ class PlaneSettings(Settings):
         return self.k_friction_scale, self.k_normal_scale
 
     @property
-    def n_bodies(self) -> int:
-        """Number of bodies."""
-        return 1
-
-    @property
     def order(self) -> int:
         """Order of the elements: 1 bilinear, 2 biquadratic."""
         return 2 if self.interpolation == "biquadratic" and self.applies("interpolation") else 1
@@ -210,10 +206,9 @@ class PlaneSettings(Settings):
         return self.n_bodies * math.prod(self.nodes)
 
     @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        jumps = 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
-        return Features(opens=True, jumps=jumps)
+    def jumps(self) -> int:
+        """Components of all contacts, which a reference condenses."""
+        return 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
 
     @property
     def n_substructures(self) -> int:

@@ -33,7 +33,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.refusal import RefusedError
 from solver.scenes.words import acting, counted
-from solver.settings import Features, Icon, Settings
+from solver.settings import Icon, Settings
 
 MOST_WIRES = 1000
 """Of a construction of one's own."""
@@ -63,7 +63,7 @@ class RopeSettings(Settings):
         "k_scale",
     )
     GROWS = ("layers",)
-    LOADS = ("curvature",)
+    loop_is_over_displacement = False
 
     construction = curve(
         "mooring",
@@ -182,30 +182,15 @@ class RopeSettings(Settings):
         return bool(self.bending == "clamp")
 
     @property
-    def n_wires(self) -> int:
+    def n_bodies(self) -> int:
         """Number of wires whose slip is sought; the core does not slip."""
         section = self.section
         return section.wires - 1 if self.is_clamped else len(section.layers)
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return self.n_wires * int(self.substructures)
-
-    @property
     def n_interfaces(self) -> int:
         """Number of interfaces between layers, and of the first with the core."""
         return len(self.section.layers)
-
-    @property
-    def n_nodes(self) -> int:
-        """Number of nodes of all wires."""
-        return self.n_wires * int(self.elements + 1)
-
-    @property
-    def features(self) -> Features:
-        """The loop is over the curvature."""
-        return Features(loop_is_over_displacement=False)
 
     @property
     def contact_unit(self) -> float:

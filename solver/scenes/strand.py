@@ -18,7 +18,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain
 from solver.scenes.words import acting, counted, is_steel
-from solver.settings import Features, Icon, Settings
+from solver.settings import Icon, Settings
 
 
 class StrandSettings(Settings):
@@ -38,7 +38,6 @@ class StrandSettings(Settings):
     kind = "wires"
     CHIEF = ("load", "seed", "peak", "friction", "substructures", "k_scale")
     GROWS = ("wires",)
-    LOADS = ("peak",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
 
     peak, load = shared.sized_path(
@@ -117,20 +116,14 @@ class StrandSettings(Settings):
         return int(self.wires * max(self.substructures, 2 if self.broken else 1))
 
     @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        jumps = (self.wires - 1) * (self.elements + 1)
-        return Features(has_break=bool(self.broken), jumps=jumps)
+    def jumps(self) -> int:
+        """Components of all contacts, which a reference condenses."""
+        return self.n_interfaces * (self.elements + 1)
 
     @property
-    def n_interfaces(self) -> int:
-        """Number of interfaces between the wires."""
-        return self.wires - 1
-
-    @property
-    def n_nodes(self) -> int:
-        """Number of nodes of all wires."""
-        return self.wires * (self.elements + 1)
+    def n_bodies(self) -> int:
+        """Number of wires."""
+        return int(self.wires)
 
     @property
     def contact_unit(self) -> float:

@@ -16,7 +16,7 @@ from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 MOST_BRICKS = 1500
 """Bricks at most: with their joints they take some 2 GB."""
@@ -45,7 +45,7 @@ class WallSettings(PlaneSettings):
         "multiscale",
     )
     GROWS = ("bricks", "courses")
-    LOADS = ("displacement", "traction")
+    has_joints = True
     PARTS: ClassVar = {}
 
     bricks = count(12, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
@@ -178,9 +178,14 @@ class WallSettings(PlaneSettings):
     )
 
     @property
-    def n_substructures(self) -> int:
+    def n_bodies(self) -> int:
         """Number of bricks, halves and a lintel among them."""
         return len(self._bricks)
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures: each brick is one."""
+        return self.n_bodies
 
     @cached_property
     def _bricks(self) -> list[Brick]:
@@ -203,17 +208,11 @@ class WallSettings(PlaneSettings):
         return super().ends | {"brick_groups": self.n_substructures}
 
     @property
-    def n_bodies(self) -> int:
-        """Number of bodies: each brick is one."""
-        return self.n_substructures
-
-    @property
-    def features(self) -> Features:
-        """A joint more has two bed nodes more."""
+    def jumps(self) -> int:
+        """Components of all contacts: a joint more has two bed nodes more."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
-        jumps = 2 * self.courses * (beds + heads)
-        return super().features._replace(jumps=jumps, bricks=self.n_substructures)
+        return int(2 * self.courses * (beds + heads))
 
     def check_together(self) -> None:
         """Refuse halves that no element fits, joints without a pair, and too many bricks."""
