@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Rows, choice, count, curve, quantity, redefined
+from solver.definitions import Parameter, Rows, choice, count, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
-from solver.discrete.stack import Spring, Stack, Support
+from solver.discrete.stack import Given, Side, Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.load_settings import POINTS, as_points
 from solver.loads import PRESETS
@@ -20,9 +20,126 @@ from solver.profiles import UNSEEN, gap_at, off_nodes
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola
-from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
-from solver.scenes.words import acting, is_steel, listed
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Icon
+
+LOADED_SIDES = ("left", "right", "top")
+COMPONENTS = ("normal", "tangential")
+PRESCRIBED: dict[str, tuple[bool, bool]] = {
+    "free": (False, False),
+    "roller": (True, False),
+    "clamped": (True, True),
+    "displacement": (True, True),
+    "traction": (False, False),
+    "pushed": (True, False),
+    "dragged": (False, True),
+}
+"""Whether the normal and the tangential displacement are prescribed; a traction is, otherwise."""
+AT_REST = ("free", "roller", "clamped")
+
+
+def _is_given(side: str, component: str, prescribed: bool | None = None) -> Callable[..., bool]:
+    """Make the test whether anything but rest is given along a side, and is of this kind."""
+
+    def applies(settings: PlaneSettings) -> bool:
+        kind = getattr(settings, side)
+        own = PRESCRIBED[kind][COMPONENTS.index(component)]
+        return kind not in AT_REST and prescribed in (None, own)
+
+    return applies
+
+
+def _settings_of(side: str, component: str) -> dict[str, Parameter]:
+    """Settings of what is given: how large it is, how it varies along the side, and over time."""
+    along = "x" if side == "top" else "y"
+    towards = "outward" if component == "normal" else f"along {along}"
+    axis = along if component == "tangential" else "yx"["xy".index(along)]
+    name, group = f"{side}_{component}", side.capitalize()
+    title, given = f"{group} {component}", _is_given(side, component)
+    size = {"group": group, "path": f"{name}_load", "places": (f"{side} {axis}",)}
+    return {
+        f"{name}_traction": quantity(
+            0.0,
+            (-1e15, 1e15),
+            (-2e8, 2e8),
+            f"Mean {component} traction on the {side} side, positive {towards}.",
+            title=f"{title} traction",
+            unit="Pa",
+            applies=_is_given(side, component, False),
+            **size,
+        ),
+        f"{name}_displacement": quantity(
+            0.0,
+            (-1e12, 1e12),
+            (-1e-4, 1e-4),
+            f"Mean {component} displacement of the {side} side, positive {towards}.",
+            title=f"{title} displacement",
+            unit="m",
+            applies=_is_given(side, component, True),
+            **size,
+        ),
+        f"{name}_slope": quantity(
+            0.0,
+            (-1e6, 1e6),
+            (-1.0, 1.0),
+            "How unevenly the value is spread along the side: from the mean times 1 - slope at "
+            "its lower or left end to the mean times 1 + slope at the other, and linear between.",
+            group=group,
+            title=f"{title} slope",
+            applies=given,
+        ),
+        f"{name}_load": curve(
+            "hold" if component == "normal" else "delayed",
+            PRESETS,
+            {"time": "s", "value": "Pa or m"},
+            f"{title} value over time: a preset that reaches the mean, or points (s, Pa or m).",
+            group=group,
+            title=f"{title} path",
+            applies=given,
+        ),
+    }
+
+
+class SideSettings(PlaneSettings):
+    """Settings of a rectangle whose left, right and top side can be held or loaded."""
+
+    def side(self, side: str) -> Side:
+        """What is given along a side, for x and y."""
+        normal, tangential = (self._given(side, component) for component in COMPONENTS)
+        return Side(tangential, normal) if side == "top" else Side(normal, tangential)
+
+    def _given(self, side: str, component: str) -> Given:
+        kind = getattr(self, side)
+        prescribed = PRESCRIBED[kind][COMPONENTS.index(component)]
+        if kind in AT_REST:
+            rest = np.zeros(self.n_instants)
+            return Given(prescribed, rest, rest)
+        sign = -1.0 if side == "left" and component == "normal" else 1.0
+        mean = sign * self.path(f"{side}_{component}_load")
+        return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
+
+
+def _define(side: str) -> None:
+    SideSettings.param.add_parameter(
+        side,
+        choice(
+            "free",
+            PRESCRIBED,
+            "What is given. free: nothing. roller: no normal displacement. clamped: no "
+            "displacement. displacement: both displacements. traction: both tractions. pushed: "
+            "normal displacement, tangential traction. dragged: tangential displacement, normal "
+            "traction.",
+            group=side.capitalize(),
+            title=f"{side.capitalize()} side",
+        ),
+    )
+    for component in COMPONENTS:
+        for name, definition in _settings_of(side, component).items():
+            SideSettings.param.add_parameter(name, definition)
+
+
+for _side in LOADED_SIDES:
+    _define(_side)
 
 
 def _gap_points(settings: BlockSettings) -> Rows:
@@ -190,17 +307,17 @@ class BlockSettings(SideSettings):
                 continue
             inward = -self.path(f"{side}_normal_load")
             along = self.path(f"{side}_tangential_load")
-            own = [acting(inward, "pressed", "pulled")] if inward.any() else []
-            own += [acting(along, "moved", "moved back")] if along.any() else []
-            acts += [f"{listed(own)} at its {side}"] if own else []
+            own = [shared.acting(inward, "pressed", "pulled")] if inward.any() else []
+            own += [shared.acting(along, "moved", "moved back")] if along.any() else []
+            acts += [f"{shared.listed(own)} at its {side}"] if own else []
         if self._body_force() is not None:
             acts.append("loaded all through")
         if self.has("spring"):
             acts.append("pulled back by a spring")
         held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
         acts += [f"held at its {side}" for side in held]
-        does = listed(acts) if acts else "left alone"
-        block = "A steel block" if is_steel(self.young) else "An elastic block"
+        does = shared.listed(acts) if acts else "left alone"
+        block = "A steel block" if shared.is_steel(self.young) else "An elastic block"
         return f"{block} lies on a {support} {rough} support; it is {does}."
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:

@@ -24,7 +24,6 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting
 from solver.settings import Icon
 
 PROFILES = {
@@ -269,7 +268,7 @@ class FaultSettings(PlaneSettings):
         path = self.path("injection_load")
         if not path.any():
             return "A fault is sheared; a quarter of it is seen."
-        moves = acting(path, "let in", "sucked out", back="{} and stopped")
+        moves = shared.acting(path, "let in", "sucked out", back="{} and stopped")
         return (
             f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
             "a quarter is seen."

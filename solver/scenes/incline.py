@@ -22,7 +22,6 @@ from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting
 from solver.settings import Icon
 
 
@@ -132,6 +131,6 @@ class InclineSettings(PlaneSettings):
     def sentence(self) -> str:
         """The block on its slope in a sentence."""
         path = self.path("slope_load")
-        moves = acting(path, "rises", "falls", "rises and falls", "rises and falls")
+        moves = shared.acting(path, "rises", "falls", "rises and falls", "rises and falls")
         slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
         return f"A block lies on a {slope}; a spring catches it when it slides down."

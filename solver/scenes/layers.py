@@ -27,7 +27,6 @@ from solver.profiles import UNSEEN
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting, counted, is_steel
 from solver.settings import Icon
 
 
@@ -265,12 +264,12 @@ class LayersSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """The stack in a sentence."""
-        kind = "steel" if is_steel(self.young) else "elastic"
+        kind = "steel" if shared.is_steel(self.young) else "elastic"
         lengths = "" if self.layer_lengths == "equal" else " of different lengths"
-        layers = f"{counted(self.layers).capitalize()} {kind} layers{lengths}"
+        layers = f"{self.layers} {kind} layers{lengths}"
         pressed = "are pressed together and rub" if self.pressure else "lie on each other"
         bent, pull = self.path("bend_load"), self.path("pull_load")
-        ends = acting(bent, "bent up", "bent down", "bent up and down")
+        ends = shared.acting(bent, "bent up", "bent down", "bent up and down")
         if pull.any():
-            ends = f"{ends}, and {acting(pull, 'pulled', 'pushed')}"
+            ends = f"{ends}, and {shared.acting(pull, 'pulled', 'pushed')}"
         return f"{layers}, held at the left, {pressed}; the right end is {ends}."

@@ -32,7 +32,6 @@ from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.refusal import RefusedError
-from solver.scenes.words import acting, counted
 from solver.settings import Icon, Settings
 
 MOST_WIRES = 1000
@@ -268,10 +267,10 @@ class RopeSettings(Settings):
 
     def sentence(self) -> str:
         """The strand in a sentence."""
-        bent = acting(self.path("load"), "bent up", "bent down", "bent up and down")
+        bent = shared.acting(self.path("load"), "bent up", "bent down", "bent up and down")
         where = "near a clamp" if self.is_clamped else "alike all along"
         tension = "" if self.tension_load == "steady" else "; its tension changes"
-        wires = counted(self.section.wires)
+        wires = self.section.wires
         return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
 
     def bent_strand(self) -> BentStrand | None:

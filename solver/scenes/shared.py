@@ -1,4 +1,4 @@
-"""Definitions of settings that several scenes have alike."""
+"""What several scenes have alike: definitions of settings, and words of their sentences."""
 
 from __future__ import annotations
 
@@ -36,6 +36,8 @@ BY_UNIT = {
     "Pa": "traction",
 }
 """What a path without a word of its own has, by its unit; else it is a force."""
+AGAIN = 2
+"""Times that a load comes and goes from which it does so again and again."""
 
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
@@ -259,3 +261,39 @@ def section(doc: str, group: str) -> param.Number[float]:
         title="Cross section S",
         unit="m^2",
     )
+
+
+def acting(
+    path: Array,
+    forward: str,
+    backward: str,
+    both: str = "{} to and fro",
+    back: str = "{} and let go",
+) -> str:
+    """What is done over time by a load: forward where it is positive, backward, or both.
+
+    It is said in other words that it is done both ways, and that it comes back.
+    """
+    size = np.abs(path)
+    peak = float(size.max(initial=0.0))
+    if peak == 0.0:
+        return f"not {forward}"
+    if min(path.max(), -path.min()) > 0.0:
+        return both.format(forward)
+    word = forward if path.max() > 0.0 else backward
+    over = np.concatenate([[False], size > 0.5 * peak, [False]])
+    times = int(np.sum(over[1:] & ~over[:-1]))
+    if times >= AGAIN:
+        return f"{word} again and again"
+    return back.format(word) if size[-1] < 0.5 * peak else word
+
+
+def listed(parts: Sequence[str]) -> str:
+    """Write parts with commas, and the last with an "and"."""
+    *first, last = parts
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def is_steel(young: float) -> bool:
+    """Whether something is about as stiff as steel."""
+    return 190e9 <= young <= 220e9

@@ -17,7 +17,6 @@ from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain
-from solver.scenes.words import acting, counted, is_steel
 from solver.settings import Icon, Settings
 
 
@@ -174,10 +173,10 @@ class StrandSettings(Settings):
 
     def sentence(self) -> str:
         """The strand in a sentence."""
-        kind = "steel" if is_steel(self.young) else "elastic"
-        wires = f"{counted(self.wires).capitalize()} {kind} wires"
+        kind = "steel" if shared.is_steel(self.young) else "elastic"
+        wires = f"{self.wires} {kind} wires"
         broken = f", number {self.broken} broken," if self.broken else ""
-        pulled = acting(self.path("load"), "pulled", "pushed")
+        pulled = shared.acting(self.path("load"), "pulled", "pushed")
         grip = " by one grip" if self.grip == "displacement" else ""
         if self.pressure_load != "steady":
             grip += "; what presses them together changes"

@@ -15,7 +15,6 @@ from solver.discrete.bricks import Brick, bonded, grouped, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting, counted
 from solver.settings import Icon
 
 MOST_BRICKS = 1500
@@ -262,13 +261,13 @@ class WallSettings(PlaneSettings):
         """The wall in a sentence."""
         way = "moved" if self.top == "moved" else "pulled"
         ways = (f"{way} {where}" for where in ("to the right", "to the left", "to and fro"))
-        driven = acting(self.path("top_load"), *ways)
+        driven = shared.acting(self.path("top_load"), *ways)
         ground = "a tilted ground" if np.any(self.path("slope_load")) else "the ground"
         pressed = ", pressed from above," if np.any(self.path("pressure_load")) else ""
         if self.n_substructures == 1:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
         bond = "in running bond" if self.bond == "running" else "one above the other"
         hole = " round an opening" if self.opening else ""
-        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}{hole}{pressed}"
+        bricks = f"{self.n_substructures} bricks {bond}{hole}{pressed}"
         touch = "and rub on" if self.is_rough else "and slide freely on"
         return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."
