@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.definitions import ANY, Rows, about, choice, curve, quantity
+from solver.definitions import ANY, CONTACT, Rows, about
 from solver.laws import FrictionLaw, Strength
 from solver.method_settings import MethodSettings
 from solver.refusal import plain
@@ -20,7 +20,7 @@ STIFFNESSES = 1e-9, 1e9
 class FrictionSettings(MethodSettings):
     """Settings of the law of friction, beside the coefficient."""
 
-    friction_law = choice(
+    friction_law = CONTACT.choice(
         "coulomb",
         ["coulomb", "compliant", "slip-dependent", "general"],
         "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
@@ -28,53 +28,44 @@ class FrictionSettings(MethodSettings):
         "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
         "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
         "and a cap.",
-        group="Contact",
-        title="Friction law",
     )
-    contact_stiffness = quantity(
+    contact_stiffness = CONTACT.quantity(
         100.0,
         (1e-3, 1e9),
         (1.0, 1e4),
         "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
         "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
         "multiple of the stiffest E S over the square of the longest L.",
-        group="Contact",
-        title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",
     )
-    tangential_stiffness = quantity(
+    tangential_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e4, 1e9),
         "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
         "bond, a soft layer. 0: rigid.",
-        group="Contact",
-        title="Tangential stiffness",
         unit="N/m^2",
         applies=lambda settings: settings.is_general,
     )
-    cohesion = quantity(
+    cohesion = CONTACT.quantity(
         0.0,
         (0.0, 1e15),
         (0.0, 5000.0),
         "Friction force per length of rod without any pressure, beside μ p.",
-        group="Contact",
         title="Cohesion c",
         unit="N/m",
         applies=lambda settings: settings.is_general,
     )
-    friction_cap = quantity(
+    friction_cap = CONTACT.quantity(
         0.0,
         (0.0, 1e15),
         (0.0, 5000.0),
         "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
         "none.",
-        group="Contact",
-        title="Friction cap",
         unit="N/m",
         applies=lambda settings: settings.is_general,
     )
-    strength = curve(
+    strength = CONTACT.curve(
         "constant",
         dict.fromkeys(("constant", "linear"), lambda settings: settings.strength_points()),
         {"slip": "m", "factor": ""},
@@ -82,27 +73,23 @@ class FrictionSettings(MethodSettings):
         "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
         "peak, softening and a residual; the last one stays.",
         bounds=(ANY, (0.0, LARGEST_FACTOR)),
-        group="Contact",
         title="Strength over slip",
         applies=lambda settings: settings.is_general,
     )
 
-    friction_ratio = quantity(
+    friction_ratio = CONTACT.quantity(
         1.5,
         (0.0, 1e3),
         (0.5, 2.0),
         "Last friction over the first: above 1 it hardens with slip, below it softens.",
-        group="Contact",
         title="Last friction over first",
         applies=lambda settings: settings.is_linear_in_slip,
     )
-    slip_length = quantity(
+    slip_length = CONTACT.quantity(
         1e-4,
         (1e-12, 1e6),
         (1e-6, 1e-2),
         "Accumulated slip of a point at which its friction is the last.",
-        group="Contact",
-        title="Slip length",
         unit="m",
         applies=lambda settings: settings.is_linear_in_slip,
     )

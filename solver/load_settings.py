@@ -9,7 +9,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, Rows, about, count, quantity
+from solver.definitions import LOAD, CurveParameter, Rows, about
 from solver.friction_settings import FrictionSettings
 from solver.loads import (
     NO_KNOTS,
@@ -38,41 +38,34 @@ class LoadSettings(FrictionSettings):
 
     elements: param.Integer[int]
 
-    cycles = count(
+    cycles = LOAD.count(
         1,
         (1, 5000),
         (1, 20),
         "How often what the presets of load paths do, after their beginning, is done in the "
         "interval; a preset that does not come back (ramp, hold, random) stays as it is.",
-        group="Load",
-        title="Cycles",
         applies=lambda settings: settings.is_repeatable,
     )
-    duration = quantity(
+    duration = LOAD.quantity(
         1.0,
         (1e-9, 1e9),
         (0.1, 10.0),
         "Length of the time interval. Friction does not feel the rate: only the time axis changes.",
-        group="Load",
         title="Duration T",
         unit="s",
     )
-    instants = count(
+    instants = LOAD.count(
         101,
         (1, 20_001),
         (11, 401),
         "Number of instants at which the problem is solved, at least: points at which a path turns "
         "or bends are instants too, and the load is linear between them.",
-        group="Load",
-        title="Instants",
     )
-    seed = count(
+    seed = LOAD.count(
         1,
         (0, 2**31 - 1),
         (0, 50),
         "Seed of random load paths: the same seed gives the same path.",
-        group="Load",
-        title="Seed",
         applies=lambda settings: any(
             getattr(settings, name) == "random" for name in settings.paths
         ),

@@ -18,7 +18,7 @@ from app.refusals import message_of
 from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
-from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
@@ -296,6 +296,6 @@ def _converted(values: str, convert: Callable[[str], str]) -> str:
 
 def _titled(definition: Parameter, settings: Settings) -> str:
     """Title of a setting, with its group where another has the same."""
-    titles = [about(other).title for other in settings.definitions().values()]
-    kind = about(definition)
-    return f"{kind.title} ({kind.group})" if titles.count(kind.title) > 1 else kind.title
+    titles = [title_of(other) for other in settings.definitions().values()]
+    title = title_of(definition)
+    return f"{title} ({about(definition).group})" if titles.count(title) > 1 else title

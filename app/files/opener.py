@@ -26,7 +26,7 @@ from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.widgets import button, changing_text, dialog, download
 from solver.checked import dump
-from solver.definitions import about
+from solver.definitions import title_of
 from solver.files import settings_from_toml
 from solver.refusal import RefusedError
 from solver.settings import Settings
@@ -150,7 +150,7 @@ class TableOpener:
         units = {unit for _, unit in axes}
         kinds = {"Measured loop": LOOP}
         for name, definition in paths_of(settings).items():
-            title = about(definition).title
+            title = title_of(definition)
             kinds[title] = name
             if settings.curve_units(name)[1] in units:
                 kinds[f"Measured loop, and {title}"] = f"{BOTH}{name}"

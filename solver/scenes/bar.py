@@ -10,7 +10,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import ANY, POSITIVE, CurveParameter, choice, count, quantity
+from solver.definitions import ANY, LOAD, POSITIVE, CurveParameter, Group
 from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
@@ -39,7 +39,8 @@ SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
 
 
-ENDS = ("held", "spring", "pulled", "free")
+BAR, ENDS = Group("Bar"), Group("Ends")
+KINDS = ("held", "spring", "pulled", "free")
 HOLDING = ("held", "spring")
 PATHS = {
     "left": {"force": "left_load", "displacement": "support_load"},
@@ -55,24 +56,22 @@ def _is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
 
 def _end(side: str, default: str) -> param.Selector[str]:
     """Define what holds or pulls an end."""
-    return choice(
+    return ENDS.choice(
         default,
-        ENDS,
+        KINDS,
         f"What is at the {side} end. held: it stands still, or is moved. spring: a spring holds it "
         "to what stands still, or is moved. pulled: by a force. free: nothing.",
-        group="Ends",
         title=f"{side.capitalize()} end",
     )
 
 
 def _spring(side: str) -> param.Number[float]:
     """Define the spring of an end."""
-    return quantity(
+    return ENDS.quantity(
         1e6,
         (1e-9, 1e18),
         (1e3, 1e9),
         f"Stiffness of the spring at the {side} end.",
-        group="Ends",
         title=f"Spring at the {side} end",
         unit="N/m",
         applies=_is_end(side, "spring"),
@@ -91,7 +90,7 @@ def _moved_end(side: str, path: str, preset: str) -> tuple[param.Number[float], 
         f"Largest displacement of what holds the {side} end; 0 leaves it where it is.",
         preset,
         applies=_is_end(side, *HOLDING),
-        group="Ends",
+        group=ENDS,
         places=(f"{side} x",),
     )
 
@@ -180,7 +179,7 @@ class BarSettings(Settings):
         "Largest axial force at the left end, positive to the right.",
         "sine",
         applies=_is_end("left", "pulled"),
-        group="Ends",
+        group=ENDS,
         places=("left x",),
     )
     body_force, body_load = shared.sized_path(
@@ -208,15 +207,14 @@ class BarSettings(Settings):
     temperature_profile = shared.profile(
         "the temperature",
         "the bar",
-        group="Load",
+        group=LOAD,
         applies=lambda settings: settings.acts("temperature_load"),
     )
-    expansion = quantity(
+    expansion = LOAD.quantity(
         1.2e-5,
         (1e-12, 1.0),
         (1e-6, 1e-4),
         "Strain of the bar without any force, per kelvin.",
-        group="Load",
         title="Thermal expansion",
         unit="1/K",
         applies=lambda settings: settings.acts("temperature_load"),
@@ -238,24 +236,22 @@ class BarSettings(Settings):
         "the bar",
         SETTLEMENTS,
         "a preset (linear: nothing at the left end), or points (m, factor).",
-        group="Load",
+        group=LOAD,
         applies=lambda settings: settings.acts("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
     pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
     friction_profile = shared.profile("μ", "the bar", bounds=POSITIVE)
     pressure_profile = shared.profile("p", "the bar", bounds=POSITIVE)
-    elements = count(
+    elements = BAR.count(
         50,
         (1, 20_000),
         (10, 400),
         "Number of linear elements, equal in length.",
-        group="Bar",
-        title="Elements",
     )
-    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", "Bar")
-    young = shared.young("Bar")
-    section = shared.section("Area of the cross section.", "Bar")
+    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", BAR)
+    young = shared.young(BAR)
+    section = shared.section("Area of the cross section.", BAR)
     section_profile = shared.profile(
         "S",
         "the bar",
@@ -263,7 +259,7 @@ class BarSettings(Settings):
         "a preset, taken at the middle of every element; or points (m, factor), where an element "
         "is as stiff as all that lies in it.",
         bounds=(ANY, (1.0 / LARGEST_CONTRAST, LARGEST_CONTRAST)),
-        group="Bar",
+        group=BAR,
     )
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Parameter, Rows, choice, count, curve, quantity, redefined
+from solver.definitions import BODY, CONTACT, Group, Parameter, Rows, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Given, Side, Spring, Stack, Support
@@ -23,6 +23,7 @@ from solver.scenes.exact import exact_on_spring, exact_parabola
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Icon
 
+BODY_FORCE = Group("Body force")
 LOADED_SIDES = ("left", "right", "top")
 COMPONENTS = ("normal", "tangential")
 PRESCRIBED: dict[str, tuple[bool, bool]] = {
@@ -54,46 +55,41 @@ def _settings_of(side: str, component: str) -> dict[str, Parameter]:
     along = "x" if side == "top" else "y"
     towards = "outward" if component == "normal" else f"along {along}"
     axis = along if component == "tangential" else "yx"["xy".index(along)]
-    name, group = f"{side}_{component}", side.capitalize()
-    title, given = f"{group} {component}", _is_given(side, component)
-    size = {"group": group, "path": f"{name}_load", "places": (f"{side} {axis}",)}
+    name, group = f"{side}_{component}", Group(side.capitalize())
+    title, given = f"{group.name} {component}", _is_given(side, component)
+    size = {"path": f"{name}_load", "places": (f"{side} {axis}",)}
     return {
-        f"{name}_traction": quantity(
+        f"{name}_traction": group.quantity(
             0.0,
             (-1e15, 1e15),
             (-2e8, 2e8),
             f"Mean {component} traction on the {side} side, positive {towards}.",
-            title=f"{title} traction",
             unit="Pa",
             applies=_is_given(side, component, False),
             **size,
         ),
-        f"{name}_displacement": quantity(
+        f"{name}_displacement": group.quantity(
             0.0,
             (-1e12, 1e12),
             (-1e-4, 1e-4),
             f"Mean {component} displacement of the {side} side, positive {towards}.",
-            title=f"{title} displacement",
             unit="m",
             applies=_is_given(side, component, True),
             **size,
         ),
-        f"{name}_slope": quantity(
+        f"{name}_slope": group.quantity(
             0.0,
             (-1e6, 1e6),
             (-1.0, 1.0),
             "How unevenly the value is spread along the side: from the mean times 1 - slope at "
             "its lower or left end to the mean times 1 + slope at the other, and linear between.",
-            group=group,
-            title=f"{title} slope",
             applies=given,
         ),
-        f"{name}_load": curve(
+        f"{name}_load": group.curve(
             "hold" if component == "normal" else "delayed",
             PRESETS,
             {"time": "s", "value": "Pa or m"},
             f"{title} value over time: a preset that reaches the mean, or points (s, Pa or m).",
-            group=group,
             title=f"{title} path",
             applies=given,
         ),
@@ -122,14 +118,13 @@ class SideSettings(PlaneSettings):
 def _define(side: str) -> None:
     SideSettings.param.add_parameter(
         side,
-        choice(
+        Group(side.capitalize()).choice(
             "free",
             PRESCRIBED,
             "What is given. free: nothing. roller: no normal displacement. clamped: no "
             "displacement. displacement: both displacements. traction: both tractions. pushed: "
             "normal displacement, tangential traction. dragged: tangential displacement, normal "
             "traction.",
-            group=side.capitalize(),
             title=f"{side.capitalize()} side",
         ),
     )
@@ -167,76 +162,68 @@ class BlockSettings(SideSettings):
         "k_scale",
     )
 
-    gap = curve(
+    gap = CONTACT.curve(
         "parabola",
         dict.fromkeys(("flat", "parabola"), _gap_points),
         {"position": "m", "gap": "m"},
         "Opening between the undeformed body and its support: a preset, or points (m, m).",
-        group="Contact",
-        title="Gap",
     )
-    radius = quantity(
+    radius = CONTACT.quantity(
         5.0,
         (1e-9, 1e15),
         (0.5, 50.0),
         "Radius R of the parabola; the gap is (x - length / 2)^2 / (2 R).",
-        group="Contact",
         title="Radius R",
         unit="m",
         applies=lambda settings: settings.gap == "parabola",
         places=("gap",),
     )
-    spring = quantity(
+    spring = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (0.0, 1e8),
         "Stiffness of a spring that pulls the foot of the right side back as it moves to the left, "
         "for a metre of thickness. 0: none.",
-        group="Contact",
         title="Spring stiffness",
         unit="N/m",
         applies=lambda settings: not any(PRESCRIBED[settings.right]),
     )
-    elements = count(
+    elements = BODY.count(
         48,
         (1, 5000),
         (8, 192),
         "Number of elements along a body, equal in size.",
-        group="Body",
         title="Elements along",
     )
-    length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", "Body")
+    length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", BODY)
     height = shared.size(
         0.05,
         (0.01, 1.0),
         "Height",
         "Height of the body. Shear bends one as high as long: its foot tilts, and a contact on a "
         "parabola rolls.",
-        "Body",
+        BODY,
     )
-    body_force_x = quantity(
+    body_force_x = BODY_FORCE.quantity(
         0.0,
         (-1e15, 1e15),
         (-1e9, 1e9),
         "Largest force per volume along x.",
-        group="Body force",
         title="Body force along x",
         unit="N/m^3",
     )
-    body_force_y = quantity(
+    body_force_y = BODY_FORCE.quantity(
         0.0,
         (-1e15, 1e15),
         (-1e9, 1e9),
         "Largest force per volume along y, upward; weight is negative.",
-        group="Body force",
         title="Body force along y",
         unit="N/m^3",
     )
-    body_load = choice(
+    body_load = BODY_FORCE.choice(
         "hold",
         PRESETS,
         "Path of the body force over time.",
-        group="Body force",
         title="Path of the body force",
         applies=lambda settings: settings.body_force_x != 0.0 or settings.body_force_y != 0.0,
     )

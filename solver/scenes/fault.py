@@ -13,7 +13,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import POSITIVE, SettingError, quantity, redefined
+from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
@@ -137,12 +137,11 @@ class FaultSettings(PlaneSettings):
         "from nothing. pulses: down and up again, six times. ",
         places=("left x",),
     )
-    shear_stress = quantity(
+    shear_stress = LOAD.quantity(
         3.6e6,
         (-1e15, 1e15),
         (0.0, 1e7),
         "Shear stress τ far from the fault, from the beginning.",
-        group="Load",
         title="Shear stress τ",
         unit="Pa",
         places=("top x",),
@@ -154,34 +153,30 @@ class FaultSettings(PlaneSettings):
         doc="Length of the time interval. Friction does not feel the rate, but a fluid needs time: "
         "it spreads over sqrt(4 α t).",
     )
-    normal_stress = quantity(
+    normal_stress = CONTACT.quantity(
         1e7,
         (0.0, 1e15),
         (1e6, 1e8),
         "Pressure σ between both sides of the fault, less that of the fluid there before.",
-        group="Contact",
         title="Normal stress σ",
         unit="Pa",
     )
     normal_profile = shared.profile("σ", "the fault", PROFILES, bounds=POSITIVE)
-    diffusivity = quantity(
+    diffusivity = CONTACT.quantity(
         0.1,
         (1e-15, 1e9),
         (1e-3, 10.0),
         "Hydraulic diffusivity α along the fault.",
-        group="Contact",
         title="Diffusivity α",
         unit="m^2/s",
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
     friction_profile = shared.profile("μ", "the fault", PROFILES, bounds=POSITIVE)
     length = shared.size(
-        600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
+        600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", BODY
     )
-    height = shared.size(
-        600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", "Body"
-    )
-    young = shared.young("Body", 6e10, (1e9, 1e12))
+    height = shared.size(600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", BODY)
+    young = shared.young(BODY, 6e10, (1e9, 1e12))
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
     @property

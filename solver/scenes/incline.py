@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import quantity, redefined
+from solver.definitions import BODY, CONTACT, LOAD, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
@@ -52,39 +52,35 @@ class InclineSettings(PlaneSettings):
         PULLS,
         title="Slope θ",
     )
-    weight = quantity(
+    weight = LOAD.quantity(
         1000.0,
         (0.0, 1e15),
         (0.0, 5000.0),
         "Weight W of the block, for a metre of thickness.",
-        group="Load",
         title="Weight W",
         unit="N",
         places=("body",),
     )
-    slack = quantity(
+    slack = CONTACT.quantity(
         2e-4,
         (0.0, 1e6),
         (0.0, 1e-3),
         "How far the block may slide before the spring pulls.",
-        group="Contact",
-        title="Slack",
         unit="m",
     )
-    spring = quantity(
+    spring = CONTACT.quantity(
         2e6,
         (1e-6, 1e18),
         (1e5, 1e8),
         "Stiffness of the spring, for a metre of thickness.",
-        group="Contact",
         title="Spring stiffness",
         unit="N/m",
     )
-    length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", "Body")
+    length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", BODY)
     height = shared.size(
-        0.05, (0.01, 1.0), "Height h", "Height of the block; it tips where tan θ > b/h.", "Body"
+        0.05, (0.01, 1.0), "Height h", "Height of the block; it tips where tan θ > b/h.", BODY
     )
-    young = shared.young("Body", 1e7, (1e6, 1e12))
+    young = shared.young(BODY, 1e7, (1e6, 1e12))
     elements = redefined(PlaneSettings.param["elements"], 24)
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
 

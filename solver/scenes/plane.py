@@ -11,7 +11,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import POSITIVE, choice, count, quantity, redefined
+from solver.definitions import BODY, CONTACT, DECOMPOSITION, METHOD, POSITIVE, redefined
 from solver.discrete.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
@@ -51,14 +51,12 @@ class PlaneSettings(Settings):
         "joint, a soft layer. 0: rigid.",
         unit="N/m^3",
     )
-    normal_stiffness = quantity(
+    normal_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e8, 1e14),
         "Stiffness of a spring across the interface, in series with contact that may open, per "
         "area. 0: rigid.",
-        group="Contact",
-        title="Normal stiffness",
         unit="N/m^3",
         applies=lambda settings: settings.is_general and settings.opens,
     )
@@ -77,44 +75,37 @@ class PlaneSettings(Settings):
         doc="Largest friction per area that pressure and cohesion make, before slip. 0: none.",
         unit="Pa",
     )
-    plane = choice(
+    plane = BODY.choice(
         "strain",
         ["strain", "stress"],
         "strain: a body that is long across the picture. stress: a thin one.",
-        group="Body",
-        title="Plane",
     )
-    young = shared.young("Body")
-    poisson = quantity(
+    young = shared.young(BODY)
+    poisson = BODY.quantity(
         0.3,
         (0.0, 0.4999),
         (0.0, 0.49),
         "Poisson's ratio.",
-        group="Body",
         title="Poisson's ratio ν",
     )
-    elements = count(
+    elements = BODY.count(
         48,
         (2, 5000),
         (8, 192),
         "Number of elements along a body, equal in size.",
-        group="Body",
         title="Elements along",
     )
-    elements_up = count(
+    elements_up = BODY.count(
         24,
         (1, 5000),
         (2, 96),
         "Number of elements over the height of a body.",
-        group="Body",
-        title="Elements up",
     )
-    interpolation = choice(
+    interpolation = BODY.choice(
         "bilinear",
         ["bilinear", "biquadratic"],
         "bilinear, with incompatible modes, or biquadratic, with twice as many nodes each way: "
         "smooth tractions where bodies are nearly incompressible.",
-        group="Body",
         title="Elements",
     )
     substructures: param.Integer[int] = redefined(
@@ -122,39 +113,32 @@ class PlaneSettings(Settings):
         4,
         title="Substructures along",
     )
-    substructures_up = count(
+    substructures_up = DECOMPOSITION.count(
         2,
         (1, 5000),
         (1, 16),
         "Number of pieces (substructures) over the height of a body.",
-        group="Decomposition",
-        title="Substructures up",
     )
-    macro_degree = count(
+    macro_degree = DECOMPOSITION.count(
         1,
         (0, 10),
         (0, 4),
         "What the coarse problem balances on each side of a substructure. 0: resultants; 1: also "
         "moments and linear extension. Sides more than three times as long as the substructure is "
         "deep get more by themselves.",
-        group="Decomposition",
-        title="Macro degree",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
     )
-    k_normal_scale = quantity(
+    k_normal_scale = METHOD.quantity(
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
         "Multiplies k once more, along the normals of contacts alone.",
-        group="Method",
         title="Normal k factor",
     )
-    start = choice(
+    start = METHOD.choice(
         "zero",
         ["zero"],
         "Where the iteration starts: from zero.",
-        group="Method",
-        title="Start",
         applies=lambda settings: False,
     )
 

@@ -8,16 +8,7 @@ from functools import cached_property
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import (
-    POSITIVE,
-    Rows,
-    SettingError,
-    choice,
-    count,
-    curve,
-    quantity,
-    redefined,
-)
+from solver.definitions import POSITIVE, Rows, SettingError, redefined
 from solver.discrete.cross_section import (
     CONSTRUCTIONS,
     MOST_LAYERS,
@@ -64,7 +55,7 @@ class RopeSettings(Settings):
     GROWS = ("layers",)
     loop_is_over_displacement = False
 
-    construction = curve(
+    construction = shared.STRAND.curve(
         "mooring",
         dict.fromkeys(CONSTRUCTIONS, lambda settings: settings.section.rows),
         {"wires": "", "diameter": "m", "lay angle": "°", "modulus": "Pa"},
@@ -74,16 +65,12 @@ class RopeSettings(Settings):
         "lay angle (°, negative the other way round) and Young's modulus (Pa); the first row is "
         "the core, 1 wire of 0°.",
         bounds=((1, 500), (1e-6, 1.0), (-75.0, 75.0), (1.0, 1e18)),
-        group="Strand",
-        title="Construction",
     )
-    layers = count(
+    layers = shared.STRAND.count(
         3,
         (1, MOST_LAYERS),
         (1, MOST_LAYERS),
         "Number of layers on the core: 7, 19, 37, 61 or 91 wires.",
-        group="Strand",
-        title="Layers",
         applies=lambda settings: settings.construction == "mooring",
     )
     curvature, load = shared.sized_path(
@@ -117,31 +104,28 @@ class RopeSettings(Settings):
         places=("right x",),
     )
     instants = redefined(Settings.param["instants"], 61)
-    bending = choice(
+    bending = shared.STRAND.choice(
         "clamp",
         ["uniform", "clamp"],
         "uniform: the same curvature all along; wires of a layer are then alike, and one of each "
         "stands for all. clamp: the curvature falls away from a clamp, and every wire is there.",
-        group="Strand",
         title="Where it is bent",
     )
-    fall_off = quantity(
+    fall_off = shared.STRAND.quantity(
         0.0,
         (0.0, 1e4),
         (0.0, 1.0),
         "Distance λ from the clamp at which the curvature is exp(-1) of that at the clamp. 0: "
         "sqrt(E I / T), of the bending stiffness while nothing slips and the largest tension.",
-        group="Strand",
         title="Fall-off λ",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
     )
-    length = quantity(
+    length = shared.STRAND.quantity(
         0.6,
         (1e-3, 1e3),
         (0.1, 5.0),
         "Length of strand from the clamp on; beyond it nothing slips. Some three times λ.",
-        group="Strand",
         title="Length L",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
@@ -152,13 +136,12 @@ class RopeSettings(Settings):
     friction_factors = shared.friction_factors(
         "between a layer and what it lies on, from the core outwards"
     )
-    elements = count(
+    elements = shared.STRAND.count(
         60,
         (2, 20_000),
         (10, 400),
         "Number of linear elements of a wire: of its length, or of half a turn where it is bent "
         "alike all along.",
-        group="Strand",
         title="Elements per wire",
     )
     substructures = redefined(

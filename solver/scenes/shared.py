@@ -11,11 +11,12 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import POSITIVE, CurveParameter, Rows, curve, quantity
+from solver.definitions import CONTACT, LOAD, POSITIVE, CurveParameter, Group, Rows
 from solver.loads import PRESETS, PRESSURES, Preset, interpolate
 from solver.profiles import means, shares_of
 from solver.settings import Settings
 
+STRAND = Group("Strand")
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
     "rising": ((0.0, 0.2), (1.0, 1.8)),
@@ -42,40 +43,37 @@ AGAIN = 2
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
     """Define a coefficient of friction."""
-    return quantity(
+    return CONTACT.quantity(
         0.3,
         (0.0, largest),
         (0.0, 1.0),
         f"Coefficient of friction {which}.",
-        group="Contact",
         title="Friction coefficient μ",
     )
 
 
 def profile(
-    what: str, body: str, presets: Mapping[str, Rows] = PROFILES, doc: str = "", **others: Any
+    what: str,
+    body: str,
+    presets: Mapping[str, Rows] = PROFILES,
+    doc: str = "",
+    group: Group = CONTACT,
+    **others: Any,
 ) -> CurveParameter:
-    """Define a factor along a body; its default is the first preset.
+    """Define a factor on something along a body; its default is the first preset.
 
-    Parameters
-    ----------
-    what, body
-        On what, and along what.
-    presets
-        Points over shares of the length, by name.
-    doc
-        Of a factor that is more than a preset or points.
-    others
-        Of a curve, and entries of `About`.
+    Presets are points over shares of the length. Help is needed of what is more than a preset or
+    points; `others` are what a curve takes.
     """
     name = what.removeprefix("the ")
     title = name if name == what else name.capitalize()
-    return curve(
+    return group.curve(
         next(iter(presets)),
         {preset: partial(_over_length, points) for preset, points in presets.items()},
         {"position": "m", "factor": ""},
         f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
-        **{"group": "Contact", "title": f"{title} along {body}"} | others,
+        title=f"{title} along {body}",
+        **others,
     )
 
 
@@ -101,14 +99,13 @@ def at_nodes(settings: Settings, places: Array, *profiles: str, order: int = 1) 
 
 def friction_factors(which: str) -> CurveParameter:
     """Define how mu varies from interface to interface."""
-    return curve(
+    return CONTACT.curve(
         "same",
         {"same": lambda settings: same_for(settings.n_interfaces)},
         {"interface": "", "factor": ""},
         f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
         "each, numbered from 1 on.",
         bounds=POSITIVE,
-        group="Contact",
         title="μ of each interface",
     )
 
@@ -127,39 +124,24 @@ def sized_path(
     path_doc: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
     bounds: Sequence[tuple[float, float]] = (),
+    group: Group = LOAD,
     **record: Any,
 ) -> tuple[param.Number[float], CurveParameter]:
     """Define the largest value that presets of a path over time reach, and the path.
 
-    Where that value is 0 by default, there is no path as long as it is.
-
-    Parameters
-    ----------
-    path
-        Name of the setting of the path.
-    what, unit
-        What it is a path of, and its unit.
-    default, ends, slider, doc
-        Of the value.
-    preset, presets
-        The default of the path, and all that there are.
-    path_doc
-        What there is to say of the path beside that it is one.
-    applies, bounds
-        Of the value and the path; of the columns of the path.
-    record
-        Entries of `About`.
+    Where that value is 0 by default, there is no path as long as it is. `path` is the name of its
+    setting, `path_doc` what there is to say of it beside that it is one. The path starts as a
+    `preset`, with `bounds` of its columns; `record` is of the value.
     """
-    record = {"group": "Load", "title": f"{what[:1].upper()}{what[1:]}"} | record
-    size = quantity(default, ends, slider, doc, unit=unit, applies=applies, path=path, **record)
+    record = {"title": f"{what[:1].upper()}{what[1:]}", "unit": unit, "path": path} | record
+    size = group.quantity(default, ends, slider, doc, applies=applies, **record)
     named = (kind for kind in ("pressure", "tension") if kind in what)
-    over_time = curve(
+    over_time = group.curve(
         preset,
         presets,
         {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
         f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
         bounds=bounds,
-        group=record["group"],
         title=f"Path of the {what}",
         applies=lambda settings: applies(settings) and bool(default or settings.acts(path)),
     )
@@ -180,7 +162,7 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
         PRESSURES,
         path_doc=OF_PRESSURES,
         bounds=POSITIVE,
-        group="Contact",
+        group=CONTACT,
         title="Pressure p",
         places=("top y",),
     )
@@ -229,35 +211,33 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
 
 
 def size(
-    default: float, slider: tuple[float, float], title: str, doc: str, group: str
+    default: float, slider: tuple[float, float], title: str, doc: str, group: Group
 ) -> param.Number[float]:
     """Define a length of a body."""
-    return quantity(default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m")
+    return group.quantity(default, (1e-6, 1e4), slider, doc, title=title, unit="m")
 
 
 def young(
-    group: str, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
+    group: Group, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
 ) -> param.Number[float]:
     """Define Young's modulus, that of steel by default."""
-    return quantity(
+    return group.quantity(
         default,
         (1.0, 1e18),
         slider,
         "Young's modulus.",
-        group=group,
         title="Young's modulus E",
         unit="Pa",
     )
 
 
-def section(doc: str, group: str) -> param.Number[float]:
+def section(doc: str, group: Group) -> param.Number[float]:
     """Define the area of the cross section of a rod, that of Table 1 by default."""
-    return quantity(
+    return group.quantity(
         3.14e-6,
         (1e-15, 100.0),
         (1e-7, 1e-4),
         doc,
-        group=group,
         title="Cross section S",
         unit="m^2",
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import POSITIVE, choice, count, quantity, redefined
+from solver.definitions import LOAD, POSITIVE, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
@@ -53,49 +53,42 @@ class StrandSettings(Settings):
         title="Peak tension",
         places=("right x",),
     )
-    grip = choice(
+    grip = LOAD.choice(
         "force",
         ["force", "displacement"],
         "What is given at the right end. force: the same force for every wire. displacement: the "
         "same displacement for all, that which an unbroken wire needs for this force.",
-        group="Load",
-        title="Grip",
     )
     friction = shared.friction("mu between neighbouring wires")
     friction_factors = shared.friction_factors("between two wires, from the first on")
     pressure, pressure_load = shared.pressure("neighbouring wires on each other", 20_000.0)
-    wires = count(
+    wires = shared.STRAND.count(
         3,
         (2, 200),
         (2, 20),
         "Number of wires side by side; each rubs on the one before it and the one after it.",
-        group="Strand",
-        title="Wires",
     )
-    broken = count(
+    broken = shared.STRAND.count(
         2,
         (0, 200),
         (0, 20),
         "Which wire is broken, counted from 1; 0: none.",
-        group="Strand",
         title="Broken wire",
     )
-    break_position = quantity(
+    break_position = shared.STRAND.quantity(
         0.5,
         (0.0, 1.0),
         (0.0, 1.0),
         "Where the wire is broken, as a share of the length; at the nearest node between the ends.",
-        group="Strand",
         title="Position of the break",
         places=("break",),
         applies=lambda settings: settings.broken > 0,
     )
-    elements = count(
+    elements = shared.STRAND.count(
         60,
         (2, 20_000),
         (10, 400),
         "Number of linear elements of a wire, equal in length.",
-        group="Strand",
         title="Elements per wire",
     )
     substructures = redefined(
@@ -105,9 +98,9 @@ class StrandSettings(Settings):
         "broken: all wires are cut at the break, and alike.",
         title="Substructures per wire",
     )
-    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
-    young = shared.young("Strand")
-    section = shared.section("Area of the cross section of a wire.", "Strand")
+    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", shared.STRAND)
+    young = shared.young(shared.STRAND)
+    section = shared.section("Area of the cross section of a wire.", shared.STRAND)
 
     @property
     def n_substructures(self) -> int:
