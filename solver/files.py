@@ -29,8 +29,6 @@ IN_FILES = {"str": str, "int": int, "float": (int, float), "tuple[str, ...]": li
 INDICATORS = "indicator", "behaviour", "estimated_error"
 ERRORS = "error_displacement", "error_force"
 """What is known of every iteration, beside its time; errors where there is a reference."""
-OF_BASES = "modes", "added", "updated", "enriched", "dropped"
-"""What is known of every separated basis at every iteration."""
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
@@ -162,13 +160,6 @@ def scene_settings(scene: object) -> type[Settings]:
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
     last = solution.records[-1] if solution.records else None
-    counts = [basis.n_modes for basis in solution.iterate.bases]
-    stored = sum(basis.n_modes for basis in set(solution.iterate.bases))
-    bases = {
-        "modes_largest": max(counts, default=0),
-        "modes_stored": stored,
-        "modes_saved": sum(counts) - stored,
-    }
     return {
         "scene": settings.scene,
         "status": str(solution.status.ending),
@@ -180,7 +171,6 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "residual": solution.iterate.residual,
         **{name: getattr(last, name, None) for name in ERRORS},
         "seconds": last.seconds if last else solution.iterate.seconds,
-        **(bases if counts else {}),
     }
 
 
@@ -193,20 +183,12 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     (n_elements, 4), and their `displacement`, (n_nodes, 2, n_instants); `displacement_determinate`,
     (n_instants,), is false where nothing says where a body lies. Interfaces between bodies, or that
     may open, have arrays of their own (`interface_arrays`).
-
-    With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
-    shape (n_iterations, n_substructures), as in `ReductionRecord`.
     """
     iterate, problem = solution.iterate, solution.iterate.problem
     history = {
-        name: [getattr(entry, name) for entry in solution.records]
+        name: np.array([getattr(entry, name) for entry in solution.records])
         for name in (*INDICATORS, *ERRORS, "seconds")
     }
-    if iterate.bases:
-        for name in OF_BASES:
-            history[f"pgd_{name}"] = [
-                [getattr(part, name) for part in entry.reduction] for entry in solution.records
-            ]
     found: dict[str, Any]
     if problem.inside is None:
         found = {
@@ -227,7 +209,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         "t": problem.instants,
         **found,
         **interface_arrays(iterate),
-        **{name: np.array(column) for name, column in history.items()},
+        **history,
         "certified": solution.is_certified,
         "residual": math.nan if iterate.residual is None else iterate.residual,
         "settings": json.dumps({"scene": settings.scene, **settings.values()}),

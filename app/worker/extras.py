@@ -149,7 +149,7 @@ def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
         "space": floats(space[:, kept] / size[:, None]),
         "time": floats(time * size[:, None]),
         "substructure": place,
-        "text": f"substructure {place + 1}: {basis.n_modes} modes, {basis.record.added} added",
+        "text": f"substructure {place + 1}: {basis.n_modes} modes",
     }
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -12,7 +10,6 @@ from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate
-from solver.reduction.basis import ReductionRecord
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""
@@ -28,8 +25,6 @@ def finished(
     Its linear and its local stage are the same fields, a fixed point of the method for every k, of
     the rows, (n_rows,), read-only. Its bases are those of the search, if it had any.
     """
-    searched = last.bases if last else ()
-    idle = {basis: replace(basis, record=ReductionRecord(basis.n_modes)) for basis in searched}
     scales, solution = problem.scales, certificate.solution
     deformation = solution.deformation / scales.displacement
     force = row_forces(problem, deformation, solution.contact_force / scales.force)
@@ -46,7 +41,7 @@ def finished(
         incoming=incoming,
         local_displacement=local,
         local_incoming=incoming,
-        bases=tuple(idle[basis] for basis in searched),
+        bases=last.bases if last else (),
         residual=certificate.residual,
         force=force,
     )

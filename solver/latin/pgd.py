@@ -18,7 +18,7 @@ from solver.latin.blocks import ALL
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.latin.response import Responses
-from solver.reduction.basis import ReductionRecord, SeparatedBasis, SharedBasis, nearest_mode
+from solver.reduction.basis import SeparatedBasis, SharedBasis, nearest_mode
 from solver.refusal import check_range
 
 SHARE_EVERY = 10
@@ -144,13 +144,11 @@ class PGDGroup(Group):
         whole = basis.squared(target, self._columns(shared.members, self._reflected))
         inside = basis.squared_of(wanted)
         change = wanted - basis.time_functions
-        updated = basis.squared_of(change)
         left = whole - inside
         if left < NOTHING_LEFT * whole:
             left = 0.0
-        residual = left + updated
         enough = pgd.tolerance**2 * whole
-        explained, added, dropped = 0.0, 0, 0.0
+        explained, added = 0.0, 0
         basis = replace(basis, time_functions=basis.time_functions + relaxation * change)
         if left > enough:
             rest = target - basis.modes @ wanted
@@ -163,16 +161,9 @@ class PGDGroup(Group):
                 basis = basis.appended(mode, relaxation * time_function)
                 explained += basis.squared_of(time_function[None])
                 added += 1
-            basis, dropped = basis.downsized(pgd.tolerance, pgd.modes)
+            basis, _ = basis.downsized(pgd.tolerance, pgd.modes)
             incoming = self._incoming(basis)
-        record = ReductionRecord(
-            modes=basis.n_modes,
-            added=added,
-            updated=updated / residual if residual > 0.0 else 1.0,
-            enriched=min(explained / residual, 1.0) if residual > 0.0 else 0.0,
-            dropped=dropped,
-        )
-        return SharedBasis(shared.members, basis, incoming, record)
+        return SharedBasis(shared.members, basis, incoming)
 
     def _share(self) -> None:
         """Join bases whose fields lie in each other's modes up to the allowed share."""
@@ -185,7 +176,7 @@ class PGDGroup(Group):
                     for part in (other, shared):
                         self._put(part.members, field, part.basis.field())
                     members = tuple(sorted(other.members + shared.members))
-                    joined[place] = replace(self._of_field(members, field), record=other.record)
+                    joined[place] = self._of_field(members, field)
                     break
             else:
                 joined.append(shared)
@@ -196,7 +187,7 @@ class PGDGroup(Group):
         columns, pgd = self._columns(members, field), self._pgd
         weights = np.repeat(self._weights, len(members))
         basis = SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
-        return SharedBasis(members, basis, self._incoming(basis), ReductionRecord(basis.n_modes))
+        return SharedBasis(members, basis, self._incoming(basis))
 
     def _incoming(self, basis: SeparatedBasis) -> Array:
         """W - F/k of every mode."""

@@ -13,7 +13,6 @@ from solver.latin.iteration import iterations
 from solver.latin.method import Latin
 from solver.latin.status import CANCELLED, Decision, Ending, Status
 from solver.latin.stop import StopState
-from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 
 
@@ -33,8 +32,6 @@ class Record:
         Of the contact force, relative, without a reference; NaN where it is not estimated.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
-    reduction
-        What the iteration did to the separated basis of every substructure; empty without bases.
     is_answer
         As in `Iterate`.
     """
@@ -46,7 +43,6 @@ class Record:
     estimated_error: float
     error_displacement: float
     error_force: float
-    reduction: tuple[ReductionRecord, ...] = ()
     is_answer: bool = False
 
 
@@ -84,7 +80,6 @@ def record(
         estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
-        reduction=tuple(basis.record for basis in iterate.bases),
         is_answer=iterate.is_answer,
     )
 

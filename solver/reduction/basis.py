@@ -145,30 +145,6 @@ def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
     return mode
 
 
-@dataclass(frozen=True)
-class ReductionRecord:
-    """What one iteration did to one substructure's basis.
-
-    Attributes
-    ----------
-    modes
-        Modes after the iteration.
-    added
-        Pairs that enrichment added; downsizing may have dropped as many.
-    updated, enriched
-        Shares of the squared residual that the update of the time functions, and enrichment,
-        explained.
-    dropped
-        Share of the field's norm that downsizing dropped.
-    """
-
-    modes: int
-    added: int = 0
-    updated: float = 1.0
-    enriched: float = 0.0
-    dropped: float = 0.0
-
-
 @dataclass(frozen=True, eq=False)
 class SharedBasis:
     """A separated basis of y = W + F/k, and the substructures that share it; read-only, scaled.
@@ -181,14 +157,11 @@ class SharedBasis:
         Its modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first.
     incoming
         W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
-    record
-        What the last iteration did to it.
     """
 
     members: tuple[int, ...]
     basis: SeparatedBasis
     incoming: Array
-    record: ReductionRecord
 
     @property
     def n_modes(self) -> int:
