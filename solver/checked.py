@@ -56,18 +56,10 @@ class Checked(param.Parameterized):
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
-        """Settings of these values.
+        """Settings of plain values by name; what is left out is as by default, or by the method.
 
-        Parameters
-        ----------
-        values
-            Plain values by name; what is left out takes its default, or what the method says.
-
-        Raises
-        ------
-        SettingError
-            For an unknown name, a wrong type, a value out of range, or values that do not fit
-            together.
+        Refuses an unknown name, a wrong type, a value out of range, and values that do not fit
+        together with a `SettingError`.
         """
         definitions = cls.definitions()
         clean = {}

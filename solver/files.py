@@ -35,11 +35,6 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
     """Settings of a saved file in TOML, whose curves name no other files.
 
     It has a scene's name under `scene`, and settings by name; messages begin with its source.
-
-    Raises
-    ------
-    SettingError
-        For text that is no TOML, an unknown scene, or a refused setting.
     """
     values = _parsed(text, source, text)
     values.pop("case", None)
@@ -49,12 +44,10 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it.
+    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it, and what tables say.
 
-    Returns
-    -------
-    The settings, and what was understood of tables in CSV files, by the name of their setting.
-    Such files are sought beside the saved file, and those of assignments in the working folder.
+    CSV files that it names are sought beside the saved file, and those of assignments in the
+    working folder; what was understood of them is by the name of their setting.
     """
     values: dict[str, Any] = {"scene": scene}
     if scene.endswith(".toml"):

@@ -46,14 +46,9 @@ FEWEST_POINTS = 3
 
 @dataclass(frozen=True, eq=False)
 class Claim:
-    """A claim of a lesson, and how it is tested.
+    """A claim of a lesson on a quantity of a run.
 
-    Attributes
-    ----------
-    settings, quantity
-        Of the run that it is about.
-    low, high, expected
-        Both ends of what it may be, infinite for what never comes, and the same in words.
+    It holds from `low` to `high`, infinite for what never comes; `expected` says so in words.
     """
 
     claim: str

@@ -154,24 +154,11 @@ INJECTIONS: dict[str, Preset] = {
 def instants_of(
     duration: float, number: int, knots: Array = NO_KNOTS, corners: Array = NO_KNOTS
 ) -> Array:
-    """Instants spread over a time interval, with knots of paths among them.
+    """Instants spread over a time interval, s, with knots of paths among them.
 
-    Between knots they are evenly spaced, and no step is longer than one of `number` equal ones.
-
-    Parameters
-    ----------
-    duration
-        Length of the interval, s.
-    number
-        Instants at least: from 0 on, or a single one at the end.
-    knots
-        Times that are instants as they are, in any order, s; those outside do not count.
-    corners
-        The same of presets: one at an instant or a knot but for rounding is that.
-
-    Returns
-    -------
-    Shape (n_instants,), s.
+    Between knots they are evenly spaced, and no step is longer than one of `number` equal ones: of
+    instants from 0 on, or of a single one at the end. Knots outside do not count; corners, which
+    are those of presets, are an instant or a knot where they differ from it by rounding alone.
     """
     even = np.linspace(0.0, duration, number) if number > 1 else np.array([duration])
     knots = np.unique(knots[(knots >= 0.0) & (knots <= duration)])

@@ -82,14 +82,9 @@ def _over_length(shares: Rows, settings: Settings) -> Rows:
 
 
 def at_nodes(settings: Settings, places: Array, *profiles: str, order: int = 1) -> Array:
-    """Product of the factors of profiles at nodes; of tables, its mean over their shares.
+    """Product of the factors of one or two profiles at nodes, from their places, (n_nodes,), m.
 
-    Parameters
-    ----------
-    settings, profiles
-        Whose, and the names of one or two of them.
-    places, order
-        Of the nodes, shape (n_nodes,), m; order of their elements.
+    Of tables it is the mean over the shares of the nodes, between elements of an order.
     """
     tables = [settings.points(name) for name in profiles]
     if all(isinstance(getattr(settings, name), str) for name in profiles):
@@ -169,13 +164,7 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
 
 
 def factors_of(settings: Any) -> Array:
-    """Factor on mu of each interface, shape (n_interfaces,).
-
-    Raises
-    ------
-    SettingError
-        For a table that lacks an interface, or has others.
-    """
+    """Factor on mu of each interface, (n_interfaces,); a table of others is refused."""
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
@@ -185,20 +174,7 @@ def same_for(count: int) -> Rows:
 
 
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
-    """Values of a table that has one for each of so many, shape (count,).
-
-    Parameters
-    ----------
-    settings, name
-        Whose, and which of its tables.
-    count, what
-        Their number, and what they are.
-
-    Raises
-    ------
-    SettingError
-        For a table that lacks one, or has others.
-    """
+    """Values of a table that has one for each of so many, (count,); others are refused."""
     table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
