@@ -37,8 +37,6 @@ OF_CHECKPOINT = {
     "tolerance": (int, float),
 }
 """Keys of a checkpoint; `settings` and `tolerance` may be left out."""
-OF_ENDING = {"claim": str, "settings": dict, "says": str}
-"""Keys of one that tells with which words a run ends; `settings` may be left out."""
 MOST_CONTROLS = 2
 FEWEST_POINTS = 3
 """Of a curve that one may draw."""
@@ -76,20 +74,6 @@ class Claim:
 
 def _written(value: float, unit: str) -> str:
     return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()
-
-
-@dataclass(frozen=True, eq=False)
-class EndingClaim:
-    """A claim of a lesson about how a run ends: words that its status has to say."""
-
-    claim: str
-    settings: Settings
-    says: str
-
-    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
-        """Whether it holds in a run, and what that says, whatever share the plots stand at."""
-        message = run.solution.status.advice
-        return self.says in message, f"The run says: {message}; expected {self.says}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +119,7 @@ class Lesson:
     views: tuple[str, ...]
     text: tuple[str, ...]
     explanation: tuple[str, ...]
-    checkpoints: tuple[Claim | EndingClaim, ...]
+    checkpoints: tuple[Claim, ...]
     instant: float
     interface: str = ""
     draw: str = ""
@@ -152,8 +136,6 @@ class Lesson:
         curve: dict[float, float] = {}
         own, asked = self.settings.values(), ""
         for claim in self.checkpoints:
-            if not isinstance(claim, Claim):
-                continue
             values = claim.settings.values()
             same = all(values[name] == own[name] for name in own if name != self.draw)
             if self.draw in values and same and asked in ("", claim.quantity.name):
@@ -164,13 +146,12 @@ class Lesson:
     @property
     def drawn_quantity(self) -> str:
         """What that curve shows, in words."""
-        claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
-        return next((claim.quantity.title for claim in claims), "")
+        return self.checkpoints[0].quantity.title
 
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
-    reads = {claim.quantity.reads for claim in lesson.checkpoints if isinstance(claim, Claim)}
+    reads = {claim.quantity.reads for claim in lesson.checkpoints}
     errors, indicators = "errors" in reads, "indicators" in reads
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
@@ -239,19 +220,15 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 
-def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | EndingClaim]:
+def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim]:
     require(bool(values), "checkpoints", values, "at least one", "say what the lesson claims")
     for number, entry in enumerate(values, start=1):
         with placed(f"checkpoint {number}"):
             is_table = isinstance(entry, dict)
             require(is_table, "checkpoints", entry, "a table", "write [[checkpoints]]")
-            keys = OF_ENDING if "says" in entry else OF_CHECKPOINT
-            check_keys(entry, keys, optional=("settings", "tolerance"))
-            claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
-            if "says" in entry:
-                yield EndingClaim(claim, own, entry["says"])
-            else:
-                yield Claim(claim, own, reading(entry["quantity"]), *_expected(entry))
+            check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
+            own, quantity = settings.replace(**entry.get("settings", {})), entry["quantity"]
+            yield Claim(entry["claim"], own, reading(quantity), *_expected(entry))
 
 
 def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:

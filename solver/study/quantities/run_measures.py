@@ -15,6 +15,7 @@ import numpy as np
 from solver.checked import dump
 from solver.executors import ONE_THREAD
 from solver.files import settings_from_toml
+from solver.latin import Ending
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun, finished_run, settle
 from solver.study.quantities.quantity import WITHIN, Parameter, Quantity, quantity
@@ -62,6 +63,12 @@ def _until(column: str, title: str, unit: str, field: str, words: str) -> Quanti
 def iterations(run: FinishedRun) -> float:
     """Number of iterations."""
     return run.iterate.iterations
+
+
+@quantity("Whether it converged", is_of_course=True)
+def converged(run: FinishedRun) -> float:
+    """1 where the run came to its stop rule, 0 where something else ended it."""
+    return float(run.solution.status.ending is Ending.CONVERGED)
 
 
 @quantity("Run time", "s", is_of_course=True)
