@@ -10,14 +10,7 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.definitions import (
-    CurveParameter,
-    Parameter,
-    SettingError,
-    about,
-    checked_value,
-    unknown,
-)
+from solver.definitions import SettingError, about, checked_value, unknown
 
 
 class Checked(param.Parameterized):
@@ -36,7 +29,7 @@ class Checked(param.Parameterized):
 
     @classmethod
     @cache
-    def definitions(cls) -> Mapping[str, Parameter]:
+    def definitions(cls) -> Mapping[str, Any]:
         """Definition of every setting, by name, in the order of their groups."""
         parameters = {name: cls.param[name] for name in cls.param}
         return MappingProxyType(
@@ -46,13 +39,6 @@ class Checked(param.Parameterized):
                 if "about" in (parameter.metadata or {})
             }
         )
-
-    @classmethod
-    def curve(cls, name: str) -> CurveParameter:
-        """Definition of a setting that is a curve."""
-        definition = cls.definitions()[name]
-        assert isinstance(definition, CurveParameter)
-        return definition
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:

@@ -168,14 +168,10 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
 
 
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
-    """Arrays of a result file (SI; space first, time last).
+    """Arrays of a result file (SI; space first, time last), as solver/README.md, 12, has them.
 
-    Along rods `displacement` is that of the degrees of freedom at `x`, body after body;
-    `friction_force` and `status` are those of the points of all interfaces with friction, one after
-    the other. In the plane there are all nodes `x`, (n_nodes, 2), the nodes of `elements`,
-    (n_elements, 4), and their `displacement`, (n_nodes, 2, n_instants); `displacement_determinate`,
-    (n_instants,), is false where nothing says where a body lies. Interfaces between bodies, or that
-    may open, have arrays of their own (`interface_arrays`).
+    In the plane `displacement` has shape (n_nodes, 2, n_instants), and `displacement_determinate`,
+    (n_instants,), is false where nothing says where a body lies.
     """
     iterate, problem = solution.iterate, solution.iterate.problem
     history = {
@@ -212,9 +208,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """Arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
 
-    `points` are places along the interface, m; `determinate` tells where the force is no arbitrary
-    share of what a support or a ring of contacts carries; the others are as in `ContactFields`,
-    shape (n_points, n_instants), with the opening as `gap`. Forces are in N, on the body above.
+    `determinate` is where the force is no arbitrary share of what a support or a ring carries.
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)

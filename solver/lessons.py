@@ -78,32 +78,10 @@ def _written(value: float, unit: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Lesson:
-    """A lesson as its file says.
+    """A lesson as its file says, whose name it has (app/lessons/README.md).
 
-    Attributes
-    ----------
-    name
-        That of its file, without the ending.
-    order, subject
-        Its place among the lessons, and what it is about: one of `SUBJECTS`.
-    choices, right, why
-        Answers to predict from, the index of the right one, and why it is right.
-    settings
-        Of the run that it starts with.
-    controls, views
-        Names of the settings that can still be moved, one or two, and of the plots that stay.
-    text, explanation
-        Paragraphs to read before the choice, and that follow it.
-    instant
-        At which its plots stand, as a share of the interval.
-    interface
-        Name of that which its plots are of; empty is the first one.
-    draw
-        Name of the setting over which one may draw the answer as a curve; empty for none.
-    beside
-        Names of the plots that stand beside the question already; the others would answer it.
-    until
-        Where its picture, which moves, begins anew before the choice, as a share of the interval.
+    `right` is the index of the right choice; text and explanation are in paragraphs. `instant` and
+    `until` are shares of the interval. No `interface` is the first one.
     """
 
     name: str

@@ -117,7 +117,7 @@ class LoadSettings(FrictionSettings):
 
     def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values: those of a path are as its size."""
-        units, size = self.curve(name).units, self.size_setting(name)
+        units, size = self.definitions()[name].units, self.size_setting(name)
         return units if size is None else (units[0], about(self.definitions()[size]).unit)
 
     def preset(self, name: str) -> Preset | None:
@@ -125,7 +125,7 @@ class LoadSettings(FrictionSettings):
         value = getattr(self, name)
         if not isinstance(value, str):
             return None
-        preset: Preset = self.curve(name).presets[value]
+        preset: Preset = self.definitions()[name].presets[value]
         return preset
 
     @property
@@ -218,7 +218,7 @@ class LoadSettings(FrictionSettings):
         value: str | Rows = getattr(self, name)
         if not isinstance(value, str):
             return value
-        preset = self.curve(name).presets[value]
+        preset = self.definitions()[name].presets[value]
         if not isinstance(preset, Preset):
             rows: Rows = preset(self)
             return rows

@@ -43,16 +43,9 @@ def interpolate(points: Rows | Array, where: Array) -> Array:
 class Preset:
     """A path with a name: straight lines between points after a beginning that has the first.
 
-    Attributes
-    ----------
-    points
-        Phases after the beginning, and ordinates, for a seed of what is random.
-    begins
-        Share of the interval that the beginning takes.
-    repeats
-        Share of the interval from which on it comes back to where it is; None if it does not.
-    wave
-        Ordinates at phases after the beginning in place of straight lines, where it bends.
+    Points, for a seed of what is random, are phases after the beginning, and ordinates. It begins
+    after a share of the interval, and comes back to where it is from another on, if at all. A wave
+    has ordinates at such phases in place of straight lines, where it bends.
     """
 
     points: Callable[[int], tuple[Array, Array]]

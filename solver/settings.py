@@ -24,13 +24,7 @@ COARSEST = 6
 
 
 class Icon(NamedTuple):
-    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32.
-
-    Attributes
-    ----------
-    ground, body, load
-        What holds and supports it, what is deformed, and what acts on it.
-    """
+    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32."""
 
     ground: str
     body: str

@@ -52,15 +52,8 @@ class Fault:
     to the left lies the other image, which moves along as much and across the other way round. The
     fault slips by twice what this quarter moves along it.
 
-    Attributes
-    ----------
-    body
-        The quarter, on a support of known bound.
-    stress
-        Shear stress far from the fault, Pa.
-    fluid
-        Pressure over time of a fluid that is let in at the middle, shape (n_instants,), Pa, for
-        whoever draws it: the bound is less by what it takes already.
+    The bound of the body's support is less already by what the fluid takes: shear stress far away
+    and the fluid's pressure at the middle, (n_instants,), Pa, are for whoever draws them.
     """
 
     body: Stack

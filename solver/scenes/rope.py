@@ -9,12 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import POSITIVE, Rows, SettingError, redefined
-from solver.discrete.cross_section import (
-    CONSTRUCTIONS,
-    MOST_LAYERS,
-    CrossSection,
-    laid,
-)
+from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields

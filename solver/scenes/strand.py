@@ -191,16 +191,10 @@ class StrandSettings(Settings):
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
         if largest > capacity or largest == capacity > 0.0:
-            name = self.size_or_table("load")
-            allowed = "no tension where no friction can hold the broken wire beyond its break"
-            if capacity > 0.0:
-                allowed = (
-                    f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
-                    "wire beyond its break"
-                )
             raise self.refusal(
-                name,
-                allowed,
+                self.size_or_table("load"),
+                f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
+                "wire beyond its break",
                 "pull less, raise friction or pressure, move the break to the left, or take the "
                 "grip of given displacement",
             )
