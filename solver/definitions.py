@@ -12,11 +12,11 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, TypeGuard
+from typing import Any
 
 import param
 
-from solver.refusal import RefusedError, plain
+from solver.refusal import RefusedError, is_number, plain
 
 Rows = tuple[tuple[float, ...], ...]
 Parameter = param.Parameter[Any]
@@ -259,11 +259,6 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     if value != int(value):
         raise refuse("write a whole number")
     return int(value)
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Whether it is a number, and no truth value."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:

@@ -14,7 +14,7 @@ SHORTEST_SLIP = 1e-12
 LARGEST_FACTOR = 1e3
 """Of a strength."""
 STIFFNESSES = 1e-9, 1e9
-"""Of contact, over the unit of `contact_stiffness`: softer or stiffer, no digits are left."""
+"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are left."""
 
 
 class FrictionSettings(MethodSettings):
@@ -115,8 +115,8 @@ class FrictionSettings(MethodSettings):
         """Law of friction, beside mu."""
         if self.friction_law == "compliant":
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
-        table = self.strength_points() if self._changes_with_slip else None
-        strength = None if table is None else Strength(*zip(*table, strict=True))
+        changes = self.is_linear_in_slip or (self.is_general and self.strength != "constant")
+        strength = Strength(*zip(*self.strength_points(), strict=True)) if changes else None
         if not self.is_general:
             return FrictionLaw(strength=strength)
         return FrictionLaw(
@@ -125,10 +125,6 @@ class FrictionSettings(MethodSettings):
             cap=self.friction_cap or np.inf,
             strength=strength,
         )
-
-    @property
-    def _changes_with_slip(self) -> bool:
-        return self.is_linear_in_slip or (self.is_general and self.strength != "constant")
 
     def strength_points(self) -> Rows:
         """Points of the strength over the slip, or those that stand for its preset."""
@@ -143,7 +139,11 @@ class FrictionSettings(MethodSettings):
         super().check_together()
         if self.is_general:
             self._check_strength()
-            self._check_stiffness()
+            for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
+                remedy = (
+                    "write 0 where nothing gives way, or take away friction where nothing holds"
+                )
+                self.check_digits(name, self.contact_unit, remedy)
 
     def _check_strength(self) -> None:
         table = self.strength
@@ -158,14 +158,11 @@ class FrictionSettings(MethodSettings):
                 "the factor at slip 0 is 1, as the rest of the law says what friction is there",
             )
 
-    def _check_stiffness(self) -> None:
-        low, high = (share * self.contact_unit for share in STIFFNESSES)
-        for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
-            value = getattr(self, name)
-            if self.applies(name) and value and not low <= value <= high:
-                unit = about(self.definitions()[name]).unit
-                raise self.refusal(
-                    name,
-                    f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
-                    "write 0 where nothing gives way, or take away friction where nothing holds",
-                )
+    def check_digits(self, name: str, size: float, remedy: str) -> None:
+        """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""
+        value, unit = getattr(self, name), about(self.definitions()[name]).unit
+        low, high = (share * size for share in STIFFNESSES)
+        if self.applies(name) and value and not low <= value <= high:
+            none = "0, or " if self.definitions()[name].bounds[0] == 0.0 else ""
+            allowed = f"{none}from {plain(low)} {unit} to {plain(high)} {unit} with such bodies"
+            raise self.refusal(name, allowed, remedy)

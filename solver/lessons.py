@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.checked import dump
-from solver.definitions import SettingError, is_number
+from solver.definitions import SettingError
 from solver.files import (
     check_controls,
     check_keys,
@@ -23,6 +23,7 @@ from solver.files import (
     require,
     scene_settings,
 )
+from solver.refusal import is_number
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run

@@ -15,7 +15,6 @@ from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
-from solver.friction_settings import STIFFNESSES
 from solver.loads import interpolate
 from solver.profiles import harmonic_means, means
 from solver.reference.closed_forms import ExactCurve
@@ -272,20 +271,10 @@ class BarSettings(Settings):
         """Refuse what has no digits left, or no equilibrium, too."""
         self._check_section()
         super().check_together()
+        size = self.young * self.section / self.length
         for side in PATHS:
-            self._check_spring(f"{side}_spring")
+            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
         self._check_equilibrium()
-
-    def _check_spring(self, name: str) -> None:
-        """Refuse springs beside which no digits of the bar are left, or of themselves."""
-        unit, value = self.young * self.section / self.length, getattr(self, name)
-        low, high = (share * unit for share in STIFFNESSES)
-        if self.applies(name) and not low <= value <= high:
-            raise self.refusal(
-                name,
-                f"from {plain(low)} N/m to {plain(high)} N/m with such a bar",
-                "let the end be free, or held",
-            )
 
     def _check_section(self) -> None:
         """Refuse a section that is too uneven for the digits of a number."""

@@ -115,26 +115,19 @@ class SideSettings(PlaneSettings):
         return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
 
 
-def _define(side: str) -> None:
-    SideSettings.param.add_parameter(
-        side,
-        Group(side.capitalize()).choice(
-            "free",
-            PRESCRIBED,
-            "What is given. free: nothing. roller: no normal displacement. clamped: no "
-            "displacement. displacement: both displacements. traction: both tractions. pushed: "
-            "normal displacement, tangential traction. dragged: tangential displacement, normal "
-            "traction.",
-            title=f"{side.capitalize()} side",
-        ),
-    )
-    for component in COMPONENTS:
-        for name, definition in _settings_of(side, component).items():
-            SideSettings.param.add_parameter(name, definition)
-
-
 for _side in LOADED_SIDES:
-    _define(_side)
+    _kind = Group(_side.capitalize()).choice(
+        "free",
+        PRESCRIBED,
+        "What is given. free: nothing. roller: no normal displacement. clamped: no displacement. "
+        "displacement: both displacements. traction: both tractions. pushed: normal displacement, "
+        "tangential traction. dragged: tangential displacement, normal traction.",
+        title=f"{_side.capitalize()} side",
+    )
+    SideSettings.param.add_parameter(_side, _kind)
+    for _component in COMPONENTS:
+        for _name, _definition in _settings_of(_side, _component).items():
+            SideSettings.param.add_parameter(_name, _definition)
 
 
 def _gap_points(settings: BlockSettings) -> Rows:

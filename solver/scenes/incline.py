@@ -18,6 +18,7 @@ from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
+from solver.laws.play import play
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
@@ -117,11 +118,8 @@ class InclineSettings(PlaneSettings):
             return
         angle = np.radians(self.path("slope_load"))
         down, friction = self.weight * np.sin(angle), np.max(mu) * self.weight * np.cos(angle)
-        force = np.zeros_like(down)
-        now = 0.0
-        for instant, (least, most) in enumerate(zip(down - friction, down + friction, strict=True)):
-            now = max(min(max(now, float(least)), float(most)), 0.0)
-            force[instant] = now
+        # As down is not negative, a force that begins at zero never falls below it.
+        (force,) = play(down[None], friction[None])
         yield ExactCurve("loop", np.degrees(angle), force)
 
     def sentence(self) -> str:

@@ -65,17 +65,17 @@ def iterations(run: FinishedRun) -> float:
     return run.iterate.iterations
 
 
-@quantity("Whether it converged", is_of_course=True)
-def converged(run: FinishedRun) -> float:
-    """1 where the run came to its stop rule, 0 where something else ended it."""
-    return float(run.solution.status.ending is Ending.CONVERGED)
-
-
 @quantity("Run time", "s", is_of_course=True)
 def seconds(run: FinishedRun) -> float:
     """Time of the whole run, s."""
     records = run.solution.records
     return records[-1].seconds if records else math.nan
+
+
+@quantity("Whether it converged", is_of_course=True)
+def converged(run: FinishedRun) -> float:
+    """1 where the run came to its stop rule, 0 where something else ended it."""
+    return float(run.solution.status.ending is Ending.CONVERGED)
 
 
 @quantity("Run time of an iteration", "s", is_of_course=True)
