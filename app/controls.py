@@ -277,7 +277,7 @@ class Controls:
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     """The chief settings of a scene, and all others by group; without those of a single value."""
     definitions = kind.definitions()
-    chief = [name for name in kind.CHIEF if name in definitions]
+    chief = [name for name in (*kind.CHIEF, *kind.ALSO_CHIEF) if name in definitions]
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}
     for name, definition in definitions.items():
         if name not in chief and len(getattr(definition, "objects", "any")) > 1:

@@ -46,7 +46,9 @@ class Settings(LoadSettings):
     """What there is to see: a rod on its support, wires beside each other, wires around a core, or
     plane bodies."""
     CHIEF: ClassVar[tuple[str, ...]]
-    """Settings that a scene is about, in the order in which one thinks of them."""
+    ALSO_CHIEF: ClassVar[tuple[str, ...]] = ("seed", "friction", "substructures", "k_scale")
+    """Settings that a scene is about, in the order in which one thinks of them: its own, and those
+    of friction and the method."""
     GROWS: ClassVar[tuple[str, ...]]
     """Settings by which the structure becomes larger as it is, all of them together."""
     MESH: ClassVar[tuple[str, ...]] = ("elements",)

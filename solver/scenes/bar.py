@@ -138,15 +138,7 @@ class BarSettings(Settings):
         load="M37 18H46M42 14L46 18L42 22",
     )
     kind = "rod"
-    CHIEF = (
-        "load",
-        "seed",
-        "peak",
-        "right_displacement",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
+    CHIEF = ("load", "peak", "right_displacement")
     GROWS = ("elements",)
 
     peak, load = shared.sized_path(

@@ -146,14 +146,7 @@ class BlockSettings(SideSettings):
         body="M12 11H36V24H12Z",
         load="M24 1V9M20 5L24 9L28 5M32 7H44M40 3L44 7L40 11",
     )
-    CHIEF = (
-        "top_tangential_load",
-        "seed",
-        "top_tangential_displacement",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
+    CHIEF = ("top_tangential_load", "top_tangential_displacement")
 
     gap = CONTACT.curve(
         "parabola",

@@ -104,15 +104,7 @@ class FaultSettings(PlaneSettings):
         body="M4 8H44V24H4Z",
         load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
     )
-    CHIEF = (
-        "injection_load",
-        "seed",
-        "overpressure",
-        "shear_stress",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
+    CHIEF = ("injection_load", "overpressure", "shear_stress")
     opens = False
     loop_is_over_displacement = False
 

@@ -37,7 +37,7 @@ class InclineSettings(PlaneSettings):
         body="M15 22L28 16L25 8L12 14Z",
         load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
     )
-    CHIEF = ("slope_load", "seed", "slope", "friction", "substructures", "k_scale")
+    CHIEF = ("slope_load", "slope")
     loop_is_over_displacement = False
 
     slope, slope_load = shared.sized_path(

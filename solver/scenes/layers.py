@@ -40,16 +40,7 @@ class LayersSettings(PlaneSettings):
         "C28 17 18 16 5 16ZM5 16C18 16 28 17 36 22L34 26C28 22 18 21 5 21Z",
         load="M44 6V20M40 16L44 20L48 16",
     )
-    CHIEF = (
-        "bend_load",
-        "seed",
-        "deflection",
-        "moment",
-        "force",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
+    CHIEF = ("bend_load", "deflection", "moment", "force")
     GROWS = ("layers",)
     across = "thickness"
 

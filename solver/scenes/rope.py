@@ -37,16 +37,8 @@ class RopeSettings(Settings):
         load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
     )
     kind = "helices"
-    CHIEF = (
-        "construction",
-        "layers",
-        "bending",
-        "load",
-        "curvature",
-        "tension",
-        "friction",
-        "k_scale",
-    )
+    CHIEF = ("construction", "layers", "bending", "load", "curvature", "tension")
+    ALSO_CHIEF = ("friction", "k_scale")
     GROWS = ("layers",)
     loop_is_over_displacement = False
 

@@ -35,7 +35,7 @@ class StrandSettings(Settings):
         load="M38 16H47M43 12L47 16L43 20",
     )
     kind = "wires"
-    CHIEF = ("load", "seed", "peak", "friction", "substructures", "k_scale")
+    CHIEF = ("load", "peak")
     GROWS = ("wires",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
 

@@ -33,16 +33,8 @@ class WallSettings(PlaneSettings):
         "M7 11H23V16H7ZM25 11H41V16H25Z",
         load="M14 6H34M30 3L34 6L30 9",
     )
-    CHIEF = (
-        "top_load",
-        "displacement",
-        "traction",
-        "pressure",
-        "friction",
-        "bricks",
-        "courses",
-        "multiscale",
-    )
+    CHIEF = ("top_load", "displacement", "traction", "pressure")
+    ALSO_CHIEF = ("friction", "bricks", "courses", "multiscale")
     GROWS = ("bricks", "courses")
     has_joints = True
     PARTS: ClassVar = {}
