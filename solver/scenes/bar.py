@@ -60,7 +60,6 @@ def _end(side: str, default: str) -> param.Selector[str]:
         KINDS,
         f"What is at the {side} end. held: it stands still, or is moved. spring: a spring holds it "
         "to what stands still, or is moved. pulled: by a force. free: nothing.",
-        title=f"{side.capitalize()} end",
     )
 
 
