@@ -16,7 +16,7 @@ from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.disk import check_place, read_bytes, why
 from solver.files import settings_from_command
-from solver.latin.run_cost import run_cost
+from solver.latin.cost import run_cost
 from solver.remarks import remarks_before
 from solver.scenes.method import method_of
 from solver.settings import Settings

@@ -178,6 +178,8 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         name: np.array([getattr(entry, name) for entry in solution.records])
         for name in (*INDICATORS, *ERRORS, "seconds")
     }
+    if iterate.bases:
+        history["pgd_modes"] = np.array([entry.modes for entry in solution.records])
     found: dict[str, Any]
     if problem.inside is None:
         found = {

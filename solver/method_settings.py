@@ -76,13 +76,6 @@ class MethodSettings(Checked):
         "Multiplies the search direction k: other iterations, the same solution.",
         title="Factor on k",
     )
-    k_friction_scale = METHOD.quantity(
-        1.0,
-        (1e-6, 1e6),
-        (0.01, 100.0),
-        "Multiplies k once more, at friction points alone.",
-        title="Friction k factor",
-    )
     relaxation = METHOD.quantity(
         0.8,
         (0.01, 1.0),
@@ -201,8 +194,3 @@ class MethodSettings(Checked):
     def n_substructures(self) -> int:
         """Number of substructures in all."""
         return self.n_bodies * self.substructures
-
-    @property
-    def k_factors(self) -> tuple[float, float]:
-        """Further factors on k of contacts, along and across them."""
-        return self.k_friction_scale, 1.0

@@ -24,13 +24,9 @@ def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indic
     return ends, values, np.searchsorted(ends, edges[:-1])
 
 
-def shares_of(nodes: Array, order: int = 1) -> Array:
-    """Ends of the shares of nodes in a row, shape (n_nodes + 1,), m.
-
-    They meet half-way between nodes; of elements of order 2 a node in the middle has two thirds.
-    """
-    shares = np.resize([0.5] if order == 1 else [1.0 / 3.0, 2.0 / 3.0], len(nodes) - 1)
-    return np.concatenate([nodes[:1], nodes[:-1] + shares * np.diff(nodes), nodes[-1:]])
+def shares_of(nodes: Array) -> Array:
+    """Ends of the shares of nodes in a row, which meet half-way, (n_nodes + 1,), of (n_nodes,)."""
+    return np.concatenate([nodes[:1], nodes[:-1] + 0.5 * np.diff(nodes), nodes[-1:]])
 
 
 def means(tables: list[Rows], edges: Array) -> Array:

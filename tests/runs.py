@@ -59,3 +59,4 @@ def assert_goes_on(settings: Settings, number: int, place: int) -> None:
         assert (one.number, one.course.phase) == (other.number, other.course.phase)
         for name in ("k", "outgoing", "incoming", "local_displacement", "local_incoming"):
             assert np.array_equal(getattr(one, name), getattr(other, name)), name
+        assert [basis.n_modes for basis in one.bases] == [basis.n_modes for basis in other.bases]

@@ -25,7 +25,7 @@ PATHS = ["ramp", "triangle", "cycle", "sine", "decaying", "random"]
 def balanced(substructures, **values):
     """Give options whose friction k is 100 ES/L^2 per length for any number of substructures."""
     factor = 100.0 / substructures**2
-    return options(substructures=substructures, k_friction_scale=factor, **values)
+    return options(substructures=substructures, k_scale=factor, **values)
 
 
 def driven(chosen):

@@ -122,7 +122,6 @@ def test_the_local_stage_obeys_all_linear_laws_along_its_search_direction(substr
             "substructures": substructures,
             "support_displacement": 1e-3,
             "k_scale": 3.0,
-            "k_friction_scale": 0.2,
         }
     )
     problem = discretise(options)

@@ -47,7 +47,7 @@ LAYERS = [
 """Parts of the solver; each may import itself and what stands before it. Problem and method stand
 before all that knows settings and scenes."""
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
-ABOVE = {"method", "iteration", "solve", "slabs", "run_cost"}
+ABOVE = {"method", "iteration", "solve", "slabs"}
 """Files of the method that put its parts to work."""
 FLOORS = [["units", "frame", "messages"], ["worker"], ["refusals", "state"], ["views"]]
 """Parts of the page; each may import itself, what stands beside it and before it. All others are

@@ -177,12 +177,11 @@ def test_all_friction_of_the_bar_is_there_whatever_the_mesh(seed):
         assert total == pytest.approx(whole, rel=1e-4)
 
 
-@pytest.mark.parametrize("interpolation", ["bilinear", "biquadratic"])
-def test_all_strength_of_a_fault_is_there_whatever_the_mesh(interpolation):
+def test_all_strength_of_a_fault_is_there_whatever_the_mesh():
     table = profile(5, 600.0, least=0.9)
     whole = 0.6 * 1e7 * integral(table, over=np.array([0.0, 600.0]))
     for elements in (12, 48):
-        values = {"normal_profile": table, "elements": elements, "interpolation": interpolation}
+        values = {"normal_profile": table, "elements": elements}
         settings = CATALOGUE["fault"].checked({**values, "overpressure": 0.0})
         (law,) = discretise(settings).rubbing.values()
         nodal = settings.strength_at_nodes()[:, 0]

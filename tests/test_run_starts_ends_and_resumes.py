@@ -195,7 +195,7 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
     ("make", "name"),
     [
         (lambda: Auto(scale=0.0), "Auto.scale"),
-        (lambda: Paper(along=-1.0), "Paper.along"),
+        (lambda: Paper(scale=-1.0), "Paper.scale"),
         (lambda: PGD(modes=0), "PGD.modes"),
         (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
         (lambda: Stop(accuracy=0.0), "Stop.accuracy"),

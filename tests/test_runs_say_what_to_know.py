@@ -11,8 +11,8 @@ import pytest
 from small_scenes import SMALL
 
 from solver.cli import main
-from solver.latin import run_cost as costs
-from solver.latin.run_cost import LARGE, LONG, RunCost, run_cost
+from solver.latin import cost as costs
+from solver.latin.cost import LARGE, LONG, RunCost, run_cost
 from solver.reference.incremental import reference_of
 from solver.remarks import (
     MOST_GROWTH,

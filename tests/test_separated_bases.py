@@ -92,12 +92,11 @@ def test_downsizing_drops_no_more_than_its_tolerance(drawn):
     rows, columns, seed, power = drawn
     basis, field = random_basis(rows, columns, seed)
     tolerance = 10.0**power
-    basis, dropped = basis.downsized(tolerance, 100)
+    basis = basis.downsized(tolerance, 100)
     scratch = np.empty_like(field)
     lost = basis.squared(field - basis.field(), scratch)
     change = np.sqrt(lost / basis.squared(field, scratch))
-    assert dropped <= tolerance
-    assert change == pytest.approx(dropped, abs=1e-7)
+    assert change <= tolerance + 1e-7
     kept = np.sqrt(np.sum(basis.time_functions**2 * basis.weights, axis=1))
     assert np.all(np.diff(kept) <= 0.0)
 

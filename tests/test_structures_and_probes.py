@@ -12,7 +12,7 @@ import pytest
 
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.bricks import Brick
-from solver.discrete.elements import von_mises
+from solver.discrete.plane import von_mises
 from solver.discrete.probes import reaction, side_mean
 from solver.latin import Iterate, iterations
 from solver.reference.solution import fingerprint
@@ -107,7 +107,7 @@ BEAMS = replace(
     support=None,
     sides={
         "left": Side(Given(True, 0.0 * T), Given(True, 0.0 * T)),
-        "right": Side(Given(False, 0.0 * T, 6e5 * T, each_body=True), Given(False, 0.0 * T)),
+        "right": Side(Given(False, 0.0 * T, 6e5 * T), Given(False, 0.0 * T)),
     },
 )
 

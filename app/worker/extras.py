@@ -16,7 +16,7 @@ from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.latin import Iterate
-from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
+from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
@@ -170,14 +170,12 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
     None where it cannot be kept as clips.
 
     "table", how many values it has; "branches", times that the load goes one way; and for each of
-    "SVD", "PGD" (None without substructures) and "clips" the numbers and errors, (2, n).
+    "SVD", "PGD" (None without bases) and "clips" the numbers and errors, (2, n).
     """
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
     fitted, bases = clips_in(sampler.settings, iterate), iterate.bases
     pieces = of_bases(iterate.problem, iterate.boundary_force, bases) if bases else None
-    if not bases and len(sampler.problem.substructures) > 1:
-        pieces = in_pieces(iterate.problem, iterate.boundary_force)
     return {
         "table": fitted.given.size,
         "branches": fitted.branches,

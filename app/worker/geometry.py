@@ -13,7 +13,7 @@ from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.elements import von_mises
+from solver.discrete.plane import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate

@@ -12,7 +12,7 @@ from app.messages import WHOLE, Needs, Start
 from app.worker.references import ReferenceCache, has_reference
 from app.worker.sampling import Sampler
 from solver.latin import Ending, Iterate, Record, Status, judged, record
-from solver.latin.run_cost import RunCost, run_cost
+from solver.latin.cost import RunCost, run_cost
 from solver.latin.status import collapses
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted

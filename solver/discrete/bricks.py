@@ -20,23 +20,17 @@ class Brick(NamedTuple):
     columns: int
     rows: int
 
-    def nodes(self, order: int) -> tuple[slice, slice]:
-        """Its nodes along and up, among those of a grid of elements of an order."""
-        x, y = order * self.x, order * self.y
-        return slice(x, x + order * self.columns + 1), slice(y, y + order * self.rows + 1)
+    def nodes(self) -> tuple[slice, slice]:
+        """Its nodes along and up, among those of the grid."""
+        x, y = self.x, self.y
+        return slice(x, x + self.columns + 1), slice(y, y + self.rows + 1)
 
 
 class Joint(NamedTuple):
-    """Where two rectangles touch, or one its support.
+    """Where two rectangles touch, or one its support, between two ends on the grid, in elements.
 
-    Attributes
-    ----------
-    above, below
-        Numbers of the one above, or to the right, and of the other; None is the support.
-    first, last
-        Its ends on the grid, in elements.
-    is_upright
-        Whether it is a joint between neighbours of a course.
+    Of numbers of the one above, or to the right, and of the other; None is the support. One between
+    neighbours of a course is upright.
     """
 
     above: int
@@ -73,16 +67,11 @@ def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> lis
 def with_opening(
     bricks: Sequence[Brick], size: tuple[int, int], bricks_along: tuple[int, int], courses: int
 ) -> list[Brick]:
-    """Bricks round an opening that stands on the ground, with a lintel over it.
+    """Bricks round an opening that stands on the ground, so many courses high, with a lintel.
 
-    Parameters
-    ----------
-    bricks, size
-        Of the whole wall, and elements of a brick, even along it.
-    bricks_along
-        First brick of the lowest course that is left out, and the first behind these.
-    courses
-        Height of the opening. The lintel is the next course, and lies on half a brick at each end.
+    Of the bricks of the whole wall and the elements of one, even along it; `bricks_along` are the
+    first of the lowest course that is left out, and the first behind these. The lintel is the next
+    course, and lies on half a brick at each end.
     """
     along, up = size
     left, right = (number * along for number in bricks_along)

@@ -22,14 +22,9 @@ NO_SLIP = 1e-9
 class ContactGroup:
     """Interfaces with one law, put one after the other: a wall of bricks has thousands.
 
-    Attributes
-    ----------
-    law
-        The law of all of them; if there are several, without macro basis.
-    numbers
-        Which of all interfaces with friction these are, ascending, shape (n_interfaces,).
-    points
-        Places of its points among those of all interfaces, shape (n_points,).
+    The `law` is that of all of them, without macro basis if they are several. They have `numbers`
+    among all interfaces with friction, ascending, shape (n_interfaces,), and their points have
+    places among those of all, `points`, shape (n_points,).
     """
 
     def __init__(self, laws: list[Contact], numbers: list[int]) -> None:
@@ -77,9 +72,7 @@ class ContactGroup:
     ) -> NDArray[np.int8]:
         """Contact status of a local stage, shape (n_points, n_instants).
 
-        The law repeats the position of a stuck point bit by bit, or up to rounding where both sides
-        move; a point that is just at its bound moves by rounding alone, and that is not called
-        slip. Where a cut ends at the interface both sides have their say, and the larger slip wins.
+        A point that is stuck, or just at its bound, may move by rounding, which is not called slip.
 
         From W^ and F^ of all rows, (n_rows, n_instants), F^ where the status shows in forces, and
         the slip if it is known. `still` is slip up to which a point counts as stuck, beside what is
@@ -110,10 +103,8 @@ class ContactFields:
 
     Attributes
     ----------
-    normal_force
-        Pressing force on the body above, positive, N; None where the bound is known.
-    tangential_force
-        Friction force on the body above, N.
+    normal_force, tangential_force
+        Pressing force on the body above, positive, N, None where the bound is known; and friction.
     opening
         Distance of the two sides, m; None where the bound is known.
     slip

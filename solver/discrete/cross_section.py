@@ -34,12 +34,8 @@ class WireLayer:
 
     Attributes
     ----------
-    wires
-        Their number.
-    diameter
-        Of a wire, m.
-    young
-        Young's modulus, Pa.
+    wires, diameter, young
+        Their number, diameter, m, and Young's modulus, Pa.
     lay
         Lay angle alpha, rad; negative if laid the other way round, 0 of a core alone.
     """

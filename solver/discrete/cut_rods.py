@@ -11,7 +11,12 @@ from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Scales
-from solver.discrete.substructure import Elasticity, Substructure
+from solver.discrete.substructure import (
+    Elasticity,
+    Substructure,
+    substructure_sizes,
+    tributary,
+)
 from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod
 
 if TYPE_CHECKING:
@@ -30,33 +35,9 @@ SIDES = {"left": "support", "right": "load"}
 
 def rod_stiffness(element_stiffness: Array) -> sparse.csr_array:
     """Stiffness of linear elements in a row, (n + 1, n + 1), of ES/h of each of them, (n,)."""
-    elements = len(element_stiffness)
-    diagonal = np.zeros(elements + 1)
-    diagonal[:-1] = element_stiffness
-    diagonal[1:] += element_stiffness
-    # Written out as it is stored: a general constructor takes ten times as long.
-    entries = np.empty(3 * elements + 1)
-    entries[::3] = diagonal
-    entries[1::3] = entries[2::3] = np.negative(element_stiffness)
-    nodes = np.arange(elements + 1)
-    columns = np.repeat(nodes, 3)[1:-1]
-    columns[1::3] += 1
-    columns[2::3] -= 1
-    ends = np.clip(3 * np.arange(elements + 2) - 1, 0, len(entries))
-    return sparse.csr_array((entries, columns, ends), shape=(elements + 1, elements + 1))
-
-
-def tributary(elements: int) -> Array:
-    """Length that belongs to each node of a row of elements, over that of one of them."""
-    shares = np.ones(elements + 1)
-    shares[[0, -1]] = 0.5
-    return shares
-
-
-def substructure_sizes(elements: int, substructures: int) -> list[int]:
-    """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
-    size, extra = divmod(elements, substructures)
-    return [size + 1] * extra + [size] * (substructures - extra)
+    beside = np.append(element_stiffness, 0.0), np.insert(element_stiffness, 0, 0.0)
+    bands = [-element_stiffness, np.add(*beside), -element_stiffness]
+    return sparse.csr_array(sparse.diags_array(bands, offsets=[-1, 0, 1]))
 
 
 def _pieces_of(rods: Rods) -> tuple[list[int], int]:
@@ -71,15 +52,15 @@ def _pieces_of(rods: Rods) -> tuple[list[int], int]:
 
 
 class CutRods:
-    """Parallel rods that are all cut alike.
+    """Parallel rods that are all cut alike, with ends, elements and instants alike.
 
     Lengths are scaled by the longest rod, forces by ES of the stiffest (solver/README.md, 1).
 
-    Each rod rubs on a support of its own, or on the rods before and behind it. Degrees of freedom
-    run along rod after rod; a broken one has two at its break, and no boundary row there. Rows are
-    ordered by law, so that those of one law follow each other: the lower sides of all contacts, if
-    they are between rods, the upper sides of all contacts, then the left ends and the right ends,
-    cut by cut.
+    Each rod rubs on a support of its own, or on the rods before and behind it; `names` are those of
+    the interfaces, and `places` the positions of the nodes of each rod, (n_nodes,), m. Degrees of
+    freedom run along rod after rod; a broken one has two at its break, and no boundary row there.
+    Rows of one law follow each other: the lower sides of all contacts, if they are between rods,
+    the upper sides of all contacts, then the left ends and the right ends, cut by cut.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
     substructure. On the friction points it is that of a density ES/l_sub^2 over one element's
@@ -87,17 +68,6 @@ class CutRods:
     at the two sides of a cut, the iterations miss the figures that an independent implementation
     reports (displacement error 0.15 against 0.21 at iteration 10 of its test), with the whole
     element length they meet them.
-
-    Parameters
-    ----------
-    rods
-        Each rod is one of these; they have ends, numbers of elements and instants alike.
-    places
-        Positions of the nodes of each, shape (n_nodes,), m.
-    names
-        Of the interfaces: on the support of each rod, or between each two.
-    rub_at_ends
-        Whether the first and the last node of a rod rub.
     """
 
     def __init__(

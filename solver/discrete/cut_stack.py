@@ -15,11 +15,9 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.bricks import Brick, Joint, joints_of
-from solver.discrete.cut_rods import substructure_sizes
-from solver.discrete.elements import edge_mass, elastic_matrix
-from solver.discrete.plane import Condensed, Rectangle, edge_lengths, side_basis
+from solver.discrete.plane import EDGE_MASS, Rectangle, SchurComplement, elastic_matrix, side_basis
 from solver.discrete.plane_parts import Part
-from solver.discrete.substructure import Elasticity
+from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 
 if TYPE_CHECKING:
     from solver.discrete.stack import Given, Stack
@@ -81,30 +79,21 @@ class CutStack:
     Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
     contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
 
-    Attributes
-    ----------
-    stack
-        The bodies.
-    positions
-        Of all nodes, body by body, shape (n_nodes, 2), scaled.
-    parts
-        All substructures, body by body and row by row. Rows are numbered part by part and side by
-        side.
-    pairs
-        Numbers of the pairs of every joint on the grid of all nodes, and the length of each,
-        scaled; joints without any are left out.
+    All nodes have scaled `positions`, body by body, shape (n_nodes, 2). The `parts` come body by
+    body and row by row; boundary rows are numbered part by part and side by side. The `pairs` of a
+    joint are their numbers on the grid of all nodes, and the scaled length of each.
     """
 
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
-        order, (columns, rows) = stack.order, stack.grid
+        columns, rows = stack.grid
         height = stack.height / stack.length
         self._element = 1.0 / stack.elements[0], height / stack.elements[1]
-        x = np.linspace(0.0, columns / stack.elements[0], order * columns + 1)
-        y = np.linspace(0.0, rows * height / stack.elements[1], order * rows + 1)
+        x = np.linspace(0.0, columns / stack.elements[0], columns + 1)
+        y = np.linspace(0.0, rows * height / stack.elements[1], rows + 1)
         nodes, positions, first = list[Indices](), list[Array](), 0
         for brick in stack.rectangles:
-            along, up = brick.nodes(order)
+            along, up = brick.nodes()
             everywhere = np.stack(np.meshgrid(x[along], y[up]), axis=-1)
             positions.append(everywhere.reshape(-1, 2))
             count = len(positions[-1])
@@ -134,27 +123,27 @@ class CutStack:
                 numbers[name] = n_rows + np.arange(shape[0] * shape[1]).reshape(shape)
                 n_rows += numbers[name].size
             brick = stack.rectangles[body]
-            along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes(order)
+            along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes()
             self.parts.append(
-                Part(condensed, operator, nodes[body][up, along], body, numbers, force)
+                Part(mesh, condensed, operator, nodes[body][up, along], body, numbers, force)
             )
 
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
         elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
-        return Rectangle(columns, rows, *self._element, elastic, self.stack.order)
+        return Rectangle(columns, rows, *self._element, elastic)
 
     def _operator_of(
         self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
-    ) -> tuple[Condensed, Elasticity]:
+    ) -> tuple[SchurComplement, Elasticity]:
         dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
-        condensed = Condensed(mesh, np.unique(dofs))
+        condensed = SchurComplement(mesh.outline, np.unique(dofs))
         density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
         weights = [mesh.edge_weights(one.side)[one.first : one.last] for one in traces]
         k = [
             np.repeat(density * own, len(one.components))
             for own, one in zip(weights, traces, strict=True)
         ]
-        trace = np.searchsorted(condensed.dofs, dofs)
+        trace = np.searchsorted(condensed.kept, dofs)
         return condensed, Elasticity(condensed.stiffness, trace, np.concatenate(k))
 
     def _outer(self, number: int) -> Iterator[str]:
@@ -191,7 +180,7 @@ class CutStack:
         """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
         number, side = joint.sides[which]
         part = self.parts[number]
-        mesh, count = part.condensed.rectangle, len(part.rows[joint])
+        mesh, count = part.rectangle, len(part.rows[joint])
         return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _is_known(self, joint: Joint) -> bool:
@@ -200,14 +189,14 @@ class CutStack:
         return joint.below is None and support is not None and support.bound is not None
 
     def _pairs_of(self, joint: Joint) -> tuple[Indices, Array]:
-        order, (before, after) = self.stack.order, self._left_out(joint)
-        count, step = joint.last - joint.first, self._element[joint.is_upright]
-        lengths = edge_lengths(order, count, step)
+        before, after = self._left_out(joint)
+        count = joint.last - joint.first
+        lengths = self._element[joint.is_upright] * tributary(count)
         if joint.is_upright:
             lengths[1] += before * lengths[0]
             lengths[-2] += after * lengths[-1]
-        some = slice(int(before), order * count + 1 - after)
-        return (order * joint.first + np.arange(order * count + 1))[some], lengths[some]
+        some = slice(int(before), count + 1 - after)
+        return np.arange(joint.first, joint.last + 1)[some], lengths[some]
 
     def _left_out(self, joint: Joint) -> tuple[bool, bool]:
         """Whether the node at the first, and at the last end of a joint has no pair.
@@ -239,7 +228,7 @@ class CutStack:
             held = (0,) if self._is_known(joint) else (0, 1)
             for number, side in joint.sides:
                 own = self._pieces[number].rectangle
-                first = int(nodes[0]) - stack.order * (own.y if joint.is_upright else own.x)
+                first = int(nodes[0]) - (own.y if joint.is_upright else own.x)
                 trace = _Trace(side, held, first, first + len(nodes), self.has_macro(joint))
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
@@ -255,17 +244,17 @@ class CutStack:
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
-        stack, order = self.stack, self.stack.order
+        stack = self.stack
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
         for side in self._outer(number):
             nodes = mesh.edge(side)
             step = mesh.height if side in ("left", "right") else mesh.width
-            edges = np.arange(0, len(nodes) - 1, order)[:, None] + np.arange(order + 1)
+            edges = np.arange(len(nodes) - 1)[:, None] + np.arange(2)
             for component, given in enumerate(stack.sides[side]):
                 if given.prescribed or given.is_zero:
                     continue
                 traction = self.values(number, side, given) / stack.young
-                force = step * np.matmul(edge_mass(order), traction[edges])
+                force = step * np.matmul(EDGE_MASS, traction[edges])
                 np.add.at(total[:, component], nodes[edges], force)
         if stack.body_force is not None:
             areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
@@ -275,13 +264,10 @@ class CutStack:
 
     def values(self, number: int, side: str, given: Given) -> Array:
         """What is given at the nodes of a substructure on an outer side, (n_nodes, n_instants)."""
-        (own, body, _), (columns, rows) = self._pieces[number], self.stack.grid
-        first, count, whole = own.x, own.columns, columns
+        own, body, _ = self._pieces[number]
+        first, count, whole = own.x, own.columns, self.stack.grid[0]
         if side in ("left", "right"):
-            first, count, whole = own.y, own.rows, rows
-            if given.each_body:
-                brick = self.stack.rectangles[body]
-                first, whole = own.y - brick.y, brick.rows
-        order = self.stack.order
-        nodes = np.arange(order * first, order * (first + count) + 1)[:, None]
-        return np.asarray(given.mean + (2.0 * nodes / (order * whole) - 1.0) * given.slope)
+            brick = self.stack.rectangles[body]
+            first, count, whole = own.y - brick.y, own.rows, brick.rows
+        nodes = np.arange(first, first + count + 1)[:, None]
+        return np.asarray(given.mean + (2.0 * nodes / whole - 1.0) * given.slope)

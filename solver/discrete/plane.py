@@ -1,23 +1,23 @@
-"""Plane elasticity on a rectangle of equal elements, and its condensation onto what is kept."""
+"""Plane elasticity on rectangles of equal elements, and its condensation onto what is kept.
+
+Corners of an element are numbered counter-clockwise from the lower left; degrees of freedom are x
+and y of every corner, or node, in turn.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import product
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
+from numpy.polynomial.legendre import leggauss, legvander
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
-from solver.discrete.elements import (
-    edge_mass,
-    element_stiffness,
-    projected_strain_matrix,
-    strain_matrix,
-)
+from solver.discrete.substructure import tributary
 
 LONG_SIDES = 0.6
 """Factor on the macro degree of a side, times the root of its length over the depth behind it. Of
@@ -28,20 +28,76 @@ HIGHEST_DEGREE = 10
 in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25 (measured)."""
 
 
+def elastic_matrix(young: float, poisson: float, state: str) -> Array:
+    """Matrix from strains (xx, yy, 2 xy) to stresses, shape (3, 3).
+
+    `state` is "strain" or "stress" (Timoshenko and Goodier, Theory of Elasticity, 1970, ch. 2).
+    """
+    if state == "strain":
+        young, poisson = young / (1.0 - poisson**2), poisson / (1.0 - poisson)
+    factor = young / (1.0 - poisson**2)
+    shear = 0.5 * (1.0 - poisson)
+    return factor * np.array([[1.0, poisson, 0.0], [poisson, 1.0, 0.0], [0.0, 0.0, shear]])
+
+
+def von_mises(stress: Array, poisson: float, state: str) -> Array:
+    """Von Mises' equivalent of stresses (xx, yy, xy), shape (n, 3), as shape (n,).
+
+    In plane strain the stress across the plane is Poisson's ratio times the sum of the other two.
+    """
+    xx, yy, xy = stress.T
+    zz = poisson * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * squares + 3.0 * xy**2))
+
+
+EDGE_MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
+"""From a traction at both ends of an edge of length 1, linear between them, to their forces."""
+
+
+def strain_matrix(xi: float, eta: float, width: float, height: float) -> Array:
+    """Matrix from displacements of the corners to strains at a point, (3, 8).
+
+    `xi` and `eta` run from -1 to 1 over an element of the given width and height.
+    """
+    dx = 0.5 * np.array([eta - 1.0, 1.0 - eta, 1.0 + eta, -1.0 - eta]) / width
+    dy = 0.5 * np.array([xi - 1.0, -1.0 - xi, 1.0 + xi, 1.0 - xi]) / height
+    matrix = np.zeros((3, 8))
+    matrix[0, 0::2], matrix[1, 1::2] = dx, dy
+    matrix[2, 0::2], matrix[2, 1::2] = dy, dx
+    return matrix
+
+
+def element_stiffness(width: float, height: float, elastic: Array) -> Array:
+    """Stiffness of an element per unit thickness, shape (8, 8), with `elastic_matrix`.
+
+    Bilinear, with the two incompatible bending modes of each component condensed (Taylor, Beresford
+    and Wilson, Int. J. Numer. Meth. Eng. 10, 1976): it does not lock where thin layers bend or
+    bodies are nearly incompressible, and passes the patch test on rectangles.
+    """
+    stiffness = np.zeros((12, 12))
+    for eta, xi in product(leggauss(2)[0].tolist(), repeat=2):
+        at = xi, eta, width, height
+        strain = np.hstack([strain_matrix(*at), _bending(*at)])
+        stiffness += 0.25 * width * height * strain.T @ elastic @ strain
+    coupling = stiffness[8:, :8]
+    stiffness = stiffness[:8, :8] - coupling.T @ np.linalg.solve(stiffness[8:, 8:], coupling)
+    return np.asarray(0.5 * (stiffness + stiffness.T))
+
+
+def _bending(xi: float, eta: float, width: float, height: float) -> Array:
+    """Strains of 1 - xi^2 and 1 - eta^2 of both components, shape (3, 4)."""
+    strain = np.zeros((3, 4))
+    strain[0, 0] = strain[2, 1] = -2.0 * xi * 2.0 / width
+    strain[2, 2] = strain[1, 3] = -2.0 * eta * 2.0 / height
+    return strain
+
+
 @dataclass(frozen=True, eq=False)
 class Rectangle:
     """A rectangle of equal elements; nodes are numbered row by row from the lower left.
 
-    Attributes
-    ----------
-    columns, rows
-        Elements along x and y.
-    width, height
-        Size of an element, scaled.
-    elastic
-        As of `elastic_matrix`, scaled.
-    order
-        Of the elements: 1 bilinear, 2 biquadratic.
+    The size is that of an element, and like `elastic`, of `elastic_matrix`, it is scaled.
     """
 
     columns: int
@@ -49,32 +105,21 @@ class Rectangle:
     width: float
     height: float
     elastic: Array
-    order: int = 1
 
     @property
     def n_nodes(self) -> int:
         """Number of nodes."""
-        return (self.order * self.columns + 1) * (self.order * self.rows + 1)
+        return (self.columns + 1) * (self.rows + 1)
 
     @cached_property
     def nodes(self) -> Indices:
-        """Number of every node, shape (order rows + 1, order columns + 1), from below."""
-        shape = self.order * self.rows + 1, self.order * self.columns + 1
+        """Number of every node, shape (rows + 1, columns + 1), from below."""
+        shape = self.rows + 1, self.columns + 1
         return np.arange(self.n_nodes, dtype=np.intp).reshape(shape)
 
     @cached_property
     def elements(self) -> Indices:
-        """Nodes of every element, row by row, shape (n_elements, (order + 1)^2)."""
-        size = self.order + 1
-        windows = np.lib.stride_tricks.sliding_window_view(self.nodes, (size, size))
-        return np.asarray(windows[:: self.order, :: self.order].reshape(-1, size * size))
-
-    @cached_property
-    def cells(self) -> Indices:
-        """Quadrilaterals between neighbouring nodes, counter-clockwise, shape (n_cells, 4).
-
-        An element, or a quarter of a biquadratic one; row by row over the whole rectangle.
-        """
+        """Corners of every element, counter-clockwise, row by row, shape (n_elements, 4)."""
         n = self.nodes
         corners = n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]
         return np.stack([corner.ravel() for corner in corners], axis=1)
@@ -82,7 +127,7 @@ class Rectangle:
     @cached_property
     def stiffness(self) -> sparse.csc_array:
         """Stiffness of all nodes, two degrees of freedom each, shape (2 n_nodes, 2 n_nodes)."""
-        own = element_stiffness(self.order, self.width, self.height, self.elastic)
+        own = element_stiffness(self.width, self.height, self.elastic)
         dofs = dofs_of(self.elements)
         rows, columns = np.repeat(dofs, len(own), axis=1), np.tile(dofs, len(own))
         values = np.tile(own.ravel(), len(dofs))
@@ -105,30 +150,16 @@ class Rectangle:
         """Length of a side that belongs to each of its nodes, scaled."""
         upright = side in ("left", "right")
         count, step = (self.rows, self.height) if upright else (self.columns, self.width)
-        return edge_lengths(self.order, count, step)
+        return step * tributary(count)
 
     def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at the centres of the cells, (n_cells, 3), scaled.
+        """Stresses (xx, yy, xy) at the centres of the elements, (n_elements, 3), scaled.
 
         From the displacement of all nodes, (n_nodes, 2); incompatible modes have no strain there.
         """
-        own = displacement[self.elements].reshape(self.rows, self.columns, -1)
-        stresses = np.empty((self.rows, self.order, self.columns, self.order, 3))
-        centres = (np.arange(self.order) + 0.5) * 2.0 / self.order - 1.0
-        for up, eta in enumerate(centres):
-            for along, xi in enumerate(centres):
-                at = float(xi), float(eta), self.width, self.height
-                strain = strain_matrix(1, *at) if self.order == 1 else projected_strain_matrix(*at)
-                stresses[:, up, :, along] = own @ (self.elastic @ strain).T
-        return stresses.reshape(-1, 3)
-
-
-def edge_lengths(order: int, count: int, step: float) -> Array:
-    """Length that belongs to each node of edges of elements in a row, of one length each."""
-    lengths = np.zeros(order * count + 1)
-    for place, share in enumerate(edge_mass(order).sum(axis=0)):
-        lengths[place : place + order * count : order] += step * share
-    return lengths
+        strain = strain_matrix(0.0, 0.0, self.width, self.height)
+        own = displacement[self.elements].reshape(len(self.elements), -1)
+        return np.asarray(own @ (self.elastic @ strain).T)
 
 
 def dofs_of(nodes: Indices) -> Indices:
@@ -154,89 +185,59 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
 
 
 class SchurComplement:
-    """A symmetric stiffness, sparse or dense, seen from some of its degrees of freedom.
+    """A symmetric stiffness, sparse or condensed already, seen from some degrees of freedom.
 
-    Attributes
-    ----------
-    kept
-        These degrees of freedom, ascending.
-    stiffness
-        Of what is kept, shape (n_kept, n_kept), dense, symmetric.
+    These are `kept`, ascending, and have a dense `stiffness`, shape (n_kept, n_kept).
 
     Raises
     ------
     np.linalg.LinAlgError
-        Where a dense one is free to move while what is kept is held.
+        Where holding what is kept would leave one that is condensed already free to move.
     """
 
-    def __init__(self, whole: sparse.csc_array | Array, kept: Indices) -> None:
-        self._size, self.kept = whole.shape[0], kept
-        self._rest = np.setdiff1d(np.arange(self._size), kept)
-        stiffness, others = _dense(whole[kept][:, kept]), whole[self._rest]
+    def __init__(self, whole: sparse.csc_array | SchurComplement, kept: Indices) -> None:
+        self.kept, self._before, places = kept, None, kept
+        stiffness: sparse.csc_array | Array
+        if isinstance(whole, SchurComplement):
+            self._before, stiffness = whole, whole.stiffness
+            places = np.searchsorted(whole.kept, kept)
+        else:
+            stiffness = whole
+        self._size, self._places = stiffness.shape[0], places
+        self._rest = np.setdiff1d(np.arange(self._size), places)
+        own, others = _dense(stiffness[places][:, places]), stiffness[self._rest]
         if len(self._rest):
-            coupling, inner = _dense(others[:, kept]), others[:, self._rest]
+            coupling, inner = _dense(others[:, places]), others[:, self._rest]
             if isinstance(inner, np.ndarray):
                 self._solve = partial(cho_solve, cho_factor(inner))
             else:
                 self._solve = splu(sparse.csc_array(inner)).solve
             self._response = self._solve(coupling)
-            stiffness -= coupling.T @ self._response
-        self.stiffness: Array = 0.5 * (stiffness + stiffness.T)
+            own -= coupling.T @ self._response
+        self.stiffness: Array = 0.5 * (own + own.T)
 
     def condense(self, force: Array) -> Array:
         """Bring forces, shape (n, n_columns), onto what is kept, shape (n_kept, n_columns)."""
+        if self._before is not None:
+            force = self._before.condense(force)
         if not len(self._rest):
-            return np.asarray(force[self.kept])
-        return np.asarray(force[self.kept] - self._response.T @ force[self._rest])
+            return np.asarray(force[self._places])
+        return np.asarray(force[self._places] - self._response.T @ force[self._rest])
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all, shape (n, n_columns), from that of what is kept, under forces."""
+        nearer = force
+        if self._before is not None and force is not None:
+            nearer = self._before.condense(force)
         whole = np.empty((self._size, kept.shape[1]))
-        whole[self.kept] = kept
+        whole[self._places] = kept
         if len(self._rest):
             rest = -(self._response @ kept)
-            if force is not None:
-                rest += self._solve(np.ascontiguousarray(force[self._rest]))
+            if nearer is not None:
+                rest += self._solve(np.ascontiguousarray(nearer[self._rest]))
             whole[self._rest] = rest
-        return whole
+        return whole if self._before is None else self._before.recover(whole, force)
 
 
 def _dense(block: sparse.csc_array | Array) -> Array:
     return np.asarray(block if isinstance(block, np.ndarray) else block.toarray(), order="C")
-
-
-class Condensed:
-    """A rectangle seen from some degrees of freedom of its outline.
-
-    Condensation onto the whole outline is shared with others of the rectangle.
-
-    Attributes
-    ----------
-    rectangle
-        The mesh.
-    dofs
-        What is kept, among the degrees of freedom of the rectangle, ascending.
-    stiffness
-        Of what is kept, shape (n_kept, n_kept), dense, symmetric.
-
-    Raises
-    ------
-    np.linalg.LinAlgError
-        Where holding what is kept would leave the rectangle free to move.
-    """
-
-    def __init__(self, rectangle: Rectangle, dofs: Indices) -> None:
-        self.rectangle, self.dofs, self._outline = rectangle, dofs, rectangle.outline
-        places = np.searchsorted(self._outline.kept, dofs)
-        self._inner = SchurComplement(self._outline.stiffness, places)
-        self.stiffness = self._inner.stiffness
-
-    def condense(self, force: Array) -> Array:
-        """Bring nodal forces, shape (2 n_nodes, n), onto what is kept, shape (n_kept, n)."""
-        return self._inner.condense(self._outline.condense(force))
-
-    def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of all nodes, (n_nodes, 2, n), by that of what is kept, under forces."""
-        on_outline = None if force is None else self._outline.condense(force)
-        whole = self._outline.recover(self._inner.recover(kept, on_outline), force)
-        return whole.reshape(-1, 2, kept.shape[1])

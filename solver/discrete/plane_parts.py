@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane import Condensed, dofs_of
+from solver.discrete.plane import Rectangle, SchurComplement, dofs_of
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity
 
@@ -18,25 +18,15 @@ HELD = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A rectangular substructure.
+    """A rectangular substructure: its mesh, and its stiffness seen from its boundary rows.
 
-    Attributes
-    ----------
-    condensed
-        Its stiffness, seen from its boundary rows.
-    elasticity
-        The same, with the search direction; equal parts share it.
-    nodes
-        Number of its nodes among those of all bodies, shape (n_rows, n_columns) of the mesh.
-    body
-        Number of its body.
-    rows
-        Boundary rows by joint or by the name of a side, shape (n_nodes, n_components) each.
-    force
-        Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
+    Equal parts share these, and the elasticity. Its `nodes` have numbers among those of all bodies,
+    shape (n_rows, n_columns) of the mesh; boundary `rows` go by joint or by the name of a side,
+    shape (n_nodes, n_components) each; nodal forces are scaled, shape (2 n_nodes, n_instants).
     """
 
-    condensed: Condensed
+    rectangle: Rectangle
+    condensed: SchurComplement
     elasticity: Elasticity
     nodes: Indices
     body: int
@@ -46,31 +36,25 @@ class Part:
     @property
     def dofs(self) -> Indices:
         """What is kept, among the degrees of freedom of all nodes."""
-        return dofs_of(self.nodes.ravel())[self.condensed.dofs]
+        return dofs_of(self.nodes.ravel())[self.condensed.kept]
 
 
 class Inside:
     """What lies inside condensed substructures, found when somebody looks.
 
-    Made of all substructures in order, and the scaled positions of all nodes, (n_nodes, 2).
-
     Attributes
     ----------
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
-    elements
-        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
-        as its four quarters.
+    elements, bodies, parts
+        Corners of every element, counter-clockwise, (n_elements, 4); body and substructure of each.
     grids
         Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
-    bodies, parts
-        Body and substructure of every element, shape (n_elements,).
     dofs
         Degrees of freedom of the problem under those that each substructure keeps.
-    places
-        Scaled position of every degree of freedom of the problem, shape (n_dofs, 2).
-    components
-        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
+    places, components
+        Scaled position of every degree of freedom of the problem, (n_dofs, 2), and its direction:
+        0 along x and 1 along y, (n_dofs,).
     """
 
     def __init__(
@@ -84,7 +68,7 @@ class Inside:
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
         self.places = positions[skeleton // 2]
-        corners = [part.nodes.ravel()[part.condensed.rectangle.cells] for part in parts]
+        corners = [part.nodes.ravel()[part.rectangle.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(own) for own in corners]
         self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
@@ -97,7 +81,8 @@ class Inside:
         whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             force = None if part.force is None else part.force[:, instants]
-            whole[part.nodes.ravel()] = part.condensed.recover(chosen[dofs], force)
+            own = part.condensed.recover(chosen[dofs], force)
+            whole[part.nodes.ravel()] = own.reshape(-1, 2, own.shape[1])
         return whole * self._length
 
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
@@ -116,8 +101,7 @@ class Inside:
                 np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
                 if part.force is not None:
                     still = np.zeros((len(dofs), self._size[1]))
-                    inner = part.condensed.recover(still, part.force).reshape(len(own), -1)
-                    constant += own[:, 0] @ inner
+                    constant += own[:, 0] @ part.condensed.recover(still, part.force)
         return total, constant * self._length
 
     def stress(self, displacement: Array) -> Array:
@@ -126,9 +110,7 @@ class Inside:
         `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
         """
         scaled = displacement / self._length
-        parts = [
-            part.condensed.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts
-        ]
+        parts = [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
         return self._young * np.concatenate(parts)
 
     def rigid_motions(self, fixed: Indices) -> Array | None:

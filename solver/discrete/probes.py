@@ -26,12 +26,8 @@ AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
 class Probe:
     """A weighted sum of displacements, and what loads alone add to it.
 
-    Attributes
-    ----------
-    dofs, weights
-        Degrees of freedom of the problem and their weights, shape (n,).
-    constant
-        Shape (n_instants,), in the probe's unit, or 0.
+    Of some degrees of freedom of the problem, with a weight each, shape (n,); the constant, in the
+    probe's unit, has shape (n_instants,), or is 0.
     """
 
     dofs: Indices
@@ -109,21 +105,9 @@ def reaction(problem: Problem, name: str, component: int | None = None) -> Probe
 
 
 class AxialForce:
-    """Axial force in the elements of rods, from their displacement.
+    """Axial force in the elements of rods, from their displacement at some instants.
 
-    Parameters
-    ----------
-    problem
-        One of rods.
-    instants
-        Those at which it is evaluated; all by default.
-
-    Attributes
-    ----------
-    positions
-        Middle of every element, shape (n_elements,), m.
-    wires
-        Wire of every element, from 0, shape (n_elements,).
+    Elements have their middles at `positions`, m, and lie in `wires`, from 0, (n_elements,) each.
     """
 
     def __init__(self, problem: Problem, instants: slice | Indices = slice(None)) -> None:

@@ -29,13 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scales:
-    """Units in which a problem is written, so that no method sees the size of a pascal.
-
-    Attributes
-    ----------
-    displacement, force, time
-        One scaled unit of each, in m, N and s.
-    """
+    """One scaled unit of each, in m, N and s, so that no method sees the size of a pascal."""
 
     displacement: float
     force: float
@@ -48,8 +42,6 @@ class Problem:
 
     Attributes
     ----------
-    substructures
-        All substructures, in order.
     interfaces
         All interfaces by name; together they own every boundary row once.
     positions
@@ -57,8 +49,6 @@ class Problem:
         rod, (n_dofs, 2) in the plane.
     instants
         Shape (n_instants,), in s.
-    scales
-        What one scaled unit is in SI.
     inside
         What the degrees of freedom do not show, where substructures are condensed; else None.
     rest

@@ -68,7 +68,7 @@ class End:
 class Rods:
     """One rod on a rigid rough support, or equal parallel rods that rub on each other.
 
-    Absent parts are None.
+    All have the same ends and friction law; absent parts are None.
 
     Attributes
     ----------
@@ -82,8 +82,6 @@ class Rods:
         with time (n_nodes, n_instants).
     factors
         On the bound of each interface between several rods, shape (wires - 1,), or of all.
-    left, right
-        The ends of every rod.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
     wires
@@ -99,8 +97,6 @@ class Rods:
     settlement
         Displacement s of the support itself, at the nodes of a single rod, shape (n_nodes,
         n_instants), m. Ends are not on it.
-    friction_law
-        Along the interfaces.
     section
         Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
         of the inverse is 1.

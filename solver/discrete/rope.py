@@ -39,12 +39,9 @@ class RopeWire:
         From 0 on, inside out and around.
     made
         Of what, and how it is laid: all wires of its layer.
-    radius
-        Of the helix of its centre line, R, m.
-    start
-        Polar angle theta at its beginning, from the outermost fibre, rad.
-    length
-        Of the wire, m.
+    radius, start, length
+        Of the helix of its centre line, R, m; polar angle theta at its beginning, from the
+        outermost fibre, rad; and length of the wire, m.
     bound
         Friction bound per length of wire, N/m: a number, or over time, shape (n_instants,).
     curvature
@@ -129,27 +126,19 @@ class RopeWire:
 class Rope:
     """Helical wires of a strand whose sections stay plane, so that none is tied to another.
 
-    Their order means nothing.
-
     Attributes
     ----------
     wires
-        All on equally many elements.
+        All on equally many elements, in any order.
     substructures
         Parts that the elements of a wire are dealt to.
-    tension
-        Of the strand, shape (n_instants,), N, for whoever draws it.
-    curvature
-        Of the strand, uniform or at its clamp, same shape, 1/m.
+    tension, curvature
+        Of the strand, N, for whoever draws it; and, uniform or at its clamp, 1/m: (n_instants,).
     is_clamped
         Whether the curvature falls away from a clamp, so that every wire is there; or it is the
         same all along, and the wires of a layer differ by their phase alone.
-    section
-        The strand's cross-section.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
-    friction_law
-        Of every wire on what it lies on.
     """
 
     wires: Sequence[RopeWire]

@@ -31,15 +31,13 @@ class Given:
     prescribed
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
-        Over time, shape (n_instants,); no slope is 0.
-    each_body
-        Whether s runs over each body of the stack anew, on the left and the right.
+        Over time, shape (n_instants,); no slope is 0. On the left and the right s runs over each
+        body anew.
     """
 
     prescribed: bool
     mean: Array
     slope: Array | float = 0.0
-    each_body: bool = False
 
     @property
     def is_zero(self) -> bool:
@@ -60,10 +58,9 @@ class Support:
 
     Attributes
     ----------
-    gap
-        Opening at the nodes of the lowest side, shape (nodes along,), m.
-    friction
-        Coefficient mu, or that of the nodes, shape (nodes along,).
+    gap, friction
+        Opening at the nodes of the lowest side, m, shape (nodes along,), and coefficient mu there,
+        or of all.
     bound
         Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
         support then presses as much as that takes, and adds no pressure of its own. None where
@@ -79,12 +76,7 @@ class Support:
 class Spring:
     """A spring along x at the foot of the right side of the lowest body, slack at first.
 
-    Attributes
-    ----------
-    slack
-        How far the foot may move to the left before it is pulled back, m.
-    stiffness
-        N/m.
+    Before it is pulled back, the foot may move to the left by the slack, m; stiffness in N/m.
     """
 
     slack: float
@@ -96,6 +88,8 @@ class Stack:
     """Rectangular bodies that lie on each other, or stand beside each other; one metre thick.
 
     They are in contact wherever sides meet, and where they stand at y = 0 with the support.
+
+    They have one friction law, also on the support; times are in s.
 
     Attributes
     ----------
@@ -111,8 +105,6 @@ class Stack:
     elements, substructures
         Of one body, along and up. Bodies on each other that all begin at the left are also cut
         where any of them ends.
-    order
-        Of the elements: 1 bilinear, 2 biquadratic.
     macro_degree
         Of the macro basis on each side of a substructure; long sides get more in proportion.
     young, poisson, state
@@ -129,15 +121,11 @@ class Stack:
         support replaces "bottom". `left` and `right` run over the sides of all bodies.
     body_force
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
-    instants, duration
-        s.
     spring
         At the right side, of which nothing is prescribed then; or None.
     tilt
         Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
         `body_force` has turned the other way already. None where it does not.
-    friction_law
-        Between the bodies, and on the support.
     """
 
     length: float
@@ -148,7 +136,6 @@ class Stack:
     poisson: float
     instants: Array
     duration: float
-    order: int = 1
     macro_degree: int = 1
     state: str = "strain"
     stiffness: Array | None = None
@@ -254,9 +241,8 @@ class Stack:
 
     def _moment(self) -> Array:
         """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
-        given, size = self.sides["right"].x, self.longest * self.height**2
-        bodies = 1 if given.each_body else len(self.rectangles)
-        return np.broadcast_to(-bodies * size / 6.0 * given.slope, self.instants.shape)
+        size = self.longest * self.height**2
+        return np.broadcast_to(-size / 6.0 * self.sides["right"].x.slope, self.instants.shape)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""

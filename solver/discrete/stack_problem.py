@@ -131,7 +131,7 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         normal=normal,
         tangential=friction,
         points=points,
-        positions=touching * (size / stack.elements[axis] / stack.order),
+        positions=touching * (size / stack.elements[axis]),
         weights=areas,
         around=Bodies(
             moduli=(stack.modulus(body), np.inf if under is None else stack.modulus(under)),
@@ -153,7 +153,7 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     """Law of a spring: it pushes to the right, as if from the left."""
     stack = cut.stack
     (part,) = (part for part in cut.parts if "spring" in part.rows)
-    rows, sides = part.rows["spring"], part.condensed.rectangle.edge_weights("right")
+    rows, sides = part.rows["spring"], part.rectangle.edge_weights("right")
     return Contact(
         normal=Unilateral(
             component=Component(rows[:, 0]),

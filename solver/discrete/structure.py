@@ -43,16 +43,12 @@ class Act:
     ----------
     where
         "right x": along a side; or "body": throughout.
-    symbol
-        What it is called.
     places
         Where on the undeformed bodies, shape (n, 2), as shares of their length and height.
     towards
         Direction of positive values, a unit vector, or one of each instant, (2, n_instants).
     values
         Over time, shape (n_instants,) or, of each place, (n, n_instants).
-    unit
-        Of the values.
     """
 
     where: str
@@ -104,12 +100,8 @@ class Description:
         Number of equal bodies above each other.
     length, height
         Of all of them, m; rods have no height.
-    instants
-        Shape (n_instants,), s.
     acts
         All that acts; what is zero throughout is left out.
-    holds
-        All that holds the bodies.
     tilt
         Angle over time by which the x axis rises, shape (n_instants,), rad, where it does.
     broken
@@ -146,16 +138,8 @@ class LoopFields(Protocol):
 class Loop:
     """A force over the displacement that it works on; what is inside the loop is dissipated.
 
-    Or over whatever drives it: then the loop shows how it lags behind.
-
-    Attributes
-    ----------
-    across, up
-        Title and unit of both.
-    displacement
-        Of m, or 1 for a rotation; or what drives.
-    force
-        What finds it, N, shape (n_instants,).
+    Or over whatever drives it: then the loop shows how it lags behind. Both have a title and a
+    unit; the force is found in N, shape (n_instants,).
     """
 
     across: tuple[str, str]

@@ -66,3 +66,16 @@ class Substructure:
     rows: Indices
     body_force: Array | None
     free_force: Array | None = None
+
+
+def tributary(elements: int) -> Array:
+    """Length that belongs to each node of a row of elements, over that of one of them."""
+    shares = np.ones(elements + 1)
+    shares[[0, -1]] = 0.5
+    return shares
+
+
+def substructure_sizes(elements: int, substructures: int) -> list[int]:
+    """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
+    size, extra = divmod(elements, substructures)
+    return [size + 1] * extra + [size] * (substructures - extra)

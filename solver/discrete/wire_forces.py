@@ -14,16 +14,9 @@ from solver.discrete.rope import Rope
 class CutWires:
     """All wires of the layers at one section, inside out and around, shape (n_cut,) each.
 
-    Attributes
-    ----------
-    wire
-        The place in `Rope.wires` of the one that stands for each.
-    centres
-        Sideways and towards the outermost fibre, shape (n_cut, 2), m.
-    arc
-        Where that is along the wire that stands for it, m.
-    side
-        1, or -1 where it slips the other way: on the other side of the plane of bending.
+    A wire is cut at its centre, sideways and towards the outermost fibre, (n_cut, 2), m. The one
+    that stands for it has this place in `Rope.wires`, and is there at this arc length, m; the side
+    is -1 where a wire slips the other way, on the other side of the plane of bending, else 1.
     """
 
     wire: Indices
@@ -85,13 +78,11 @@ def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the first and
     the last of them.
     """
-    if rope.elements == 1:
-        return np.asarray(stress[cut.wire, 0])
     sizes = np.array([wire.length / rope.elements for wire in rope.wires])
     at = cut.arc / sizes[cut.wire] - 0.5
-    first = np.clip(np.floor(at).astype(np.intp), 0, rope.elements - 2)
+    first = np.clip(np.floor(at).astype(np.intp), 0, max(rope.elements - 2, 0))
     share = (at - first)[:, None]
-    low, high = stress[cut.wire, first], stress[cut.wire, first + 1]
+    low, high = stress[cut.wire, first], stress[cut.wire, np.minimum(first + 1, rope.elements - 1)]
     return np.asarray((1.0 - share) * low + share * high)
 
 

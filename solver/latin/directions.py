@@ -26,14 +26,12 @@ contact force takes 11 to 77 iterations, as many with 1.5 and 3, more than 300 w
 
 @dataclass(frozen=True)
 class SearchDirection(ABC):
-    """A rule for k, and factors on it (solver/README.md, 5).
+    """A rule for k, and a factor on it (solver/README.md, 5).
 
     Attributes
     ----------
     scale
         Factor on k of all rows.
-    along, across
-        Further factors on k of contacts, of tangential and of normal components.
 
     Raises
     ------
@@ -42,20 +40,17 @@ class SearchDirection(ABC):
     """
 
     scale: float = 1.0
-    along: float = 1.0
-    across: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in ("scale", "along", "across"):
-            check_range(self, name, 0.0, np.inf, above=True)
+        check_range(self, "scale", 0.0, np.inf, above=True)
 
     @abstractmethod
     def rule(self, problem: Problem) -> Array:
-        """Search direction k of every row without the factors, shape (n_rows,), scaled."""
+        """Search direction k of every row without the factor, shape (n_rows,), scaled."""
 
     def of(self, problem: Problem) -> Array:
         """Search direction k of every row at the start, shape (n_rows,), scaled, read-only."""
-        return self._with_factors(problem, self.rule(problem))
+        return read_only(self.scale * self.rule(problem))
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
         """Progress of a run that goes on from a checkpoint, if from any: k, and how it changes."""
@@ -65,23 +60,13 @@ class SearchDirection(ABC):
         """Progress after an iteration, with the k of the next."""
         return progress
 
-    def _with_factors(self, problem: Problem, k: Array) -> Array:
-        k = self.scale * k
-        for law in problem.rubbing.values():
-            for rows in law.tangent.sides:
-                k[rows] *= self.along
-            if law.normal is not None:
-                for rows in law.normal.component.sides:
-                    k[rows] *= self.across
-        return read_only(np.ascontiguousarray(k))
-
 
 @dataclass(frozen=True)
 class Paper(SearchDirection):
     """The paper's k: the stiffness of a substructure."""
 
     def rule(self, problem: Problem) -> Array:
-        """Search direction k of every row without the factors, shape (n_rows,), scaled."""
+        """Search direction k of every row without the factor, shape (n_rows,), scaled."""
         return problem.direction
 
 
@@ -100,7 +85,7 @@ class Auto(SearchDirection):
     """
 
     def rule(self, problem: Problem) -> Array:
-        """Search direction k of every row without the factors, shape (n_rows,), scaled."""
+        """Search direction k of every row without the factor, shape (n_rows,), scaled."""
         return automatic(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
@@ -122,7 +107,7 @@ class Auto(SearchDirection):
         between = (group for group in problem.contact_groups if not group.law.is_on_support)
         if any(np.any(np.abs(group.status(*local)) == 1) for group in between):
             return UpdateProgress("returned", progress.k)
-        k = self._with_factors(problem, automatic(problem, sticks=True))
+        k = read_only(self.scale * automatic(problem, sticks=True))
         zero = np.zeros_like(iterate.outgoing)
         return UpdateProgress("updated", k, fields=(zero, zero))
 

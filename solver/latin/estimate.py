@@ -24,8 +24,6 @@ LONG = 100
 contact force that dies out changes by much of itself for ever."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
-ROOM = 4.0
-"""Times the seconds of a step that are left of a run's limit when its last trial begins."""
 AGAIN = 2.0
 """Ratio of the iterations at which a failed status step is tried again, and its cost asked anew: a
 rough number, and dear beside a small iteration."""
@@ -38,19 +36,10 @@ class ErrorEstimate:
     costs more than it saves, it is what the last changes let expect, with a factor for safety.
 
     With `needs_proof` a certified solution alone counts, whatever it costs: bases that are too
-    small converge to something else, which no change shows.
-
-    Attributes
-    ----------
-    needs_proof
-        As given.
-    certificate
-        The solution, once it is known.
-    deadline
-        When a status step is given up, and before which none begins that would take longer, by
-        `time.perf_counter`.
-    ending
-        How the run ends, if the last status step came to where no equilibrium goes on.
+    small converge to something else, which no change shows. The `certificate` is None until it is
+    known. A status step is given up at the `deadline`, by `time.perf_counter`, and none begins that
+    would take longer. The `ending` is that of a run whose last status step came to where no
+    equilibrium goes on.
     """
 
     def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
@@ -59,7 +48,7 @@ class ErrorEstimate:
         self._next_trial = 1
         self._solver: Incremental | None = None
         self._costs: tuple[int, Costs] | None = None
-        self._has_solver, self._had_its_last = True, False
+        self._has_solver = True
         self.certificate: Certificate | None = None
         self.deadline = math.inf
         self.ending: Status | None = None
@@ -102,14 +91,6 @@ class ErrorEstimate:
         if not self._has_solver or costs.step > self._left():
             return False
         return self.needs_proof or costs.afford(patience * iterate.number, least)
-
-    def try_in_time(self, iterate: Iterate) -> None:
-        """Try the status step, once, where a run without an answer has no time for it later."""
-        if self.certificate is not None or math.isinf(self.deadline) or self._had_its_last:
-            return
-        if self._left() <= ROOM * self._costs_of(iterate).step:
-            self._had_its_last = True
-            self.try_step(iterate, LAST, least=math.inf)
 
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> None:
         """Try the status step, unless it costs too much, as above."""

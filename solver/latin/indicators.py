@@ -76,22 +76,17 @@ STILL = 1e-6
 
 
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Check of W and F, (n_rows, n_instants), against the laws alone (solver/README.md, 4).
+    """Violation of the laws by W and F, (n_rows, n_instants), whatever k (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q
     times the mean slip. In unilateral contact q = mu N with the pressing force N, and with the
     opening g also N g where both are positive, tension times the mean slip, and overlap times the
-    mean force. Divided by the dissipation plus the largest elastic energy, so that it is defined
-    where nothing slides.
-
-    Returns
-    -------
-    Violation of friction at the interface where it is worst, as a share of the energy in play per
-    interface with friction, plus the relative gap of displacements and of forces at all other
-    interfaces; over the share of the largest force that friction can carry, if below one, so that
-    a small friction force is held to the same standard. Zero if and only if all laws hold, up to
-    the rounding of the fields.
+    mean force. Of the interface where it is worst it is divided by the mean of dissipation plus the
+    largest elastic energy, so that it is defined where nothing slides; the relative gap of
+    displacements and of forces at all other interfaces is added; and all is divided by the share of
+    the largest force that friction can carry, if below one, so that a small friction force is held
+    to the same standard. Zero if and only if all laws hold, up to the rounding of the fields.
     """
     noise = _rounding(displacement, force)
     groups = problem.contact_groups

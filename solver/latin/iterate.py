@@ -18,25 +18,21 @@ from solver.reduction.basis import SharedBasis
 
 @dataclass(frozen=True, eq=False)
 class UpdateProgress:
-    """How far the update of k has come.
+    """How far the update of k has come, and the k of the next iteration, shape (n_rows,).
 
     Attributes
     ----------
     phase
         Whether k is that of the start and may change ("first"), another ("updated"), or that of the
         start for good ("returned").
-    k
-        Search direction of the rows in the next iteration, shape (n_rows,).
     count
         First: iterations on end with hardly a change of status. Updated: iterations since the last
         trial.
     status
         Contact status of the last iteration, shape (n_points, n_instants), where k follows it.
-    fields
-        W and F of the linear stage at the last trial, shape (n_rows, n_instants) each: from where
-        the next iteration goes on if its k is another.
-    violation
-        The k-free indicator of these.
+    fields, violation
+        W and F of the linear stage at the last trial, shape (n_rows, n_instants) each, from where
+        the next iteration goes on if its k is another; and the k-free indicator of these.
     """
 
     phase: Literal["first", "updated", "returned"]
@@ -51,16 +47,9 @@ class UpdateProgress:
 class Checkpoint:
     """From where an iteration can go on: exactly, but for an acceleration, which begins anew.
 
-    Attributes
-    ----------
-    number, seconds
-        Iterations done and time taken so far.
-    outgoing
-        W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
-    bases
-        The separated bases that hold it, one per substructure, if any do.
-    course
-        How far the update of k has come; None where the fields are those of another run.
+    After so many iterations and seconds: W + F/k of the linear stage, (n_rows, n_instants), scaled,
+    and the bases that hold it, if any do; how far the update of k has come, None where the fields
+    are those of another run.
     """
 
     number: int
@@ -78,10 +67,8 @@ class Iterate:
 
     Attributes
     ----------
-    number
-        Iterations done, from 1.
-    seconds
-        Time that the method took so far, set-up included, looking excluded.
+    number, seconds
+        Iterations done, and time that the method took so far, set-up included, looking excluded.
     k
         Search direction of the rows, shape (n_rows,), scaled.
     outgoing, incoming

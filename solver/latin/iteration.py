@@ -61,13 +61,8 @@ def iterations(
 class Iteration:
     """Both stages of the method on a problem, in turn, and what passes between them.
 
-    Attributes
-    ----------
-    k
-        Search direction of the rows, shape (n_rows,), scaled, read-only.
-    incoming, outgoing
-        W - F/k and W + F/k of the linear stage, shape (n_rows, n_instants); read-only, and new
-        after every linear stage.
+    `incoming` and `outgoing` are W - F/k and W + F/k of the linear stage, (n_rows, n_instants),
+    read-only, and new after every linear stage.
     """
 
     def __init__(self, problem: Problem, latin: Latin, start: Checkpoint | None = None) -> None:

@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 class Full:
     """A linear stage with a value for every point and instant.
 
-    Attributes
-    ----------
-    responses
-        Factors of substructures that runs with one k share; None: each run has its own.
+    Runs with one k may share the factors of substructures, `responses`.
     """
 
     responses: Responses | None = field(default=None, repr=False)
@@ -44,13 +41,6 @@ class LinearStage:
     comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
     relaxation mixes, and everything else follows from it. How y is held is the groups' business:
     in full, block by block of instants, or on separated bases.
-
-    Attributes
-    ----------
-    groups
-        Of identical substructures with the same k.
-    is_full
-        Whether their states are y in full.
     """
 
     def __init__(

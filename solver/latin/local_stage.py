@@ -17,14 +17,9 @@ class LocalStage:
     W^ + F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together, and what is
     local in time block by block of instants.
 
-    Attributes
-    ----------
-    displacement
-        W^ of the last call, shape (n_rows, n_instants); the next call makes a new field.
-    incoming
-        z with which the last call obeyed: as read, but for the shift of a body that slides.
-    motion
-        Of the rows of such a body, shape (n_rows,), which every call chooses anew; or None.
+    A call leaves W^ as `displacement`, a new field (n_rows, n_instants), and as `incoming` the z
+    with which it obeyed: as read, but for the shift of a body that slides, along a `motion` of its
+    rows, (n_rows,), or None.
     """
 
     def __init__(self, problem: Problem, k: Array, blocks: Blocks) -> None:

@@ -32,15 +32,11 @@ class Latin:
         Whether macro forces are in balance after every iteration, by the coarse problem.
     relaxation
         Share of the new iterate, the rest being the one before.
-    acceleration
-        `Anderson`, or None.
     start
         `Nested`, or None: zero, and of a body that only contact holds the place where it comes to
         rest.
     finish
         `StatusStep`, which ends a run with a certified solution, or None.
-    stop
-        When a run ends: `Stop`.
     threads
         That share an iteration on a large structure, in each of which BLAS has one; the results
         are the same to the bit.

@@ -142,17 +142,13 @@ class PGDGroup(Group):
         wanted = basis.coefficients(target)
         # What was last reflected is read already, and its place is free.
         whole = basis.squared(target, self._columns(shared.members, self._reflected))
-        inside = basis.squared_of(wanted)
+        left = whole - basis.squared_of(wanted)
         change = wanted - basis.time_functions
-        left = whole - inside
-        if left < NOTHING_LEFT * whole:
-            left = 0.0
-        enough = pgd.tolerance**2 * whole
-        explained, added = 0.0, 0
         basis = replace(basis, time_functions=basis.time_functions + relaxation * change)
-        if left > enough:
+        if left > max(pgd.tolerance**2, NOTHING_LEFT) * whole:
             rest = target - basis.modes @ wanted
-            while added < pgd.pairs and left - explained > enough:
+            added, explained = 0, 0.0
+            while added < pgd.pairs and left - explained > pgd.tolerance**2 * whole:
                 mode = basis.orthonormal(nearest_mode(rest, self.k, basis.weights))
                 if mode is None:
                     break
@@ -161,7 +157,7 @@ class PGDGroup(Group):
                 basis = basis.appended(mode, relaxation * time_function)
                 explained += basis.squared_of(time_function[None])
                 added += 1
-            basis, _ = basis.downsized(pgd.tolerance, pgd.modes)
+            basis = basis.downsized(pgd.tolerance, pgd.modes)
             incoming = self._incoming(basis)
         return SharedBasis(shared.members, basis, incoming)
 

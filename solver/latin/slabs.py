@@ -142,23 +142,12 @@ def solve_in_slabs(
     distance: Distance | None = None,
     spent: float = 0.0,
 ) -> Solution:
-    """Solve a problem slab after slab, each until the method's stop rule ends it.
+    """Solution of the whole interval, slab after slab, each until the stop rule ends it.
 
     The first is certified where that can be, whatever the method says: its error would go on into
-    all others. These end by estimate, as incremental solvers begin at rest.
-
-    Parameters
-    ----------
-    problem, latin, length
-        As for `first_slab`; a limit on seconds is on all slabs together.
-    distance
-        To a reference of the whole interval, for the errors in the last record.
-    spent
-        Seconds that the run took before, to make the problem.
-
-    Returns
-    -------
-    The solution of the whole interval, all records, and the first ending that is not convergence.
+    all others. These end by estimate, as incremental solvers begin at rest. The status is the first
+    that is not convergence; a limit on seconds is on all slabs together, and on those `spent`
+    before. The last record has the distance to a reference of the whole interval, if any.
     """
     began = time.perf_counter()
     slab: Slab | None = first_slab(problem, latin, length)

@@ -24,14 +24,14 @@ class Record:
     ----------
     seconds
         Time that the run took so far, s: set-up, iterations, and all that its stop rules compute.
-    indicator
-        LATIN indicator eta (paper, eq. 2).
-    behaviour
-        The k-free indicator.
+    indicator, behaviour
+        LATIN indicator eta (paper, eq. 2), and the k-free indicator.
     estimated_error
         Of the contact force, relative, without a reference; NaN where it is not estimated.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
+    modes
+        Of the separated basis of every substructure; empty without bases.
     is_answer
         As in `Iterate`.
     """
@@ -43,6 +43,7 @@ class Record:
     estimated_error: float
     error_displacement: float
     error_force: float
+    modes: tuple[int, ...] = ()
     is_answer: bool = False
 
 
@@ -80,6 +81,7 @@ def record(
         estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
+        modes=tuple(basis.n_modes for basis in iterate.bases),
         is_answer=iterate.is_answer,
     )
 

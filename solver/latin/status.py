@@ -41,20 +41,11 @@ class Status:
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """What the stop rules make of an iterate.
+    """What the stop rules make of an iterate after so many seconds, their own included.
 
-    Attributes
-    ----------
-    seconds
-        Time that the run took so far, the stop rules' own included, s.
-    estimated_error
-        As in `Record`; NaN where the rules did not need it.
-    status
-        How the run ends, or None if it goes on.
-    certificate
-        The solution of the discrete problem, if a status step has found it.
-    finished
-        The iterate that it makes, where the run ends with it, and the decision on that.
+    The estimated error is NaN where it was not needed, the status None where the run goes on, the
+    certificate None until a status step has found the solution. Where the run ends with that,
+    `finished` is the iterate that it makes, and the decision on it.
     """
 
     seconds: float
@@ -98,7 +89,6 @@ _BY_INCREMENTS = (
     " It is the incremental solver's answer: the status step began at the statuses of iterate {}, "
     "whose own contact force was still {} % away from it."
 )
-_ON_BASES = " The modes are those of that iterate."
 _FEW_MODES = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
@@ -142,7 +132,7 @@ def certified(
             message += _SEARCHED.format(away)
         else:
             message += _FOUND.format(before, f"{away:g}")
-        message += _ON_BASES * bool(finish.bases) + f" {advice}" * bool(advice)
+        message += f" {advice}" * bool(advice)
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
 
 

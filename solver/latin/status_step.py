@@ -38,17 +38,10 @@ with it exactly; on four wires of 320 elements the linear systems leave 1e-8 (me
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """A solution of the discrete problem, proven by its own residual.
+    """A solution of the discrete problem, proven by its own residual, and the distance to it.
 
-    Attributes
-    ----------
-    solution
-        Its fields, and where it jumps.
-    distance
-        To it.
-    residual
-        Its KKT residual, relative to the contact force: the largest of all points and instants as
-        if it were that of each.
+    The KKT residual is relative to the contact force: the largest of all points and instants as if
+    it were that of each.
     """
 
     solution: Reference
@@ -60,12 +53,9 @@ class Certificate:
 class StatusStep:
     """Ends a run with the certified solution, once a status step from an iterate holds.
 
-    Attributes
-    ----------
-    at_once
-        Whether it ends the run as soon as it holds. Otherwise the method goes on by itself until
-        its own force is within the accuracy, or until it gives up; what is certified is then put
-        beside its iterates, as the answer, and is none of them.
+    That is as soon as it holds, if `at_once`. Otherwise the method goes on by itself until its own
+    force is within the accuracy, or until it gives up; what is certified is then put beside its
+    iterates, as the answer, and is none of them.
     """
 
     at_once: bool = True
@@ -103,8 +93,6 @@ def status_step(
 def states_of(iterate: Iterate) -> States:
     """States of an iterate, as the incremental solvers take them for a guess.
 
-    Returns
-    -------
     Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants): -1, 0, +1 of tangential
     components; of normal ones 0 where they are closed; `OPEN` of both where they are not.
     """

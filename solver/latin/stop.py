@@ -91,13 +91,7 @@ class StopState:
     certified solution: at once, or once the iterates themselves are that near to it. It also ends
     when the LATIN indicator has stopped falling, or numbers to be finite. Most numbers cost as much
     as an iteration: they are computed when they may be low enough, and at the first and the last.
-
-    Attributes
-    ----------
-    estimate
-        Of the error of the contact force.
-    seconds
-        Time that the run took so far beside its iterations, with those before, to make the problem.
+    Beside its iterations the run took so many `seconds` so far.
     """
 
     def __init__(self, latin: Latin, spent: float = 0.0) -> None:
@@ -140,8 +134,6 @@ class StopState:
         """Estimated error of an iterate, NaN where nobody asks, and how the run ends, or None."""
         stop, estimate, number = self._stop, self.estimate, iterate.number
         is_last = number >= stop.iterations or iterate.seconds + self.seconds >= stop.seconds
-        if self._may_finish:
-            estimate.try_in_time(iterate)
         is_due, error, status = is_last or number >= self._on_goal.next, math.nan, None
         # How many iterations a search takes is asked; a distance costs a hundredth to a sixth of
         # one (measured on the five scenes).

@@ -42,7 +42,7 @@ class SeparatedBasis:
     ) -> SeparatedBasis:
         """Basis of a field, shape (n_boundary, n_columns), downsized."""
         root = np.sqrt(k)[:, None]
-        basis, _ = cls(np.eye(len(k)), root * field, k, weights).downsized(tolerance, largest)
+        basis = cls(np.eye(len(k)), root * field, k, weights).downsized(tolerance, largest)
         return replace(basis, modes=basis.modes / root)
 
     @property
@@ -90,24 +90,22 @@ class SeparatedBasis:
             mode = mode / rest
         return mode
 
-    def downsized(self, tolerance: float, largest: int) -> tuple[SeparatedBasis, float]:
+    def downsized(self, tolerance: float, largest: int) -> SeparatedBasis:
         """Basis with the modes of the field's singular values, sorted, without the smallest.
 
         These are dropped up to `tolerance`, a share of the field's norm, and in any case beyond the
         `largest` number of modes. As modes are orthonormal, the singular values of the field are
-        those of the small matrix of time functions. Also the share of the norm that was dropped.
+        those of the small matrix of time functions.
         """
         if self.n_modes == 0:
-            return self, 0.0
+            return self
         root = np.sqrt(self.weights)
         turn, values, right = np.linalg.svd(self.time_functions * root, full_matrices=False)
         tails = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
         rank = min(int(np.count_nonzero(tails > tolerance * tails[0])), largest)
         modes = np.asfortranarray(self.modes @ turn[:, :rank])
         time_functions = values[:rank, None] * right[:rank] / root
-        total = float(values @ values)
-        dropped = float(np.sqrt(values[rank:] @ values[rank:] / total)) if total > 0.0 else 0.0
-        return replace(self, modes=modes, time_functions=time_functions), dropped
+        return replace(self, modes=modes, time_functions=time_functions)
 
     def outside(self, other: SeparatedBasis) -> float:
         """Share of this field that lies outside another's modes, in norm."""
@@ -149,14 +147,9 @@ def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
 class SharedBasis:
     """A separated basis of y = W + F/k, and the substructures that share it; read-only, scaled.
 
-    Attributes
-    ----------
-    members
-        Their numbers, ascending; columns of the basis run through them, then through the instants.
-    basis
-        Its modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first.
-    incoming
-        W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
+    Columns of the basis run through the numbers of these, ascending, then through the instants; its
+    modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first. `incoming`
+    is W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
     """
 
     members: tuple[int, ...]

@@ -32,18 +32,10 @@ ENTRIES = 64
 
 @dataclass(frozen=True, eq=False)
 class Clips:
-    """A friction field, and clips with memory fitted to it.
+    """A friction field as it was given, and clips with memory fitted to it, and to its bound.
 
-    Attributes
-    ----------
-    given, field
-        The field, and what the clips are, shape (n_points, n_instants), N/m.
-    bound
-        Largest friction, same shape, N/m.
-    branches
-        How many times the load goes one way.
-    space_weights, time_weights
-        Lengths of the points, and weights of the instants, in which errors are measured.
+    All have shape (n_points, n_instants), in N/m. The load goes one way in so many branches; errors
+    are measured with lengths of the points, and weights of the instants.
     """
 
     given: Array
@@ -74,16 +66,8 @@ def clips_of(
     entries that are not clipped, point by point. Of a rod whose friction bound stays the same, and
     which nothing drives but this load, they are exact.
 
-    Parameters
-    ----------
-    field
-        Shape (n_points, n_instants), N/m; it starts from rest at zero before the first instant.
-    bound
-        Largest friction, non-negative, shape (n_points,), (n_points, 1) or that of the field, N/m.
-    load
-        What drives it, in any unit, shape (n_instants,).
-    space_weights, time_weights
-        Shapes (n_points,) and (n_instants,), positive.
+    The field, (n_points, n_instants), N/m, starts from rest at zero before the first instant; the
+    bound has shape (n_points,), (n_points, 1) or that of the field; the load is in any unit.
     """
     bound = np.broadcast_to(bound.reshape(len(field), -1), field.shape)
     size = bound.max(axis=0)
@@ -127,8 +111,7 @@ def _branch(field: Array, held: Array, bound: Array, load: Array, weights: Array
 def _ramps(shares: Array, low: Array, loads: Array, weights: Array) -> tuple[Array, Array]:
     """Slope and offset of the line fitted to every point in one branch, (n_points,) each.
 
-    A point keeps the friction `low` that it had before, then follows the load g, which rises, in
-    proportion, then slips at its bound: its share is min(1, max(low, a g + b)).
+    A point's share of its bound is min(1, max(low, a g + b)), of a load g that rises.
 
     Of lines through entries, as steep as the point is before them or after them, the nearest is
     taken. With the ones through the entry farthest from both stops, and the first above their

@@ -32,10 +32,8 @@ class Decomposition:
         positive.
     time_modes
         Shape (n_modes, n_instants), orthonormal in `time_weights`.
-    positions
-        Shape (n_points,), m.
-    space_weights, time_weights
-        Shapes (n_points,) and (n_instants,), positive.
+    positions, space_weights, time_weights
+        Shapes (n_points,), m, (n_points,) and (n_instants,); weights are positive.
     """
 
     values: Array

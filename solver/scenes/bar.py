@@ -11,10 +11,10 @@ import param
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import ANY, LOAD, POSITIVE, CurveParameter, Group
-from solver.discrete.cut_rods import tributary
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
+from solver.discrete.substructure import tributary
 from solver.loads import interpolate
 from solver.profiles import harmonic_means, means
 from solver.reference.closed_forms import ExactCurve

@@ -227,7 +227,7 @@ class BlockSettings(SideSettings):
         yield from super().left_out()
         if isinstance(self.gap, str):
             return
-        off = off_nodes(self.gap, self.length, self.elements * self.order)
+        off = off_nodes(self.gap, self.length, self.elements)
         most = UNSEEN * float(np.ptp(np.array(self.gap)[:, 1]))
         if off.max() <= most:
             return
@@ -235,7 +235,7 @@ class BlockSettings(SideSettings):
         sees = (
             str(n)
             for n in range(self.elements + 1, largest + 1)
-            if off_nodes(self.gap, self.length, n * self.order).max() <= most
+            if off_nodes(self.gap, self.length, n).max() <= most
         )
         yield (
             f"gap: {np.count_nonzero(off > most)} of {len(self.gap)} points lie between nodes, up "

@@ -160,7 +160,7 @@ class LayersSettings(PlaneSettings):
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all layers."""
-        return sum(self.order * span + 1 for span in self.spans) * self.nodes[1]
+        return sum(span + 1 for span in self.spans) * self.nodes[1]
 
     @property
     def n_substructures(self) -> int:
@@ -217,7 +217,7 @@ class LayersSettings(PlaneSettings):
             # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
             moment = self.path("bend_load")
             extreme = -6.0 * moment / (stack.longest * self.thickness**2)
-            right = Side(Given(False, pull, extreme, each_body=True), free)
+            right = Side(Given(False, pull, extreme), free)
         return replace(
             stack,
             friction=shared.factors_of(self)[:, None] * stack.friction,

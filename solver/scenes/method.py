@@ -42,9 +42,8 @@ def _coarser_problems(settings: Settings) -> list[Problem]:
 
 
 def _direction(settings: Settings) -> SearchDirection | FromStatus:
-    along, across = settings.k_factors
     rule: type[SearchDirection] = Paper if settings.search_direction == "paper" else Auto
-    first = rule(settings.k_scale, along, across)
+    first = rule(settings.k_scale)
     updates = settings.k_update == "status" and settings.applies("k_update")
     return FromStatus(first) if updates else first
 

@@ -101,13 +101,6 @@ class PlaneSettings(Settings):
         (2, 96),
         "Number of elements over the height of a body.",
     )
-    interpolation = BODY.choice(
-        "bilinear",
-        ["bilinear", "biquadratic"],
-        "bilinear, with incompatible modes, or biquadratic, with twice as many nodes each way: "
-        "smooth tractions where bodies are nearly incompressible.",
-        title="Elements",
-    )
     substructures: param.Integer[int] = redefined(
         Settings.param["substructures"],
         4,
@@ -127,13 +120,6 @@ class PlaneSettings(Settings):
         "moments and linear extension. Sides more than three times as long as the substructure is "
         "deep get more by themselves.",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
-    )
-    k_normal_scale = METHOD.quantity(
-        1.0,
-        (1e-6, 1e6),
-        (0.01, 100.0),
-        "Multiplies k once more, along the normals of contacts alone.",
-        title="Normal k factor",
     )
     start = METHOD.choice(
         "zero",
@@ -161,7 +147,7 @@ class PlaneSettings(Settings):
     def factor_at_nodes(self, profile: str) -> Array:
         """Factor of a profile at the nodes along a body; of a table, its mean over their shares."""
         places = np.linspace(0.0, self.length, self.nodes[0])
-        return shared.at_nodes(self, places, profile, order=self.order)
+        return shared.at_nodes(self, places, profile)
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
@@ -170,19 +156,9 @@ class PlaneSettings(Settings):
         return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
 
     @property
-    def k_factors(self) -> tuple[float, float]:
-        """Further factors on k of contacts, along and across them."""
-        return self.k_friction_scale, self.k_normal_scale
-
-    @property
-    def order(self) -> int:
-        """Order of the elements: 1 bilinear, 2 biquadratic."""
-        return 2 if self.interpolation == "biquadratic" and self.applies("interpolation") else 1
-
-    @property
     def nodes(self) -> tuple[int, int]:
         """Number of nodes of one body, along and up."""
-        return self.order * self.elements + 1, self.order * self.elements_up + 1
+        return self.elements + 1, self.elements_up + 1
 
     @property
     def n_nodes(self) -> int:
@@ -206,7 +182,6 @@ class PlaneSettings(Settings):
             height=getattr(self, self.across),
             elements=(self.elements, self.elements_up),
             substructures=(self.substructures, self.substructures_up),
-            order=self.order,
             macro_degree=self.macro_degree,
             young=self.young,
             poisson=self.poisson,
@@ -234,7 +209,7 @@ class PlaneSettings(Settings):
         super().check_together()
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)
-        if 8 * self.order**3 * columns * rows * (columns + rows) > LARGEST_MATRIX:
+        if 8 * columns * rows * (columns + rows) > LARGEST_MATRIX:
             raise self.refusal(
                 "substructures",
                 f"parts smaller than {columns} by {rows} elements",

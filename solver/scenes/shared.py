@@ -81,15 +81,15 @@ def _over_length(shares: Rows, settings: Settings) -> Rows:
     return tuple((share * settings.length, factor) for share, factor in shares)
 
 
-def at_nodes(settings: Settings, places: Array, *profiles: str, order: int = 1) -> Array:
+def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
     """Product of the factors of one or two profiles at nodes, from their places, (n_nodes,), m.
 
-    Of tables it is the mean over the shares of the nodes, between elements of an order.
+    Of tables it is the mean over the shares of the nodes.
     """
     tables = [settings.points(name) for name in profiles]
     if all(isinstance(getattr(settings, name), str) for name in profiles):
         return math.prod((interpolate(table, places) for table in tables), start=np.ones(1))
-    return means(tables, shares_of(places, order))
+    return means(tables, shares_of(places))
 
 
 def friction_factors(which: str) -> CurveParameter:

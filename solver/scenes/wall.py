@@ -149,9 +149,6 @@ class WallSettings(PlaneSettings):
     friction_profile = redefined(
         PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
     )
-    interpolation = redefined(
-        PlaneSettings.param["interpolation"], "bilinear", applies=lambda _: False
-    )
 
     @property
     def n_bodies(self) -> int:

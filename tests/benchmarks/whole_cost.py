@@ -1,4 +1,4 @@
-"""What whole runs take beside what `solver.latin.run_cost` expects of them.
+"""What whole runs take beside what `solver.latin.cost` expects of them.
 
 `python tests/benchmarks/whole_cost.py`
 """
@@ -9,7 +9,7 @@ import time
 from typing import Any
 
 from solver.executors import machine
-from solver.latin.run_cost import run_cost
+from solver.latin.cost import run_cost
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
