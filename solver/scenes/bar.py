@@ -36,8 +36,6 @@ DONE = {
 """Words for what is done along the bar, by the setting of its path."""
 SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
-
-
 BAR, ENDS = Group("Bar"), Group("Ends")
 KINDS = ("held", "spring", "pulled", "free")
 HOLDING = ("held", "spring")
