@@ -15,7 +15,7 @@ from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, looks, mask_of
-from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
 from solver.scenes import CATALOGUE
 
 WIDTH = 286
@@ -64,7 +64,7 @@ class SettingControl:
         """The field and what stands on the page."""
         definition = self._definition
         more: dict[str, Any] = {"description": definition.doc, "size": "small", "width": WIDTH}
-        more |= {"margin": (4, 0), "label": self._unit.titled(self._about.title)}
+        more |= {"margin": (4, 0), "label": self._unit.titled(title_of(self._definition))}
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
@@ -88,7 +88,7 @@ class SettingControl:
         low, high = (self._to_slider(end) for end in self._definition.softbounds)
         is_count = isinstance(self._definition, param.Integer) and not self._is_logarithmic
         slider = pmui.FloatSlider(
-            label=self._about.title,
+            label=title_of(self._definition),
             start=low,
             end=high,
             step=1 if is_count else 10.0 ** math.floor(math.log10((high - low) / STEPS)),
@@ -166,7 +166,7 @@ class SettingControl:
         try:
             value = typed(text, self._unit, self._about.unit) if text else self._definition.default
         except ValueError as problem:
-            self._refuse(f"{self._about.title} cannot be “{text[:40]}”: {problem}.")
+            self._refuse(f"{title_of(self._definition)} cannot be “{text[:40]}”: {problem}.")
         else:
             self._change(value)
 
@@ -273,7 +273,7 @@ class Controls:
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     """The chief settings of a scene, and all others by group; without those of a single value."""
     definitions = kind.definitions()
-    chief = [name for name in kind.CHIEF if name in definitions]
+    chief = [name for name in (*kind.CHIEF, *kind.ALSO_CHIEF) if name in definitions]
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}
     for name, definition in definitions.items():
         if name not in chief and len(getattr(definition, "objects", "any")) > 1:

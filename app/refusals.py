@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from app.units import Unit, number, unit_of, units_of_points
-from solver.definitions import CurveParameter, about, allowed
+from solver.definitions import CurveParameter, about, allowed, title_of
 from solver.refusal import RefusedError
 from solver.settings import Settings
 
@@ -28,7 +28,7 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
     if definition is None:
         limits = _in_titles(settings, refusal.allowed)
         return f"{refusal.name} cannot be {_written(refusal.value)}: {remedy}. Allowed: {limits}."
-    title, (si, unit) = about(definition).title, _units(settings, refusal.name)
+    title, (si, unit) = title_of(definition), _units(settings, refusal.name)
     limits = refusal.allowed
     if isinstance(definition, CurveParameter) and limits == allowed(definition):
         # As its widget offers it.
@@ -41,7 +41,7 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
         return f"{title} cannot be {refused}: {remedy}. Allowed: {limits}."
     to = _written(value, _units(settings, name)[1])
     return (
-        f"{about(definitions[name]).title} cannot be {to} while {title} is {refused}: {remedy}. "
+        f"{title_of(definitions[name])} cannot be {to} while {title} is {refused}: {remedy}. "
         f"Allowed for {title}: {limits}."
     )
 
@@ -67,7 +67,7 @@ def _in_titles(settings: Settings, text: str) -> str:
 
     def titled(match: re.Match[str]) -> str:
         lead, name = match[1] or "", match[2]
-        return lead + about(definitions[name]).title if lead or "_" in name else match[0]
+        return lead + title_of(definitions[name]) if lead or "_" in name else match[0]
 
     text = re.sub(NUMBER, lambda match: number(float(match[1]), EXACT), text)
     # Many names are common words: these mean the setting where it is to be lowered or raised.

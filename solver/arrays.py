@@ -49,13 +49,5 @@ def at_instant(field: Array, instant: int) -> Array:
 
 
 def without_residue(values: Array, terms: Array) -> Array:
-    """Sums over time, with zero where rounding alone leaves something of them.
-
-    Parameters
-    ----------
-    values
-        The sums, shape (n_instants,).
-    terms
-        Of the sizes of what is summed, same shape.
-    """
+    """Sums, (n_instants,), with zero where rounding alone leaves something of terms of a size."""
     return np.where(np.abs(values) <= RESIDUE * np.max(terms, initial=0.0), 0.0, values)

@@ -10,14 +10,7 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.definitions import (
-    CurveParameter,
-    Parameter,
-    SettingError,
-    about,
-    checked_value,
-    unknown,
-)
+from solver.definitions import SettingError, about, checked_value, unknown
 
 
 class Checked(param.Parameterized):
@@ -36,7 +29,7 @@ class Checked(param.Parameterized):
 
     @classmethod
     @cache
-    def definitions(cls) -> Mapping[str, Parameter]:
+    def definitions(cls) -> Mapping[str, Any]:
         """Definition of every setting, by name, in the order of their groups."""
         parameters = {name: cls.param[name] for name in cls.param}
         return MappingProxyType(
@@ -48,26 +41,11 @@ class Checked(param.Parameterized):
         )
 
     @classmethod
-    def curve(cls, name: str) -> CurveParameter:
-        """Definition of a setting that is a curve."""
-        definition = cls.definitions()[name]
-        assert isinstance(definition, CurveParameter)
-        return definition
-
-    @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
-        """Settings of these values.
+        """Settings of plain values by name; what is left out is as by default, or by the method.
 
-        Parameters
-        ----------
-        values
-            Plain values by name; what is left out takes its default, or what the method says.
-
-        Raises
-        ------
-        SettingError
-            For an unknown name, a wrong type, a value out of range, or values that do not fit
-            together.
+        Refuses an unknown name, a wrong type, a value out of range, and values that do not fit
+        together with a `SettingError`.
         """
         definitions = cls.definitions()
         clean = {}

@@ -56,13 +56,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NoReferenceError as refusal:
         warn(f"there is nothing to compare with: {refusal}")
         return REFUSED
-    except BrokenPipeError:
-        # Whoever reads has enough (as with "| head"); Python must not complain at its own end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as trouble:
+        # Python must not complain at its own end, as where whoever reads has enough ("| head").
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        warn(f"nothing can be printed: {why(trouble)}")
-        return REFUSED
+        if not isinstance(trouble, BrokenPipeError):
+            warn(f"nothing can be printed: {why(trouble)}")
+            return REFUSED
     except (MemoryError, RuntimeError) as trouble:
         if isinstance(trouble, RuntimeError) and "MALLOC" not in str(trouble):  # that of SuperLU
             raise

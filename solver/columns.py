@@ -106,17 +106,7 @@ _EXAMPLES = {
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column by its head.
-
-    Attributes
-    ----------
-    place
-        Number of the column, from 0.
-    line
-        Number of the line of its unit, or else of its name.
-    name, unit
-        As they are written; empty where there is none.
-    """
+    """A column by its number, the line of its unit or name, and both as they are written."""
 
     place: int
     line: int = 0

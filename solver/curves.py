@@ -35,15 +35,10 @@ class GivenCurve(NamedTuple):
 def curve_of(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> GivenCurve:
-    """Points of a curve in a table, and what was understood.
+    """Points of a curve in a table, in units as of `Settings.curve_units`, and what was understood.
 
-    The units are those of the setting beside the others (`Settings.curve_units`).
-
-    Raises
-    ------
-    SettingError
-        If its columns cannot be chosen, for another unit, what is no number, or an abscissa that
-        does not increase.
+    Columns that cannot be chosen, other units, what is no number, and an abscissa that does not
+    increase are refused.
     """
     columns, each = table.columns, "points" if definition.is_path else "rows"
     if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):

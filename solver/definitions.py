@@ -12,11 +12,11 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, TypeGuard
+from typing import Any
 
 import param
 
-from solver.refusal import RefusedError, plain
+from solver.refusal import RefusedError, is_number, plain
 
 Rows = tuple[tuple[float, ...], ...]
 Parameter = param.Parameter[Any]
@@ -39,8 +39,6 @@ class About:
     ----------
     group
         Heading under which it stands.
-    title
-        What a widget calls it.
     unit
         SI unit, empty for a pure number.
     applies
@@ -53,7 +51,6 @@ class About:
     """
 
     group: str
-    title: str
     unit: str = ""
     applies: Callable[[Any], bool] = lambda settings: True
     path: str = ""
@@ -106,57 +103,83 @@ def about(parameter: Parameter) -> About:
     return record
 
 
+def title_of(definition: Parameter) -> str:
+    """What a widget calls a setting."""
+    return definition.label or ""
+
+
 def is_logarithmic(definition: Any) -> bool:
     """Whether a slider over a number is logarithmic: where it goes over far more than a decade."""
     low, high = definition.softbounds
     return bool(low > 0.0 and high >= (100 if isinstance(definition, param.Integer) else 20) * low)
 
 
-def _common(doc: str, record: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of param that all settings have."""
-    return {"doc": doc, "constant": True, "metadata": {"about": About(**record)}}
+@dataclass(frozen=True)
+class Group:
+    """Heading under which settings stand, which makes their definitions.
+
+    All have help; what else they take are entries of `About`, and a `title` where a widget does not
+    call a setting by its name.
+    """
+
+    name: str
+
+    def quantity(
+        self,
+        default: float,
+        bounds: tuple[float, float],
+        slider: tuple[float, float],
+        doc: str,
+        **record: Any,
+    ) -> param.Number[float]:
+        """Real setting: hard `bounds`, and the range that a `slider` shows."""
+        common = self._common(doc, **record)
+        return param.Number(default=default, bounds=bounds, softbounds=slider, **common)
+
+    def count(
+        self,
+        default: int,
+        bounds: tuple[int, int],
+        slider: tuple[int, int],
+        doc: str,
+        **record: Any,
+    ) -> param.Integer[int]:
+        """Whole-number setting."""
+        common = self._common(doc, **record)
+        return param.Integer(default=default, bounds=bounds, softbounds=slider, **common)
+
+    def switch(self, default: bool, doc: str, **record: Any) -> param.Boolean[bool]:
+        """On/off setting."""
+        return param.Boolean(default=default, **self._common(doc, **record))
+
+    def choice(
+        self, default: str, options: Iterable[str], doc: str, **record: Any
+    ) -> param.Selector[str]:
+        """Setting that is one of a few names."""
+        return param.Selector(default=default, objects=list(options), **self._common(doc, **record))
+
+    def curve(
+        self,
+        default: str,
+        presets: Mapping[str, Any],
+        units: Mapping[str, str],
+        doc: str,
+        *,
+        bounds: Sequence[tuple[float, float]] = (),
+        **record: Any,
+    ) -> CurveParameter:
+        """Path or table: a preset's name or rows, with unit and bounds of each column."""
+        bounds = bounds or [ANY] * len(units)
+        return CurveParameter(default, presets, units, bounds, **self._common(doc, **record))
+
+    def _common(self, doc: str, title: str | None = None, **record: Any) -> dict[str, Any]:
+        """Arguments of param that all settings have."""
+        metadata = {"about": About(self.name, **record)}
+        return {"doc": doc, "label": title, "constant": True, "metadata": metadata}
 
 
-def quantity(
-    default: float,
-    bounds: tuple[float, float],
-    slider: tuple[float, float],
-    doc: str,
-    **record: Any,
-) -> param.Number[float]:
-    """Real setting: hard `bounds`, the range that a `slider` shows, and entries of `About`."""
-    return param.Number(default=default, bounds=bounds, softbounds=slider, **_common(doc, record))
-
-
-def count(
-    default: int, bounds: tuple[int, int], slider: tuple[int, int], doc: str, **record: Any
-) -> param.Integer[int]:
-    """Whole-number setting."""
-    return param.Integer(default=default, bounds=bounds, softbounds=slider, **_common(doc, record))
-
-
-def switch(default: bool, doc: str, **record: Any) -> param.Boolean[bool]:
-    """On/off setting."""
-    return param.Boolean(default=default, **_common(doc, record))
-
-
-def choice(default: str, options: Iterable[str], doc: str, **record: Any) -> param.Selector[str]:
-    """Setting that is one of a few names."""
-    return param.Selector(default=default, objects=list(options), **_common(doc, record))
-
-
-def curve(
-    default: str,
-    presets: Mapping[str, Any],
-    units: Mapping[str, str],
-    doc: str,
-    *,
-    bounds: Sequence[tuple[float, float]] = (),
-    **record: Any,
-) -> CurveParameter:
-    """Path or table: a preset's name or rows, with unit and bounds of each column."""
-    bounds = bounds or [ANY] * len(units)
-    return CurveParameter(default, presets, units, bounds, **_common(doc, record))
+CONTACT, LOAD, BODY = Group("Contact"), Group("Load"), Group("Body")
+METHOD, DECOMPOSITION = Group("Method"), Group("Decomposition")
 
 
 def redefined(
@@ -164,6 +187,7 @@ def redefined(
     default: object,
     slider: tuple[float, float] | None = None,
     doc: str = "",
+    title: str | None = None,
     **record: Any,
 ) -> Any:
     """Setting for some scenes, with another default, slider, help and entries of `About`."""
@@ -172,6 +196,8 @@ def redefined(
     if slider is not None:
         again.softbounds = slider
     again.doc = doc or again.doc
+    if title is not None:
+        again.label = title
     again.metadata = {"about": replace(about(definition), **record)}
     return again
 
@@ -233,11 +259,6 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     if value != int(value):
         raise refuse("write a whole number")
     return int(value)
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Whether it is a number, and no truth value."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:

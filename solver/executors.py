@@ -60,18 +60,10 @@ def machine() -> str:
 class Processes(Executor):
     """Niced processes of this machine with one BLAS thread each, which end with this process.
 
-    A process that is killed fails its call with `pebble.ProcessExpired`. If none did a call, all
-    that wait fail with `BrokenProcessPool`, and can be submitted again.
-
-    Parameters
-    ----------
-    count
-        How many.
-    limit
-        Seconds that a call may take before its process is ended and it raises `TimeoutError`;
-        without end if None.
-    n_calls
-        Calls after which a process is replaced by a new one, 0 for never.
+    A call that takes longer than `limit` seconds raises `TimeoutError`, and its process is ended.
+    After `n_calls` a process is replaced by a new one; 0 is never. One that is killed fails its
+    call with `pebble.ProcessExpired`. If none did a call, all that wait fail with
+    `BrokenProcessPool`, and can be submitted again.
     """
 
     def __init__(self, count: int, limit: float | None = None, n_calls: int = 0) -> None:

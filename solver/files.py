@@ -35,11 +35,6 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
     """Settings of a saved file in TOML, whose curves name no other files.
 
     It has a scene's name under `scene`, and settings by name; messages begin with its source.
-
-    Raises
-    ------
-    SettingError
-        For text that is no TOML, an unknown scene, or a refused setting.
     """
     values = _parsed(text, source, text)
     values.pop("case", None)
@@ -49,12 +44,10 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it.
+    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it, and what tables say.
 
-    Returns
-    -------
-    The settings, and what was understood of tables in CSV files, by the name of their setting.
-    Such files are sought beside the saved file, and those of assignments in the working folder.
+    CSV files that it names are sought beside the saved file, and those of assignments in the
+    working folder; what was understood of them is by the name of their setting.
     """
     values: dict[str, Any] = {"scene": scene}
     if scene.endswith(".toml"):
@@ -160,13 +153,6 @@ def scene_settings(scene: object) -> type[Settings]:
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
     last = solution.records[-1] if solution.records else None
-    counts = [basis.n_modes for basis in solution.iterate.bases]
-    stored = sum(basis.n_modes for basis in set(solution.iterate.bases))
-    bases = {
-        "modes_largest": max(counts, default=0),
-        "modes_stored": stored,
-        "modes_saved": sum(counts) - stored,
-    }
     return {
         "scene": settings.scene,
         "status": str(solution.status.ending),
@@ -178,29 +164,22 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "residual": solution.iterate.residual,
         **{name: getattr(last, name, None) for name in ERRORS},
         "seconds": last.seconds if last else solution.iterate.seconds,
-        **(bases if counts else {}),
     }
 
 
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
-    """Arrays of a result file (SI; space first, time last).
+    """Arrays of a result file (SI; space first, time last), as solver/README.md, 12, has them.
 
-    Along rods `displacement` is that of the degrees of freedom at `x`, body after body;
-    `friction_force` and `status` are those of the points of all interfaces with friction, one after
-    the other. In the plane there are all nodes `x`, (n_nodes, 2), the nodes of `elements`,
-    (n_elements, 4), and their `displacement`, (n_nodes, 2, n_instants); `displacement_determinate`,
-    (n_instants,), is false where nothing says where a body lies. Interfaces between bodies, or that
-    may open, have arrays of their own (`interface_arrays`).
-
-    With separated bases also pgd_modes, shape (n_iterations, n_substructures).
+    In the plane `displacement` has shape (n_nodes, 2, n_instants), and `displacement_determinate`,
+    (n_instants,), is false where nothing says where a body lies.
     """
     iterate, problem = solution.iterate, solution.iterate.problem
     history = {
-        name: [getattr(entry, name) for entry in solution.records]
+        name: np.array([getattr(entry, name) for entry in solution.records])
         for name in (*INDICATORS, *ERRORS, "seconds")
     }
     if iterate.bases:
-        history["pgd_modes"] = [entry.modes for entry in solution.records]
+        history["pgd_modes"] = np.array([entry.modes for entry in solution.records])
     found: dict[str, Any]
     if problem.inside is None:
         found = {
@@ -221,7 +200,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         "t": problem.instants,
         **found,
         **interface_arrays(iterate),
-        **{name: np.array(column) for name, column in history.items()},
+        **history,
         "certified": solution.is_certified,
         "residual": math.nan if iterate.residual is None else iterate.residual,
         "settings": json.dumps({"scene": settings.scene, **settings.values()}),
@@ -231,9 +210,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """Arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
 
-    `points` are places along the interface, m; `determinate` tells where the force is no arbitrary
-    share of what a support or a ring of contacts carries; the others are as in `ContactFields`,
-    shape (n_points, n_instants), with the opening as `gap`. Forces are in N, on the body above.
+    `determinate` is where the force is no arbitrary share of what a support or a ring carries.
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)

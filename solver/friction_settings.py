@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.definitions import ANY, Rows, about, choice, curve, quantity
+from solver.definitions import ANY, CONTACT, Rows, about
 from solver.laws import FrictionLaw, Strength
 from solver.method_settings import MethodSettings
 from solver.refusal import plain
@@ -14,13 +14,13 @@ SHORTEST_SLIP = 1e-12
 LARGEST_FACTOR = 1e3
 """Of a strength."""
 STIFFNESSES = 1e-9, 1e9
-"""Of contact, over the unit of `contact_stiffness`: softer or stiffer, no digits are left."""
+"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are left."""
 
 
 class FrictionSettings(MethodSettings):
     """Settings of the law of friction, beside the coefficient."""
 
-    friction_law = choice(
+    friction_law = CONTACT.choice(
         "coulomb",
         ["coulomb", "compliant", "slip-dependent", "general"],
         "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
@@ -28,53 +28,44 @@ class FrictionSettings(MethodSettings):
         "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
         "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
         "and a cap.",
-        group="Contact",
-        title="Friction law",
     )
-    contact_stiffness = quantity(
+    contact_stiffness = CONTACT.quantity(
         100.0,
         (1e-3, 1e9),
         (1.0, 1e4),
         "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
         "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
         "multiple of the stiffest E S over the square of the longest L.",
-        group="Contact",
-        title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",
     )
-    tangential_stiffness = quantity(
+    tangential_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e4, 1e9),
         "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
         "bond, a soft layer. 0: rigid.",
-        group="Contact",
-        title="Tangential stiffness",
         unit="N/m^2",
         applies=lambda settings: settings.is_general,
     )
-    cohesion = quantity(
+    cohesion = CONTACT.quantity(
         0.0,
         (0.0, 1e15),
         (0.0, 5000.0),
         "Friction force per length of rod without any pressure, beside μ p.",
-        group="Contact",
         title="Cohesion c",
         unit="N/m",
         applies=lambda settings: settings.is_general,
     )
-    friction_cap = quantity(
+    friction_cap = CONTACT.quantity(
         0.0,
         (0.0, 1e15),
         (0.0, 5000.0),
         "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
         "none.",
-        group="Contact",
-        title="Friction cap",
         unit="N/m",
         applies=lambda settings: settings.is_general,
     )
-    strength = curve(
+    strength = CONTACT.curve(
         "constant",
         dict.fromkeys(("constant", "linear"), lambda settings: settings.strength_points()),
         {"slip": "m", "factor": ""},
@@ -82,27 +73,23 @@ class FrictionSettings(MethodSettings):
         "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
         "peak, softening and a residual; the last one stays.",
         bounds=(ANY, (0.0, LARGEST_FACTOR)),
-        group="Contact",
         title="Strength over slip",
         applies=lambda settings: settings.is_general,
     )
 
-    friction_ratio = quantity(
+    friction_ratio = CONTACT.quantity(
         1.5,
         (0.0, 1e3),
         (0.5, 2.0),
         "Last friction over the first: above 1 it hardens with slip, below it softens.",
-        group="Contact",
         title="Last friction over first",
         applies=lambda settings: settings.is_linear_in_slip,
     )
-    slip_length = quantity(
+    slip_length = CONTACT.quantity(
         1e-4,
         (1e-12, 1e6),
         (1e-6, 1e-2),
         "Accumulated slip of a point at which its friction is the last.",
-        group="Contact",
-        title="Slip length",
         unit="m",
         applies=lambda settings: settings.is_linear_in_slip,
     )
@@ -128,8 +115,8 @@ class FrictionSettings(MethodSettings):
         """Law of friction, beside mu."""
         if self.friction_law == "compliant":
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
-        table = self.strength_points() if self._changes_with_slip else None
-        strength = None if table is None else Strength(*zip(*table, strict=True))
+        changes = self.is_linear_in_slip or (self.is_general and self.strength != "constant")
+        strength = Strength(*zip(*self.strength_points(), strict=True)) if changes else None
         if not self.is_general:
             return FrictionLaw(strength=strength)
         return FrictionLaw(
@@ -138,10 +125,6 @@ class FrictionSettings(MethodSettings):
             cap=self.friction_cap or np.inf,
             strength=strength,
         )
-
-    @property
-    def _changes_with_slip(self) -> bool:
-        return self.is_linear_in_slip or (self.is_general and self.strength != "constant")
 
     def strength_points(self) -> Rows:
         """Points of the strength over the slip, or those that stand for its preset."""
@@ -156,7 +139,11 @@ class FrictionSettings(MethodSettings):
         super().check_together()
         if self.is_general:
             self._check_strength()
-            self._check_stiffness()
+            for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
+                remedy = (
+                    "write 0 where nothing gives way, or take away friction where nothing holds"
+                )
+                self.check_digits(name, self.contact_unit, remedy)
 
     def _check_strength(self) -> None:
         table = self.strength
@@ -171,14 +158,11 @@ class FrictionSettings(MethodSettings):
                 "the factor at slip 0 is 1, as the rest of the law says what friction is there",
             )
 
-    def _check_stiffness(self) -> None:
-        low, high = (share * self.contact_unit for share in STIFFNESSES)
-        for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
-            value = getattr(self, name)
-            if self.applies(name) and value and not low <= value <= high:
-                unit = about(self.definitions()[name]).unit
-                raise self.refusal(
-                    name,
-                    f"0, or from {plain(low)} {unit} to {plain(high)} {unit} with such bodies",
-                    "write 0 where nothing gives way, or take away friction where nothing holds",
-                )
+    def check_digits(self, name: str, size: float, remedy: str) -> None:
+        """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""
+        value, unit = getattr(self, name), about(self.definitions()[name]).unit
+        low, high = (share * size for share in STIFFNESSES)
+        if self.applies(name) and value and not low <= value <= high:
+            none = "0, or " if self.definitions()[name].bounds[0] == 0.0 else ""
+            allowed = f"{none}from {plain(low)} {unit} to {plain(high)} {unit} with such bodies"
+            raise self.refusal(name, allowed, remedy)

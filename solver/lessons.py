@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.checked import dump
-from solver.definitions import SettingError, is_number
+from solver.definitions import SettingError
 from solver.files import (
     check_controls,
     check_keys,
@@ -23,6 +23,7 @@ from solver.files import (
     require,
     scene_settings,
 )
+from solver.refusal import is_number
 from solver.settings import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -37,8 +38,6 @@ OF_CHECKPOINT = {
     "tolerance": (int, float),
 }
 """Keys of a checkpoint; `settings` and `tolerance` may be left out."""
-OF_ENDING = {"claim": str, "settings": dict, "says": str}
-"""Keys of one that tells with which words a run ends; `settings` may be left out."""
 MOST_CONTROLS = 2
 FEWEST_POINTS = 3
 """Of a curve that one may draw."""
@@ -46,14 +45,9 @@ FEWEST_POINTS = 3
 
 @dataclass(frozen=True, eq=False)
 class Claim:
-    """A claim of a lesson, and how it is tested.
+    """A claim of a lesson on a quantity of a run.
 
-    Attributes
-    ----------
-    settings, quantity
-        Of the run that it is about.
-    low, high, expected
-        Both ends of what it may be, infinite for what never comes, and the same in words.
+    It holds from `low` to `high`, infinite for what never comes; `expected` says so in words.
     """
 
     claim: str
@@ -84,47 +78,11 @@ def _written(value: float, unit: str) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class EndingClaim:
-    """A claim of a lesson about how a run ends: words that its status has to say."""
-
-    claim: str
-    settings: Settings
-    says: str
-
-    def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
-        """Whether it holds in a run, and what that says, whatever share the plots stand at."""
-        message = run.solution.status.advice
-        return self.says in message, f"The run says: {message}; expected {self.says}"
-
-
-@dataclass(frozen=True, eq=False)
 class Lesson:
-    """A lesson as its file says.
+    """A lesson as its file says, whose name it has (app/lessons/README.md).
 
-    Attributes
-    ----------
-    name
-        That of its file, without the ending.
-    order, subject
-        Its place among the lessons, and what it is about: one of `SUBJECTS`.
-    choices, right, why
-        Answers to predict from, the index of the right one, and why it is right.
-    settings
-        Of the run that it starts with.
-    controls, views
-        Names of the settings that can still be moved, one or two, and of the plots that stay.
-    text, explanation
-        Paragraphs to read before the choice, and that follow it.
-    instant
-        At which its plots stand, as a share of the interval.
-    interface
-        Name of that which its plots are of; empty is the first one.
-    draw
-        Name of the setting over which one may draw the answer as a curve; empty for none.
-    beside
-        Names of the plots that stand beside the question already; the others would answer it.
-    until
-        Where its picture, which moves, begins anew before the choice, as a share of the interval.
+    `right` is the index of the right choice; text and explanation are in paragraphs. `instant` and
+    `until` are shares of the interval. No `interface` is the first one.
     """
 
     name: str
@@ -140,7 +98,7 @@ class Lesson:
     views: tuple[str, ...]
     text: tuple[str, ...]
     explanation: tuple[str, ...]
-    checkpoints: tuple[Claim | EndingClaim, ...]
+    checkpoints: tuple[Claim, ...]
     instant: float
     interface: str = ""
     draw: str = ""
@@ -157,8 +115,6 @@ class Lesson:
         curve: dict[float, float] = {}
         own, asked = self.settings.values(), ""
         for claim in self.checkpoints:
-            if not isinstance(claim, Claim):
-                continue
             values = claim.settings.values()
             same = all(values[name] == own[name] for name in own if name != self.draw)
             if self.draw in values and same and asked in ("", claim.quantity.name):
@@ -169,13 +125,12 @@ class Lesson:
     @property
     def drawn_quantity(self) -> str:
         """What that curve shows, in words."""
-        claims = (claim for claim in self.checkpoints if isinstance(claim, Claim))
-        return next((claim.quantity.title for claim in claims), "")
+        return self.checkpoints[0].quantity.title
 
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
-    reads = {claim.quantity.reads for claim in lesson.checkpoints if isinstance(claim, Claim)}
+    reads = {claim.quantity.reads for claim in lesson.checkpoints}
     errors, indicators = "errors" in reads, "indicators" in reads
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
@@ -244,19 +199,15 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 
-def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | EndingClaim]:
+def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim]:
     require(bool(values), "checkpoints", values, "at least one", "say what the lesson claims")
     for number, entry in enumerate(values, start=1):
         with placed(f"checkpoint {number}"):
             is_table = isinstance(entry, dict)
             require(is_table, "checkpoints", entry, "a table", "write [[checkpoints]]")
-            keys = OF_ENDING if "says" in entry else OF_CHECKPOINT
-            check_keys(entry, keys, optional=("settings", "tolerance"))
-            claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
-            if "says" in entry:
-                yield EndingClaim(claim, own, entry["says"])
-            else:
-                yield Claim(claim, own, reading(entry["quantity"]), *_expected(entry))
+            check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
+            own, quantity = settings.replace(**entry.get("settings", {})), entry["quantity"]
+            yield Claim(entry["claim"], own, reading(quantity), *_expected(entry))
 
 
 def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 
 import numpy as np
+import param
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, Rows, about, count, quantity
+from solver.definitions import LOAD, CurveParameter, Rows, about
 from solver.friction_settings import FrictionSettings
 from solver.loads import (
     NO_KNOTS,
@@ -35,41 +36,36 @@ STRAIGHT = 1e-9
 class LoadSettings(FrictionSettings):
     """Settings of time and of load paths, beside those of the method and of friction."""
 
-    cycles = count(
+    elements: param.Integer[int]
+
+    cycles = LOAD.count(
         1,
         (1, 5000),
         (1, 20),
         "How often what the presets of load paths do, after their beginning, is done in the "
         "interval; a preset that does not come back (ramp, hold, random) stays as it is.",
-        group="Load",
-        title="Cycles",
         applies=lambda settings: settings.is_repeatable,
     )
-    duration = quantity(
+    duration = LOAD.quantity(
         1.0,
         (1e-9, 1e9),
         (0.1, 10.0),
         "Length of the time interval. Friction does not feel the rate: only the time axis changes.",
-        group="Load",
         title="Duration T",
         unit="s",
     )
-    instants = count(
+    instants = LOAD.count(
         101,
         (1, 20_001),
         (11, 401),
         "Number of instants at which the problem is solved, at least: points at which a path turns "
         "or bends are instants too, and the load is linear between them.",
-        group="Load",
-        title="Instants",
     )
-    seed = count(
+    seed = LOAD.count(
         1,
         (0, 2**31 - 1),
         (0, 50),
         "Seed of random load paths: the same seed gives the same path.",
-        group="Load",
-        title="Seed",
         applies=lambda settings: any(
             getattr(settings, name) == "random" for name in settings.paths
         ),
@@ -78,7 +74,7 @@ class LoadSettings(FrictionSettings):
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all bodies."""
-        raise NotImplementedError
+        return self.n_bodies * (self.elements + 1)
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -121,7 +117,7 @@ class LoadSettings(FrictionSettings):
 
     def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values: those of a path are as its size."""
-        units, size = self.curve(name).units, self.size_setting(name)
+        units, size = self.definitions()[name].units, self.size_setting(name)
         return units if size is None else (units[0], about(self.definitions()[size]).unit)
 
     def preset(self, name: str) -> Preset | None:
@@ -129,7 +125,7 @@ class LoadSettings(FrictionSettings):
         value = getattr(self, name)
         if not isinstance(value, str):
             return None
-        preset: Preset = self.curve(name).presets[value]
+        preset: Preset = self.definitions()[name].presets[value]
         return preset
 
     @property
@@ -222,7 +218,7 @@ class LoadSettings(FrictionSettings):
         value: str | Rows = getattr(self, name)
         if not isinstance(value, str):
             return value
-        preset = self.curve(name).presets[value]
+        preset = self.definitions()[name].presets[value]
         if not isinstance(preset, Preset):
             rows: Rows = preset(self)
             return rows

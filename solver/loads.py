@@ -43,16 +43,9 @@ def interpolate(points: Rows | Array, where: Array) -> Array:
 class Preset:
     """A path with a name: straight lines between points after a beginning that has the first.
 
-    Attributes
-    ----------
-    points
-        Phases after the beginning, and ordinates, for a seed of what is random.
-    begins
-        Share of the interval that the beginning takes.
-    repeats
-        Share of the interval from which on it comes back to where it is; None if it does not.
-    wave
-        Ordinates at phases after the beginning in place of straight lines, where it bends.
+    Points, for a seed of what is random, are phases after the beginning, and ordinates. It begins
+    after a share of the interval, and comes back to where it is from another on, if at all. A wave
+    has ordinates at such phases in place of straight lines, where it bends.
     """
 
     points: Callable[[int], tuple[Array, Array]]
@@ -154,24 +147,11 @@ INJECTIONS: dict[str, Preset] = {
 def instants_of(
     duration: float, number: int, knots: Array = NO_KNOTS, corners: Array = NO_KNOTS
 ) -> Array:
-    """Instants spread over a time interval, with knots of paths among them.
+    """Instants spread over a time interval, s, with knots of paths among them.
 
-    Between knots they are evenly spaced, and no step is longer than one of `number` equal ones.
-
-    Parameters
-    ----------
-    duration
-        Length of the interval, s.
-    number
-        Instants at least: from 0 on, or a single one at the end.
-    knots
-        Times that are instants as they are, in any order, s; those outside do not count.
-    corners
-        The same of presets: one at an instant or a knot but for rounding is that.
-
-    Returns
-    -------
-    Shape (n_instants,), s.
+    Between knots they are evenly spaced, and no step is longer than one of `number` equal ones: of
+    instants from 0 on, or of a single one at the end. Knots outside do not count; corners, which
+    are those of presets, are an instant or a knot where they differ from it by rounding alone.
     """
     even = np.linspace(0.0, duration, number) if number > 1 else np.array([duration])
     knots = np.unique(knots[(knots >= 0.0) & (knots <= duration)])

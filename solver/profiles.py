@@ -17,12 +17,7 @@ STEEP = 1e-8
 
 
 def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
-    """Cut shares at the points of tables.
-
-    Returns
-    -------
-    Ends of the pieces, the tables there, and the number of the first piece of every share.
-    """
+    """Ends of pieces of shares between points, the tables there, and each share's first piece."""
     points = np.concatenate([np.array(table)[:, 0] for table in tables])
     ends: Array = np.union1d(edges, points[(points > edges[0]) & (points < edges[-1])])
     values = [interpolate(table, ends) for table in tables]
@@ -35,15 +30,7 @@ def shares_of(nodes: Array) -> Array:
 
 
 def means(tables: list[Rows], edges: Array) -> Array:
-    """Mean of the product of one or two tables over every share.
-
-    Parameters
-    ----------
-    tables
-        Linear between their points, and held outside.
-    edges
-        Ends of the shares, shape (n_shares + 1,), m.
-    """
+    """Mean of the product of one or two tables over every share, from their ends, m."""
     ends, values, first = _pieces(tables, edges)
     left = math.prod(one[:-1] for one in values)
     right = math.prod(one[1:] for one in values)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from typing import Any
+from typing import Any, TypeGuard
 
 
 class RefusedError(ValueError):
@@ -29,14 +29,18 @@ def plain(value: float) -> str:
     return re.sub(r"e\+?(-?)0*", r"e\1", text)
 
 
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether it is a number, and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:
     """Refuse a number of a part of the method that is no number, or out of range.
 
     With `above` the lower end itself is refused, too.
     """
     value = getattr(part, name)
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if is_number and low <= value <= high and not (above and value == low):
+    if is_number(value) and low <= value <= high and not (above and value == low):
         return
     bounds = f"a number {'above' if above else 'from'} {plain(low)}"
     allowed = bounds + (f" to {plain(high)}" if math.isfinite(high) else "")

@@ -24,45 +24,11 @@ COARSEST = 6
 
 
 class Icon(NamedTuple):
-    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32.
-
-    Attributes
-    ----------
-    ground, body, load
-        What holds and supports it, what is deformed, and what acts on it.
-    """
+    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32."""
 
     ground: str
     body: str
     load: str
-
-
-class Features(NamedTuple):
-    """What a scene has under its present settings, for whoever shows or measures it.
-
-    Attributes
-    ----------
-    opens
-        Whether contact may open, so that what presses is an unknown.
-    has_spring
-        Whether a spring holds a body.
-    has_break
-        Whether a body is broken.
-    jumps
-        Components of all contacts, which a reference condenses; none on a rigid support of known
-        bound.
-    bricks
-        Bodies that touch each other at joints, 0 where a body lies on the next all along.
-    loop_is_over_displacement
-        Whether the force of its loop stands over a displacement, m.
-    """
-
-    opens: bool = False
-    has_spring: bool = False
-    has_break: bool = False
-    jumps: int = 0
-    bricks: int = 0
-    loop_is_over_displacement: bool = True
 
 
 class Settings(LoadSettings):
@@ -70,7 +36,6 @@ class Settings(LoadSettings):
 
     length: param.Number[float]
     friction: param.Number[float]
-    elements: param.Integer[int]
     """Every scene defines these, where it shows them."""
 
     title: ClassVar[str]
@@ -81,15 +46,19 @@ class Settings(LoadSettings):
     """What there is to see: a rod on its support, wires beside each other, wires around a core, or
     plane bodies."""
     CHIEF: ClassVar[tuple[str, ...]]
-    """Settings that a scene is about, in the order in which one thinks of them."""
-    LOADS: ClassVar[tuple[str, ...]]
-    """Settings that say how much it is loaded; the first that applies counts."""
+    ALSO_CHIEF: ClassVar[tuple[str, ...]] = ("seed", "friction", "substructures", "k_scale")
+    """Settings that a scene is about, in the order in which one thinks of them: its own, and those
+    of friction and the method."""
     GROWS: ClassVar[tuple[str, ...]]
     """Settings by which the structure becomes larger as it is, all of them together."""
     MESH: ClassVar[tuple[str, ...]] = ("elements",)
     """Numbers of elements: twice each is a mesh of half the size."""
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
+    opens: ClassVar[bool] = False
+    """Whether contact may open, so that what presses is an unknown."""
+    has_joints: ClassVar[bool] = False
+    """Whether bodies touch each other at joints, and do not lie on the next all along."""
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""
@@ -123,14 +92,23 @@ class Settings(LoadSettings):
         return ()
 
     @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        return Features()
+    def jumps(self) -> int:
+        """Components of all contacts, which a reference condenses; none on a lone rod."""
+        return 0
+
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the force of its loop stands over a displacement, m."""
+        return True
 
     @property
     def n_interfaces(self) -> int:
         """Number of interfaces of which each may have its own mu."""
-        return 1
+        return self.n_bodies - 1
+
+    def has(self, name: str) -> bool:
+        """Whether there is such a setting, which does something and is not 0."""
+        return bool(self.values().get(name)) and self.applies(name)
 
     def behind(self) -> Mapping[str, str]:
         """Settings that place or scale what acts on the scene, where any does.

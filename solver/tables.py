@@ -53,13 +53,7 @@ class Table:
     def find(
         self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
     ) -> TableColumn | None:
-        """Column of a quantity among some, as described above.
-
-        Raises
-        ------
-        SettingError
-            If several are equally likely.
-        """
+        """Column of a quantity among some, as described above; refuse several as likely."""
         rules: list[Callable[[TableColumn], object]] = [
             lambda column: key and column.key == key,
             lambda column: column.quantities[1] and column.quantities[0].intersection(kinds),
@@ -100,25 +94,10 @@ class Table:
         units: Sequence[str],
         each: str = "points",
     ) -> tuple[Array, str]:
-        """Read numbers of some columns.
+        """Numbers of some columns in their units, (n_columns, n_rows), and what was understood.
 
-        Parameters
-        ----------
-        columns
-            Which of them.
-        names, units
-            What they are called where they lack a name, and the units that they are read in.
-        each
-            What lines are called.
-
-        Returns
-        -------
-        Numbers in these units, shape (n_columns, n_rows), and what was understood.
-
-        Raises
-        ------
-        SettingError
-            For a unit of another quantity, and a cell that is no finite number, with its line.
+        Names are those of columns that lack one, and `each` is what lines are called. A unit of
+        another quantity is refused, and a cell that is no finite number, with its line.
         """
         sizes = [
             column.size(unit, self.refuse) for column, unit in zip(columns, units, strict=True)
@@ -169,11 +148,7 @@ class Table:
 def read_table(data: bytes | str, refuse: Refuse) -> Table:
     """Table as it is read, as described above.
 
-    Raises
-    ------
-    SettingError
-        For what is too large, no text, or has no numbers; for a line with more cells than there
-        are columns, and a head with fewer names.
+    What is too large, no text or without numbers is refused, and lines that do not fit the head.
     """
     if len(data) > LARGEST:
         raise refuse(TOO_LARGE)

@@ -72,7 +72,7 @@ def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scen
         for number in (1, 2, 7, 38, 41):
             settings = of_preset(scene, name, preset, instants=number)
             fine = np.linspace(0.0, settings.duration, 96_001)
-            path = settings.curve(name).presets[preset]
+            path = settings.definitions()[name].presets[preset]
             given = path.value(fine / settings.duration, 3) * settings.size_of(name)
             seen = settings.path(name)
             if number == 1:  # it begins at rest: what is between that and its end, is passed

@@ -23,7 +23,7 @@ def words(scene: str, changes: dict[str, Any]) -> str:
         ("bar", {"friction": 0.0}, "a smooth table"),
         ("bar", {"pressure_profile": "gap"}, "a partly rough table"),
         ("bar", {"support_displacement": 1e-4}, "its left end is moved to and fro"),
-        ("strand", {}, "Three steel wires, number 2 broken, rub on each other; "),
+        ("strand", {}, "3 steel wires, number 2 broken, rub on each other; "),
         ("strand", {"broken": 0, "wires": 20}, "20 steel wires rub on each other"),
         ("strand", {"load": "triangle"}, "pulled and let go."),
         ("block", {}, "a round rough support; it is pressed and moved to and fro at its top"),
@@ -31,7 +31,7 @@ def words(scene: str, changes: dict[str, Any]) -> str:
         ("incline", {}, "a rough slope that rises and falls; a spring catches it"),
         ("fault", {}, "A fluid is let in at the left end of a sheared fault, and slip spreads"),
         ("fault", {"injection_load": "stopped"}, "A fluid is let in and stopped"),
-        ("layers", {}, "Four steel layers, held at the left, are pressed together and rub; "),
+        ("layers", {}, "4 steel layers, held at the left, are pressed together and rub; "),
         ("layers", {"layers": 2, "pull": 1e6}, "bent up and down, and pulled."),
     ],
 )

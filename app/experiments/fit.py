@@ -15,7 +15,7 @@ from app.files.tables import TABLES, axes_on
 from app.state import TABS, PageState
 from app.widgets import button
 from solver.checked import dump
-from solver.definitions import about
+from solver.definitions import title_of
 from solver.files import settings_from_toml
 from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
@@ -72,7 +72,7 @@ class FitTab(CommandTab):
     def show(self) -> None:
         """Offer the settings that can be fitted, and show the last fit."""
         settings = self.state.settings
-        titles = {about(settings.definitions()[n]).title: n for n in fittable(settings)}
+        titles = {title_of(settings.definitions()[n]): n for n in fittable(settings)}
         kept = [name for name in self.chosen.value if name in titles.values()]
         if self.chosen.options != titles or self.chosen.value != kept:
             self.chosen.param.update(options=titles, value=kept)

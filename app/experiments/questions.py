@@ -17,7 +17,7 @@ from app.refusals import message_of
 from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
-from solver.definitions import CurveParameter, Parameter, about, is_logarithmic
+from solver.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
@@ -157,7 +157,7 @@ def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     """
     known, vary = variable(settings), []
     numbers = [name for name in known if isinstance(known[name], param.Number)]
-    loads = [name for name in settings.LOADS if name in numbers]
+    loads = [n for n in (*settings.CHIEF, *numbers) if n in numbers and about(known[n]).path]
     if not loads or not {*others} <= {*numbers}:
         return None
     for name in (*others, loads[0]):
@@ -241,6 +241,6 @@ def _converted(values: str, convert: Callable[[str], str]) -> str:
 
 def _titled(definition: Parameter, settings: Settings) -> str:
     """Title of a setting, with its group where another has the same."""
-    titles = [about(other).title for other in settings.definitions().values()]
-    kind = about(definition)
-    return f"{kind.title} ({kind.group})" if titles.count(kind.title) > 1 else kind.title
+    titles = [title_of(other) for other in settings.definitions().values()]
+    title = title_of(definition)
+    return f"{title} ({about(definition).group})" if titles.count(title) > 1 else title

@@ -15,7 +15,7 @@ from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from solver.checked import dump
-from solver.definitions import about, checked_value, count, parse, quantity
+from solver.definitions import Group, checked_value, parse, title_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
@@ -31,8 +31,8 @@ Place = dict[str, Any]
 the address. Beside that the `instant` as a share of the interval, and the `iteration` at which the
 run waits."""
 _CHECKED: dict[str, Any] = {
-    "instant": quantity(0.0, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
-    "iteration": count(0, (0, 100_000), (0, 100_000), "", group="", title=""),
+    "instant": Group("").quantity(0.0, (0.0, 1.0), (0.0, 1.0), ""),
+    "iteration": Group("").count(0, (0, 100_000), (0, 100_000), ""),
     **{name: PageState.param[name] for name in ("tab", "pace", "view")},
 }
 """Definitions of what may be refused beside settings, scene, lesson, case and plots."""
@@ -106,7 +106,7 @@ def link_of(state: PageState) -> tuple[str, str]:
     }
     root = pn.state.location.href.partition("?")[0] if pn.state.location is not None else ""
     long = too_long(state.settings)
-    titles = ", ".join(about(state.settings.definitions()[name]).title for name in long)
+    titles = ", ".join(title_of(state.settings.definitions()[name]) for name in long)
     message = f"Too long for a link, so that a saved file has it alone: {titles}." if long else ""
     return root + query_of(place), message
 

@@ -25,7 +25,7 @@ from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.widgets import button, changing_text, dialog, download
 from solver.checked import dump
-from solver.definitions import about
+from solver.definitions import title_of
 from solver.files import settings_from_toml
 from solver.refusal import RefusedError
 from solver.settings import Settings
@@ -139,7 +139,7 @@ class TableOpener:
     def _offer(self, use: str) -> None:
         """Offer what a table may be used as in this scene."""
         paths = paths_of(self._state.settings).items()
-        kinds = {"Measured loop": LOOP, **{about(path).title: name for name, path in paths}}
+        kinds = {"Measured loop": LOOP, **{title_of(path): name for name, path in paths}}
         self._is_updating = True
         self.use.param.update(options=kinds, value=use if use in kinds.values() else LOOP)
         self._is_updating = False

@@ -17,7 +17,7 @@ from app.state import PageState
 from app.units import units_of_points
 from app.views.colors import LATIN
 from app.widgets import dialog
-from solver.definitions import about
+from solver.definitions import title_of
 from solver.refusal import RefusedError
 
 MOST_DRAGGED = 200
@@ -54,7 +54,7 @@ class CurveDialog:
             "Drag a point; tap to add one, tap it and press Backspace to take it away.",
         )
         self.view = dialog(
-            f"{about(definition).title}: {'points' if is_path else 'rows'}",
+            f"{title_of(definition)}: {'points' if is_path else 'rows'}",
             *(plot if is_path else ()),
             self.text,
             self._file,

@@ -9,7 +9,7 @@ from functools import partial
 from app.state import PageState
 from solver.columns import column_of
 from solver.curves import curve_of
-from solver.definitions import CurveParameter, SettingError, about
+from solver.definitions import CurveParameter, SettingError, about, title_of
 from solver.refusal import RefusedError
 from solver.remarks import ends_of_tables
 from solver.scenes import discretise
@@ -50,7 +50,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     definition = settings.definitions()[name]
     curve = curve_of(table, definition, name, settings.curve_units(name))
     changed = settings.replace(**{name: curve.points})
-    message = f"{about(definition).title}: {curve.message}."
+    message = f"{title_of(definition)}: {curve.message}."
     if definition.abscissa == "time":
         ends = max(ends_of_tables(changed).values(), default=0.0)
         changed = changed.replace(duration=ends) if ends > 0.0 else changed

@@ -9,7 +9,7 @@ from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
 from app.views.view import legend
-from solver.definitions import about
+from solver.definitions import title_of
 from solver.lessons import Lesson
 
 
@@ -28,7 +28,7 @@ class DrawnCurve:
         made = figure(
             x_axis_type="log",
             y_axis_type="log",
-            x_axis_label=about(lesson.settings.definitions()[lesson.draw]).title,
+            x_axis_label=title_of(lesson.settings.definitions()[lesson.draw]),
             y_axis_label=lesson.drawn_quantity.split(" to ")[0],
             x_range=(places[0] / 2.0, places[-1] * 2.0),
             y_range=(1.0, self._top),

@@ -165,11 +165,7 @@ class SlipPlane(View):
 
     # Two points rub, whose friction follows from what presses them.
     applies = staticmethod(
-        lambda settings: (
-            settings.features.opens
-            and settings.features.jumps == 4
-            and settings.law == FrictionLaw()
-        )
+        lambda settings: settings.opens and settings.jumps == 4 and settings.law == FrictionLaw()
     )
 
     def _make(self) -> None:

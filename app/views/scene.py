@@ -218,7 +218,7 @@ class Thrust(ExtraScene):
 
     name = "Thrust"
     needs = frozenset({"thrust"})
-    applies = staticmethod(lambda settings: settings.features.bricks > 2)
+    applies = staticmethod(lambda settings: settings.has_joints and settings.n_bodies > 2)
 
     def _draw(self, made: figure) -> None:
         super()._draw(made)

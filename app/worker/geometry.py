@@ -160,7 +160,7 @@ class DrawnMesh(Drawn):
         self._inside = inside = problem.inside
         self._poisson, self._state = (settings.values()[name] for name in ("poisson", "plane"))
         self.extras: Extras = {"stress": self._stress}
-        if settings.features.bricks:
+        if settings.has_joints:
             self.extras["thrust"] = self._thrust
         most = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])

@@ -21,7 +21,7 @@ ENTRIES = 8
 
 def has_reference(settings: Settings) -> bool:
     """Whether a run is compared with an incremental solver."""
-    return settings.features.jumps <= MOST_JUMPS
+    return settings.jumps <= MOST_JUMPS
 
 
 class ReferenceCache:

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
+import param
 
-import solver.scenes.bar_ends as bar_ends
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import ANY, POSITIVE, count, quantity
+from solver.definitions import ANY, LOAD, POSITIVE, CurveParameter, Group
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods
+from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
 from solver.discrete.substructure import tributary
-from solver.friction_settings import STIFFNESSES
 from solver.loads import interpolate
 from solver.profiles import harmonic_means, means
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
-from solver.scenes.words import acting, is_steel
-from solver.settings import Features, Icon, Settings
+from solver.settings import Icon, Settings
 
 SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falling")}
 """Those that leave no element without a section."""
@@ -37,6 +36,91 @@ DONE = {
 """Words for what is done along the bar, by the setting of its path."""
 SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
+BAR, ENDS = Group("Bar"), Group("Ends")
+KINDS = ("held", "spring", "pulled", "free")
+HOLDING = ("held", "spring")
+PATHS = {
+    "left": {"force": "left_load", "displacement": "support_load"},
+    "right": {"force": "load", "displacement": "right_load"},
+}
+"""Settings of the paths of both ends."""
+
+
+def _is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
+    """Make the question whether an end is one of these."""
+    return lambda settings: getattr(settings, f"{side}_end") in kinds
+
+
+def _end(side: str, default: str) -> param.Selector[str]:
+    """Define what holds or pulls an end."""
+    return ENDS.choice(
+        default,
+        KINDS,
+        f"What is at the {side} end. held: it stands still, or is moved. spring: a spring holds it "
+        "to what stands still, or is moved. pulled: by a force. free: nothing.",
+    )
+
+
+def _spring(side: str) -> param.Number[float]:
+    """Define the spring of an end."""
+    return ENDS.quantity(
+        1e6,
+        (1e-9, 1e18),
+        (1e3, 1e9),
+        f"Stiffness of the spring at the {side} end.",
+        title=f"Spring at the {side} end",
+        unit="N/m",
+        applies=_is_end(side, "spring"),
+    )
+
+
+def _moved_end(side: str, path: str, preset: str) -> tuple[param.Number[float], CurveParameter]:
+    """Define how far what holds an end is moved, and its path."""
+    return shared.sized_path(
+        path,
+        f"displacement of the {side} end",
+        "m",
+        0.0,
+        (-1e12, 1e12),
+        (0.0, 1e-3),
+        f"Largest displacement of what holds the {side} end; 0 leaves it where it is.",
+        preset,
+        applies=_is_end(side, *HOLDING),
+        group=ENDS,
+        places=(f"{side} x",),
+    )
+
+
+def _end_of(settings: Any, side: str) -> End:
+    """The end as a part of the structure."""
+    kind, paths = getattr(settings, f"{side}_end"), PATHS[side]
+    if kind == "free":
+        return End()
+    if kind == "pulled":
+        return End(force=settings.path(paths["force"]))
+    stiffness = getattr(settings, f"{side}_spring") if kind == "spring" else np.inf
+    return End(displacement=settings.path(paths["displacement"]), spring=stiffness)
+
+
+def _ends_in_words(rods: Rods) -> tuple[str, str]:
+    """How the ends are held or left alone, and what is done to them."""
+    still: dict[str, list[str]] = {}
+    moved = []
+    for side, end in rods.ends.items():
+        the = f"its {side} end"
+        if end.force is not None:
+            outward = end.force if side == "right" else -end.force
+            moved.append(f"{the} is {shared.acting(outward, 'pulled', 'pushed')}")
+        elif end.displacement is not None and end.displacement.any():
+            at = f"the spring at {the}" if end.is_on_spring else the
+            moved.append(f"{at} is {shared.acting(end.displacement, 'moved', 'moved back')}")
+        else:
+            word = "on a spring" if end.is_on_spring else "held" if end.is_prescribed else "free"
+            still.setdefault(word, []).append(the)
+    rests = [
+        f"{word} at {'both ends' if len(ends) == 2 else ends[0]}" for word, ends in still.items()
+    ]
+    return shared.listed(rests) if rests else "", ", and ".join(moved)
 
 
 class BarSettings(Settings):
@@ -51,24 +135,8 @@ class BarSettings(Settings):
         load="M37 18H46M42 14L46 18L42 22",
     )
     kind = "rod"
-    CHIEF = (
-        "load",
-        "seed",
-        "peak",
-        "right_displacement",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
+    CHIEF = ("load", "peak", "right_displacement")
     GROWS = ("elements",)
-    LOADS = (
-        "peak",
-        "right_displacement",
-        "left_force",
-        "support_displacement",
-        "temperature",
-        "settlement",
-    )
 
     peak, load = shared.sized_path(
         "load",
@@ -79,16 +147,16 @@ class BarSettings(Settings):
         (0.0, 2400.0),
         "Largest force that the preset reaches; 1500 N is where the whole bar of Table 1 slides.",
         "sine",
-        applies=bar_ends.is_end("right", "pulled"),
+        applies=_is_end("right", "pulled"),
         title="Peak load",
         places=("right x",),
     )
-    right_end = bar_ends.end("right", "pulled")
-    right_displacement, right_load = bar_ends.moved_end("right", "right_load", "ramp")
-    right_spring = bar_ends.spring("right")
-    left_end = bar_ends.end("left", "held")
-    support_displacement, support_load = bar_ends.moved_end("left", "support_load", "sine")
-    left_spring = bar_ends.spring("left")
+    right_end = _end("right", "pulled")
+    right_displacement, right_load = _moved_end("right", "right_load", "ramp")
+    right_spring = _spring("right")
+    left_end = _end("left", "held")
+    support_displacement, support_load = _moved_end("left", "support_load", "sine")
+    left_spring = _spring("left")
     left_force, left_load = shared.sized_path(
         "left_load",
         "force at the left end",
@@ -98,8 +166,8 @@ class BarSettings(Settings):
         (0.0, 2400.0),
         "Largest axial force at the left end, positive to the right.",
         "sine",
-        applies=bar_ends.is_end("left", "pulled"),
-        group="Ends",
+        applies=_is_end("left", "pulled"),
+        group=ENDS,
         places=("left x",),
     )
     body_force, body_load = shared.sized_path(
@@ -127,15 +195,14 @@ class BarSettings(Settings):
     temperature_profile = shared.profile(
         "the temperature",
         "the bar",
-        group="Load",
+        group=LOAD,
         applies=lambda settings: settings.acts("temperature_load"),
     )
-    expansion = quantity(
+    expansion = LOAD.quantity(
         1.2e-5,
         (1e-12, 1.0),
         (1e-6, 1e-4),
         "Strain of the bar without any force, per kelvin.",
-        group="Load",
         title="Thermal expansion",
         unit="1/K",
         applies=lambda settings: settings.acts("temperature_load"),
@@ -157,24 +224,22 @@ class BarSettings(Settings):
         "the bar",
         SETTLEMENTS,
         "a preset (linear: nothing at the left end), or points (m, factor).",
-        group="Load",
+        group=LOAD,
         applies=lambda settings: settings.acts("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
     pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
     friction_profile = shared.profile("μ", "the bar", bounds=POSITIVE)
     pressure_profile = shared.profile("p", "the bar", bounds=POSITIVE)
-    elements = count(
+    elements = BAR.count(
         50,
         (1, 20_000),
         (10, 400),
         "Number of linear elements, equal in length.",
-        group="Bar",
-        title="Elements",
     )
-    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", "Bar")
-    young = shared.young("Bar")
-    section = shared.section("Area of the cross section.", "Bar")
+    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", BAR)
+    young = shared.young(BAR)
+    section = shared.section("Area of the cross section.", BAR)
     section_profile = shared.profile(
         "S",
         "the bar",
@@ -182,13 +247,8 @@ class BarSettings(Settings):
         "a preset, taken at the middle of every element; or points (m, factor), where an element "
         "is as stiff as all that lies in it.",
         bounds=(ANY, (1.0 / LARGEST_CONTRAST, LARGEST_CONTRAST)),
-        group="Bar",
+        group=BAR,
     )
-
-    @property
-    def n_nodes(self) -> int:
-        """Number of nodes."""
-        return self.elements + 1
 
     @property
     def contact_unit(self) -> float:
@@ -200,20 +260,10 @@ class BarSettings(Settings):
         """Refuse what has no digits left, or no equilibrium, too."""
         self._check_section()
         super().check_together()
-        for side in bar_ends.PATHS:
-            self._check_spring(f"{side}_spring")
+        size = self.young * self.section / self.length
+        for side in PATHS:
+            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
         self._check_equilibrium()
-
-    def _check_spring(self, name: str) -> None:
-        """Refuse springs beside which no digits of the bar are left, or of themselves."""
-        unit, value = self.young * self.section / self.length, getattr(self, name)
-        low, high = (share * unit for share in STIFFNESSES)
-        if self.applies(name) and not low <= value <= high:
-            raise self.refusal(
-                name,
-                f"from {plain(low)} N/m to {plain(high)} N/m with such a bar",
-                "let the end be free, or held",
-            )
 
     def _check_section(self) -> None:
         """Refuse a section that is too uneven for the digits of a number."""
@@ -248,8 +298,8 @@ class BarSettings(Settings):
             elements=self.elements,
             substructures=self.substructures,
             bound=self._bound(nodes),
-            left=bar_ends.end_of(self, "left"),
-            right=bar_ends.end_of(self, "right"),
+            left=_end_of(self, "left"),
+            right=_end_of(self, "right"),
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
@@ -265,23 +315,23 @@ class BarSettings(Settings):
         rods = self.structure()
         bound = self.law.without_slip(rods.bound)
         table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-        rests, moved = bar_ends.ends_in_words(rods)
+        rests, moved = _ends_in_words(rods)
         clauses = [moved] if moved else []
         for path, words in DONE.items():
             if self.acts(path):
-                clauses.append(words[0].format(acting(self.path(path), *words[1:])))
+                clauses.append(words[0].format(shared.acting(self.path(path), *words[1:])))
         if self.pressure_load != "steady":
             clauses.append("what presses it changes")
-        body = "A steel bar" if is_steel(self.young) else "An elastic bar"
+        body = "A steel bar" if shared.is_steel(self.young) else "An elastic bar"
         head = f"{body} lies on a {table} table{f', {rests}' if rests else ''}"
         return f"{'; '.join([head, *clauses])}."
 
     @property
-    def features(self) -> Features:
-        """What it has: a loop over a displacement where an end is pulled or moved."""
+    def loop_is_over_displacement(self) -> bool:
+        """Whether an end is pulled or moved."""
         acting = {name for name in self.paths if self.acts(name)}
-        driven = {path for paths in bar_ends.PATHS.values() for path in paths.values()}
-        return Features(loop_is_over_displacement=bool(acting & driven))
+        driven = {path for paths in PATHS.values() for path in paths.values()}
+        return bool(acting & driven)
 
     def _bound(self, nodes: Array) -> Array:
         """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
@@ -294,7 +344,7 @@ class BarSettings(Settings):
 
     def _check_equilibrium(self) -> None:
         """Refuse more force than friction carries, where it alone holds the bar."""
-        if {self.left_end, self.right_end} & set(bar_ends.HOLDING):
+        if {self.left_end, self.right_end} & set(HOLDING):
             return
         rods = self.structure()
         bound = self.law.without_slip(rods.bounds) * self.law.strongest

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Rows, choice, count, curve, quantity, redefined
+from solver.definitions import BODY, CONTACT, Group, Parameter, Rows, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
-from solver.discrete.stack import Spring, Stack, Support
+from solver.discrete.stack import Given, Side, Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.load_settings import POINTS, as_points
 from solver.loads import PRESETS
@@ -20,9 +20,114 @@ from solver.profiles import UNSEEN, gap_at, off_nodes
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola
-from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
-from solver.scenes.words import acting, is_steel, listed
-from solver.settings import Features, Icon
+from solver.scenes.plane import PlaneSettings
+from solver.settings import Icon
+
+BODY_FORCE = Group("Body force")
+LOADED_SIDES = ("left", "right", "top")
+COMPONENTS = ("normal", "tangential")
+PRESCRIBED: dict[str, tuple[bool, bool]] = {
+    "free": (False, False),
+    "roller": (True, False),
+    "clamped": (True, True),
+    "displacement": (True, True),
+    "traction": (False, False),
+    "pushed": (True, False),
+    "dragged": (False, True),
+}
+"""Whether the normal and the tangential displacement are prescribed; a traction is, otherwise."""
+AT_REST = ("free", "roller", "clamped")
+
+
+def _is_given(side: str, component: str, prescribed: bool | None = None) -> Callable[..., bool]:
+    """Make the test whether anything but rest is given along a side, and is of this kind."""
+
+    def applies(settings: PlaneSettings) -> bool:
+        kind = getattr(settings, side)
+        own = PRESCRIBED[kind][COMPONENTS.index(component)]
+        return kind not in AT_REST and prescribed in (None, own)
+
+    return applies
+
+
+def _settings_of(side: str, component: str) -> dict[str, Parameter]:
+    """Settings of what is given: how large it is, how it varies along the side, and over time."""
+    along = "x" if side == "top" else "y"
+    towards = "outward" if component == "normal" else f"along {along}"
+    axis = along if component == "tangential" else "yx"["xy".index(along)]
+    name, group = f"{side}_{component}", Group(side.capitalize())
+    title, given = f"{group.name} {component}", _is_given(side, component)
+    size = {"path": f"{name}_load", "places": (f"{side} {axis}",)}
+    return {
+        f"{name}_traction": group.quantity(
+            0.0,
+            (-1e15, 1e15),
+            (-2e8, 2e8),
+            f"Mean {component} traction on the {side} side, positive {towards}.",
+            unit="Pa",
+            applies=_is_given(side, component, False),
+            **size,
+        ),
+        f"{name}_displacement": group.quantity(
+            0.0,
+            (-1e12, 1e12),
+            (-1e-4, 1e-4),
+            f"Mean {component} displacement of the {side} side, positive {towards}.",
+            unit="m",
+            applies=_is_given(side, component, True),
+            **size,
+        ),
+        f"{name}_slope": group.quantity(
+            0.0,
+            (-1e6, 1e6),
+            (-1.0, 1.0),
+            "How unevenly the value is spread along the side: from the mean times 1 - slope at "
+            "its lower or left end to the mean times 1 + slope at the other, and linear between.",
+            applies=given,
+        ),
+        f"{name}_load": group.curve(
+            "hold" if component == "normal" else "delayed",
+            PRESETS,
+            {"time": "s", "value": "Pa or m"},
+            f"{title} value over time: a preset that reaches the mean, or points (s, Pa or m).",
+            title=f"{title} path",
+            applies=given,
+        ),
+    }
+
+
+class SideSettings(PlaneSettings):
+    """Settings of a rectangle whose left, right and top side can be held or loaded."""
+
+    def side(self, side: str) -> Side:
+        """What is given along a side, for x and y."""
+        normal, tangential = (self._given(side, component) for component in COMPONENTS)
+        return Side(tangential, normal) if side == "top" else Side(normal, tangential)
+
+    def _given(self, side: str, component: str) -> Given:
+        kind = getattr(self, side)
+        prescribed = PRESCRIBED[kind][COMPONENTS.index(component)]
+        if kind in AT_REST:
+            rest = np.zeros(self.n_instants)
+            return Given(prescribed, rest, rest)
+        sign = -1.0 if side == "left" and component == "normal" else 1.0
+        mean = sign * self.path(f"{side}_{component}_load")
+        return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
+
+
+for _side in LOADED_SIDES:
+    _kind = Group(_side.capitalize()).choice(
+        "free",
+        PRESCRIBED,
+        "What is given. free: nothing. roller: no normal displacement. clamped: no displacement. "
+        "displacement: both displacements. traction: both tractions. pushed: normal displacement, "
+        "tangential traction. dragged: tangential displacement, normal traction.",
+        title=f"{_side.capitalize()} side",
+    )
+    SideSettings.param.add_parameter(_side, _kind)
+    for _component in COMPONENTS:
+        for _name, _definition in _settings_of(_side, _component).items():
+            SideSettings.param.add_parameter(_name, _definition)
 
 
 def _gap_points(settings: BlockSettings) -> Rows:
@@ -41,97 +146,75 @@ class BlockSettings(SideSettings):
         body="M12 11H36V24H12Z",
         load="M24 1V9M20 5L24 9L28 5M32 7H44M40 3L44 7L40 11",
     )
-    CHIEF = (
-        "top_tangential_load",
-        "seed",
-        "top_tangential_displacement",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
-    LOADS = ("top_tangential_displacement",)
+    CHIEF = ("top_tangential_load", "top_tangential_displacement")
 
-    gap = curve(
+    gap = CONTACT.curve(
         "parabola",
         dict.fromkeys(("flat", "parabola"), _gap_points),
         {"position": "m", "gap": "m"},
         "Opening between the undeformed body and its support: a preset, or points (m, m).",
-        group="Contact",
-        title="Gap",
     )
-    radius = quantity(
+    radius = CONTACT.quantity(
         5.0,
         (1e-9, 1e15),
         (0.5, 50.0),
         "Radius R of the parabola; the gap is (x - length / 2)^2 / (2 R).",
-        group="Contact",
         title="Radius R",
         unit="m",
         applies=lambda settings: settings.gap == "parabola",
     )
-    spring = quantity(
+    spring = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (0.0, 1e8),
         "Stiffness of a spring that pulls the foot of the right side back as it moves to the left, "
         "for a metre of thickness. 0: none.",
-        group="Contact",
         title="Spring stiffness",
         unit="N/m",
         applies=lambda settings: not any(PRESCRIBED[settings.right]),
     )
-    elements = count(
+    elements = BODY.count(
         48,
         (1, 5000),
         (8, 192),
         "Number of elements along a body, equal in size.",
-        group="Body",
         title="Elements along",
     )
-    length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", "Body")
+    length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", BODY)
     height = shared.size(
         0.05,
         (0.01, 1.0),
         "Height",
         "Height of the body. Shear bends one as high as long: its foot tilts, and a contact on a "
         "parabola rolls.",
-        "Body",
+        BODY,
     )
-    body_force_x = quantity(
+    body_force_x = BODY_FORCE.quantity(
         0.0,
         (-1e15, 1e15),
         (-1e9, 1e9),
         "Largest force per volume along x.",
-        group="Body force",
         title="Body force along x",
         unit="N/m^3",
     )
-    body_force_y = quantity(
+    body_force_y = BODY_FORCE.quantity(
         0.0,
         (-1e15, 1e15),
         (-1e9, 1e9),
         "Largest force per volume along y, upward; weight is negative.",
-        group="Body force",
         title="Body force along y",
         unit="N/m^3",
     )
-    body_load = choice(
+    body_load = BODY_FORCE.choice(
         "hold",
         PRESETS,
         "Path of the body force over time.",
-        group="Body force",
         title="Path of the body force",
         applies=lambda settings: settings.body_force_x != 0.0 or settings.body_force_y != 0.0,
     )
     top = redefined(SideSettings.param["top"], "displacement")
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
-
-    @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        has_spring = bool(self.spring) and self.applies("spring")
-        return super().features._replace(has_spring=has_spring)
 
     def behind(self) -> Mapping[str, str]:
         """Settings behind what acts; where both body forces do, the larger stands for their sum."""
@@ -183,7 +266,7 @@ class BlockSettings(SideSettings):
             support=Support(gap, self.friction_at_nodes()),
             sides=sides,
             body_force=self._body_force(),
-            spring=Spring(0.0, self.spring) if self.features.has_spring else None,
+            spring=Spring(0.0, self.spring) if self.has("spring") else None,
         )
 
     def sentence(self) -> str:
@@ -196,17 +279,17 @@ class BlockSettings(SideSettings):
                 continue
             inward = -self.path(f"{side}_normal_load")
             along = self.path(f"{side}_tangential_load")
-            own = [acting(inward, "pressed", "pulled")] if inward.any() else []
-            own += [acting(along, "moved", "moved back")] if along.any() else []
-            acts += [f"{listed(own)} at its {side}"] if own else []
+            own = [shared.acting(inward, "pressed", "pulled")] if inward.any() else []
+            own += [shared.acting(along, "moved", "moved back")] if along.any() else []
+            acts += [f"{shared.listed(own)} at its {side}"] if own else []
         if self._body_force() is not None:
             acts.append("loaded all through")
-        if self.features.has_spring:
+        if self.has("spring"):
             acts.append("pulled back by a spring")
         held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
         acts += [f"held at its {side}" for side in held]
-        does = listed(acts) if acts else "left alone"
-        block = "A steel block" if is_steel(self.young) else "An elastic block"
+        does = shared.listed(acts) if acts else "left alone"
+        block = "A steel block" if shared.is_steel(self.young) else "An elastic block"
         return f"{block} lies on a {support} {rough} support; it is {does}."
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:

@@ -13,7 +13,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import POSITIVE, SettingError, quantity, redefined
+from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
@@ -24,8 +24,7 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -53,15 +52,8 @@ class Fault:
     to the left lies the other image, which moves along as much and across the other way round. The
     fault slips by twice what this quarter moves along it.
 
-    Attributes
-    ----------
-    body
-        The quarter, on a support of known bound.
-    stress
-        Shear stress far from the fault, Pa.
-    fluid
-        Pressure over time of a fluid that is let in at the middle, shape (n_instants,), Pa, for
-        whoever draws it: the bound is less by what it takes already.
+    The bound of the body's support is less already by what the fluid takes: shear stress far away
+    and the fluid's pressure at the middle, (n_instants,), Pa, are for whoever draws them.
     """
 
     body: Stack
@@ -112,16 +104,9 @@ class FaultSettings(PlaneSettings):
         body="M4 8H44V24H4Z",
         load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
     )
-    CHIEF = (
-        "injection_load",
-        "seed",
-        "overpressure",
-        "shear_stress",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
-    LOADS = ("overpressure", "shear_stress")
+    CHIEF = ("injection_load", "overpressure", "shear_stress")
+    opens = False
+    loop_is_over_displacement = False
 
     overpressure, injection_load = shared.sized_path(
         "injection_load",
@@ -137,12 +122,11 @@ class FaultSettings(PlaneSettings):
         "from nothing. pulses: down and up again, six times. ",
         places=("left x",),
     )
-    shear_stress = quantity(
+    shear_stress = LOAD.quantity(
         3.6e6,
         (-1e15, 1e15),
         (0.0, 1e7),
         "Shear stress τ far from the fault, from the beginning.",
-        group="Load",
         title="Shear stress τ",
         unit="Pa",
         places=("top x",),
@@ -154,40 +138,36 @@ class FaultSettings(PlaneSettings):
         doc="Length of the time interval. Friction does not feel the rate, but a fluid needs time: "
         "it spreads over sqrt(4 α t).",
     )
-    normal_stress = quantity(
+    normal_stress = CONTACT.quantity(
         1e7,
         (0.0, 1e15),
         (1e6, 1e8),
         "Pressure σ between both sides of the fault, less that of the fluid there before.",
-        group="Contact",
         title="Normal stress σ",
         unit="Pa",
     )
     normal_profile = shared.profile("σ", "the fault", PROFILES, bounds=POSITIVE)
-    diffusivity = quantity(
+    diffusivity = CONTACT.quantity(
         0.1,
         (1e-15, 1e9),
         (1e-3, 10.0),
         "Hydraulic diffusivity α along the fault.",
-        group="Contact",
         title="Diffusivity α",
         unit="m^2/s",
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
     friction_profile = shared.profile("μ", "the fault", PROFILES, bounds=POSITIVE)
     length = shared.size(
-        600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
+        600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", BODY
     )
-    height = shared.size(
-        600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", "Body"
-    )
-    young = shared.young("Body", 6e10, (1e9, 1e12))
+    height = shared.size(600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", BODY)
+    young = shared.young(BODY, 6e10, (1e9, 1e12))
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
     @property
-    def features(self) -> Features:
-        """A fault stays closed; its loop is over the fluid, which drives it."""
-        return Features(jumps=self.nodes[0], loop_is_over_displacement=False)
+    def jumps(self) -> int:
+        """Components of all contacts: a fault stays closed."""
+        return self.nodes[0]
 
     def fluid(self, place: Array) -> Array:
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
@@ -268,7 +248,7 @@ class FaultSettings(PlaneSettings):
         path = self.path("injection_load")
         if not path.any():
             return "A fault is sheared; a quarter of it is seen."
-        moves = acting(path, "let in", "sucked out", back="{} and stopped")
+        moves = shared.acting(path, "let in", "sucked out", back="{} and stopped")
         return (
             f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
             "a quarter is seen."

@@ -12,18 +12,18 @@ from dataclasses import replace
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import quantity, redefined
+from solver.definitions import BODY, CONTACT, LOAD, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
+from solver.laws.play import play
 from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 
 class InclineSettings(PlaneSettings):
@@ -37,8 +37,8 @@ class InclineSettings(PlaneSettings):
         body="M15 22L28 16L25 8L12 14Z",
         load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
     )
-    CHIEF = ("slope_load", "seed", "slope", "friction", "substructures", "k_scale")
-    LOADS = ("slope",)
+    CHIEF = ("slope_load", "slope")
+    loop_is_over_displacement = False
 
     slope, slope_load = shared.sized_path(
         "slope_load",
@@ -53,46 +53,37 @@ class InclineSettings(PlaneSettings):
         PULLS,
         title="Slope θ",
     )
-    weight = quantity(
+    weight = LOAD.quantity(
         1000.0,
         (0.0, 1e15),
         (0.0, 5000.0),
         "Weight W of the block, for a metre of thickness.",
-        group="Load",
         title="Weight W",
         unit="N",
         places=("body",),
     )
-    slack = quantity(
+    slack = CONTACT.quantity(
         2e-4,
         (0.0, 1e6),
         (0.0, 1e-3),
         "How far the block may slide before the spring pulls.",
-        group="Contact",
-        title="Slack",
         unit="m",
     )
-    spring = quantity(
+    spring = CONTACT.quantity(
         2e6,
         (1e-6, 1e18),
         (1e5, 1e8),
         "Stiffness of the spring, for a metre of thickness.",
-        group="Contact",
         title="Spring stiffness",
         unit="N/m",
     )
-    length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", "Body")
+    length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", BODY)
     height = shared.size(
-        0.05, (0.01, 1.0), "Height h", "Height of the block; it tips where tan θ > b/h.", "Body"
+        0.05, (0.01, 1.0), "Height h", "Height of the block; it tips where tan θ > b/h.", BODY
     )
-    young = shared.young("Body", 1e7, (1e6, 1e12))
+    young = shared.young(BODY, 1e7, (1e6, 1e12))
     elements = redefined(PlaneSettings.param["elements"], 24)
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
-
-    @property
-    def features(self) -> Features:
-        """The loop is over the angle of the slope."""
-        return super().features._replace(has_spring=True, loop_is_over_displacement=False)
 
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""
@@ -127,16 +118,13 @@ class InclineSettings(PlaneSettings):
             return
         angle = np.radians(self.path("slope_load"))
         down, friction = self.weight * np.sin(angle), np.max(mu) * self.weight * np.cos(angle)
-        force = np.zeros_like(down)
-        now = 0.0
-        for instant, (least, most) in enumerate(zip(down - friction, down + friction, strict=True)):
-            now = max(min(max(now, float(least)), float(most)), 0.0)
-            force[instant] = now
+        # As down is not negative, a force that begins at zero never falls below it.
+        (force,) = play(down[None], friction[None])
         yield ExactCurve("loop", np.degrees(angle), force)
 
     def sentence(self) -> str:
         """The block on its slope in a sentence."""
         path = self.path("slope_load")
-        moves = acting(path, "rises", "falls", "rises and falls", "rises and falls")
+        moves = shared.acting(path, "rises", "falls", "rises and falls", "rises and falls")
         slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
         return f"A block lies on a {slope}; a spring catches it when it slides down."

@@ -9,14 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import (
-    Rows,
-    choice,
-    count,
-    curve,
-    quantity,
-    redefined,
-)
+from solver.definitions import BODY, LOAD, Rows, redefined
 from solver.discrete.bricks import Brick
 from solver.discrete.cut_stack import ends_along
 from solver.discrete.problem import Problem
@@ -27,8 +20,7 @@ from solver.profiles import UNSEEN
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting, counted, is_steel
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 
 def _graduated(settings: LayersSettings) -> Rows:
@@ -48,18 +40,8 @@ class LayersSettings(PlaneSettings):
         "C28 17 18 16 5 16ZM5 16C18 16 28 17 36 22L34 26C28 22 18 21 5 21Z",
         load="M44 6V20M40 16L44 20L48 16",
     )
-    CHIEF = (
-        "bend_load",
-        "seed",
-        "deflection",
-        "moment",
-        "force",
-        "friction",
-        "substructures",
-        "k_scale",
-    )
+    CHIEF = ("bend_load", "deflection", "moment", "force")
     GROWS = ("layers",)
-    LOADS = ("deflection", "moment", "force")
     across = "thickness"
 
     pressure, pressure_load = shared.sized_path(
@@ -84,73 +66,63 @@ class LayersSettings(PlaneSettings):
         "hold",
         places=("right x",),
     )
-    bending = choice(
+    bending = LOAD.choice(
         "deflection",
         ["deflection", "moment", "force"],
         "What bends the stack at its right end. deflection: a given transverse displacement. "
         "moment: a given moment, force: a transverse force, which all layers that reach there "
         "share.",
-        group="Load",
-        title="Bending",
     )
-    deflection = quantity(
+    deflection = LOAD.quantity(
         2e-3,
         (-1e12, 1e12),
         (-1e-2, 1e-2),
         "Largest transverse displacement of the right end.",
-        group="Load",
-        title="Deflection",
         unit="m",
         applies=lambda settings: settings.bending == "deflection",
         path="bend_load",
         places=("right y",),
     )
-    moment = quantity(
+    moment = LOAD.quantity(
         1e3,
         (-1e15, 1e15),
         (-1e4, 1e4),
         "Largest moment on the right end, counter-clockwise, for a metre of thickness.",
-        group="Load",
-        title="Moment",
         unit="N·m/m",
         applies=lambda settings: settings.bending == "moment",
         path="bend_load",
         places=("right x",),
     )
-    force = quantity(
+    force = LOAD.quantity(
         1e3,
         (-1e15, 1e15),
         (-1e4, 1e4),
         "Largest force on the right end, up, for a metre of thickness.",
-        group="Load",
         title="Force at the end",
         unit="N/m",
         applies=lambda settings: settings.bending == "force",
         path="bend_load",
         places=("right y",),
     )
-    bend_load = curve(
+    bend_load = LOAD.curve(
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or N·m/m or N/m"},
         "Deflection, moment or force over time: a preset, or points (s, m or N·m/m or N/m).",
-        group="Load",
         title="Path of the bending",
     )
     friction_factors = shared.friction_factors("between two layers, from the lowest on")
-    layers = count(
+    layers = BODY.count(
         4,
         (2, 50),
         (2, 12),
         "Number of layers.",
-        group="Body",
-        title="Layers",
     )
-    length = shared.size(0.5, (0.05, 5.0), "Length", "Length of the stack.", "Body")
+    length = shared.size(0.5, (0.05, 5.0), "Length", "Length of the stack.", BODY)
     thickness = shared.size(
-        0.01, (0.001, 0.1), "Thickness of a layer", "Thickness of one layer.", "Body"
+        0.01, (0.001, 0.1), "Thickness of a layer", "Thickness of one layer.", BODY
     )
-    layer_lengths = curve(
+    layer_lengths = BODY.curve(
         "equal",
         {"equal": lambda settings: shared.same_for(settings.layers), "graduated": _graduated},
         {"layer": "", "share": ""},
@@ -158,15 +130,13 @@ class LayersSettings(PlaneSettings):
         "element. equal: 1. graduated: each is shorter than the one below it by the same step, as "
         "in a leaf spring. Or points (layer, share), one for each. What is given at the right end "
         "holds for the longest; pressure acts on all that lies open.",
-        group="Body",
         title="Length of each layer",
     )
-    contrast = quantity(
+    contrast = BODY.quantity(
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
         "Young's modulus of every second layer over that of the others, the lowest among them.",
-        group="Body",
         title="Stiffness contrast",
     )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
@@ -177,11 +147,6 @@ class LayersSettings(PlaneSettings):
     def n_bodies(self) -> int:
         """Number of bodies."""
         return self.layers
-
-    @property
-    def n_interfaces(self) -> int:
-        """Number of interfaces between the layers."""
-        return self.layers - 1
 
     @property
     def spans(self) -> tuple[int, ...]:
@@ -205,10 +170,9 @@ class LayersSettings(PlaneSettings):
         return columns * int(self.substructures_up)
 
     @property
-    def features(self) -> Features:
-        """The loop of a moment is over a rotation."""
-        is_over_displacement = self.bending != "moment"
-        return super().features._replace(loop_is_over_displacement=is_over_displacement)
+    def loop_is_over_displacement(self) -> bool:
+        """Whether it is not that of a moment, over a rotation."""
+        return bool(self.bending != "moment")
 
     def check_together(self) -> None:
         """Refuse lengths and factors on mu that are not one for each layer or interface, too."""
@@ -272,12 +236,12 @@ class LayersSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """The stack in a sentence."""
-        kind = "steel" if is_steel(self.young) else "elastic"
+        kind = "steel" if shared.is_steel(self.young) else "elastic"
         lengths = "" if self.layer_lengths == "equal" else " of different lengths"
-        layers = f"{counted(self.layers).capitalize()} {kind} layers{lengths}"
+        layers = f"{self.layers} {kind} layers{lengths}"
         pressed = "are pressed together and rub" if self.pressure else "lie on each other"
         bent, pull = self.path("bend_load"), self.path("pull_load")
-        ends = acting(bent, "bent up", "bent down", "bent up and down")
+        ends = shared.acting(bent, "bent up", "bent down", "bent up and down")
         if pull.any():
-            ends = f"{ends}, and {acting(pull, 'pulled', 'pushed')}"
+            ends = f"{ends}, and {shared.acting(pull, 'pulled', 'pushed')}"
         return f"{layers}, held at the left, {pressed}; the right end is {ends}."

@@ -11,11 +11,11 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import POSITIVE, choice, count, quantity, redefined
+from solver.definitions import BODY, CONTACT, DECOMPOSITION, METHOD, POSITIVE, redefined
 from solver.discrete.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
-from solver.settings import Features, Settings
+from solver.settings import Settings
 
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
@@ -38,6 +38,7 @@ class PlaneSettings(Settings):
         "substructures_up",
     )
     kind = "plane"
+    opens = True
 
     instants = redefined(Settings.param["instants"], 81)
     friction = shared.friction("mu", largest=10.0)
@@ -50,16 +51,14 @@ class PlaneSettings(Settings):
         "joint, a soft layer. 0: rigid.",
         unit="N/m^3",
     )
-    normal_stiffness = quantity(
+    normal_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e8, 1e14),
         "Stiffness of a spring across the interface, in series with contact that may open, per "
         "area. 0: rigid.",
-        group="Contact",
-        title="Normal stiffness",
         unit="N/m^3",
-        applies=lambda settings: settings.is_general and settings.features.opens,
+        applies=lambda settings: settings.is_general and settings.opens,
     )
     cohesion = redefined(
         Settings.param["cohesion"],
@@ -76,68 +75,56 @@ class PlaneSettings(Settings):
         doc="Largest friction per area that pressure and cohesion make, before slip. 0: none.",
         unit="Pa",
     )
-    plane = choice(
+    plane = BODY.choice(
         "strain",
         ["strain", "stress"],
         "strain: a body that is long across the picture. stress: a thin one.",
-        group="Body",
-        title="Plane",
     )
-    young = shared.young("Body")
-    poisson = quantity(
+    young = shared.young(BODY)
+    poisson = BODY.quantity(
         0.3,
         (0.0, 0.4999),
         (0.0, 0.49),
         "Poisson's ratio.",
-        group="Body",
         title="Poisson's ratio ν",
     )
-    elements = count(
+    elements = BODY.count(
         48,
         (2, 5000),
         (8, 192),
         "Number of elements along a body, equal in size.",
-        group="Body",
         title="Elements along",
     )
-    elements_up = count(
+    elements_up = BODY.count(
         24,
         (1, 5000),
         (2, 96),
         "Number of elements over the height of a body.",
-        group="Body",
-        title="Elements up",
     )
     substructures: param.Integer[int] = redefined(
         Settings.param["substructures"],
         4,
         title="Substructures along",
     )
-    substructures_up = count(
+    substructures_up = DECOMPOSITION.count(
         2,
         (1, 5000),
         (1, 16),
         "Number of pieces (substructures) over the height of a body.",
-        group="Decomposition",
-        title="Substructures up",
     )
-    macro_degree = count(
+    macro_degree = DECOMPOSITION.count(
         1,
         (0, 10),
         (0, 4),
         "What the coarse problem balances on each side of a substructure. 0: resultants; 1: also "
         "moments and linear extension. Sides more than three times as long as the substructure is "
         "deep get more by themselves.",
-        group="Decomposition",
-        title="Macro degree",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
     )
-    start = choice(
+    start = METHOD.choice(
         "zero",
         ["zero"],
         "Where the iteration starts: from zero.",
-        group="Method",
-        title="Start",
         applies=lambda settings: False,
     )
 
@@ -169,11 +156,6 @@ class PlaneSettings(Settings):
         return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
 
     @property
-    def n_bodies(self) -> int:
-        """Number of bodies."""
-        return 1
-
-    @property
     def nodes(self) -> tuple[int, int]:
         """Number of nodes of one body, along and up."""
         return self.elements + 1, self.elements_up + 1
@@ -184,10 +166,9 @@ class PlaneSettings(Settings):
         return self.n_bodies * math.prod(self.nodes)
 
     @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        jumps = 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
-        return Features(opens=True, jumps=jumps)
+    def jumps(self) -> int:
+        """Components of all contacts, which a reference condenses."""
+        return 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
 
     @property
     def n_substructures(self) -> int:

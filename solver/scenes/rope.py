@@ -8,22 +8,8 @@ from functools import cached_property
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import (
-    POSITIVE,
-    Rows,
-    SettingError,
-    choice,
-    count,
-    curve,
-    quantity,
-    redefined,
-)
-from solver.discrete.cross_section import (
-    CONSTRUCTIONS,
-    MOST_LAYERS,
-    CrossSection,
-    laid,
-)
+from solver.definitions import POSITIVE, Rows, SettingError, redefined
+from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields
@@ -32,8 +18,7 @@ from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.refusal import RefusedError
-from solver.scenes.words import acting, counted
-from solver.settings import Features, Icon, Settings
+from solver.settings import Icon, Settings
 
 MOST_WIRES = 1000
 """Of a construction of one's own."""
@@ -52,20 +37,12 @@ class RopeSettings(Settings):
         load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
     )
     kind = "helices"
-    CHIEF = (
-        "construction",
-        "layers",
-        "bending",
-        "load",
-        "curvature",
-        "tension",
-        "friction",
-        "k_scale",
-    )
+    CHIEF = ("construction", "layers", "bending", "load", "curvature", "tension")
+    ALSO_CHIEF = ("friction", "k_scale")
     GROWS = ("layers",)
-    LOADS = ("curvature",)
+    loop_is_over_displacement = False
 
-    construction = curve(
+    construction = shared.STRAND.curve(
         "mooring",
         dict.fromkeys(CONSTRUCTIONS, lambda settings: settings.section.rows),
         {"wires": "", "diameter": "m", "lay angle": "°", "modulus": "Pa"},
@@ -75,16 +52,12 @@ class RopeSettings(Settings):
         "lay angle (°, negative the other way round) and Young's modulus (Pa); the first row is "
         "the core, 1 wire of 0°.",
         bounds=((1, 500), (1e-6, 1.0), (-75.0, 75.0), (1.0, 1e18)),
-        group="Strand",
-        title="Construction",
     )
-    layers = count(
+    layers = shared.STRAND.count(
         3,
         (1, MOST_LAYERS),
         (1, MOST_LAYERS),
         "Number of layers on the core: 7, 19, 37, 61 or 91 wires.",
-        group="Strand",
-        title="Layers",
         applies=lambda settings: settings.construction == "mooring",
     )
     curvature, load = shared.sized_path(
@@ -118,31 +91,28 @@ class RopeSettings(Settings):
         places=("right x",),
     )
     instants = redefined(Settings.param["instants"], 61)
-    bending = choice(
+    bending = shared.STRAND.choice(
         "clamp",
         ["uniform", "clamp"],
         "uniform: the same curvature all along; wires of a layer are then alike, and one of each "
         "stands for all. clamp: the curvature falls away from a clamp, and every wire is there.",
-        group="Strand",
         title="Where it is bent",
     )
-    fall_off = quantity(
+    fall_off = shared.STRAND.quantity(
         0.0,
         (0.0, 1e4),
         (0.0, 1.0),
         "Distance λ from the clamp at which the curvature is exp(-1) of that at the clamp. 0: "
         "sqrt(E I / T), of the bending stiffness while nothing slips and the largest tension.",
-        group="Strand",
         title="Fall-off λ",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
     )
-    length = quantity(
+    length = shared.STRAND.quantity(
         0.6,
         (1e-3, 1e3),
         (0.1, 5.0),
         "Length of strand from the clamp on; beyond it nothing slips. Some three times λ.",
-        group="Strand",
         title="Length L",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
@@ -153,13 +123,12 @@ class RopeSettings(Settings):
     friction_factors = shared.friction_factors(
         "between a layer and what it lies on, from the core outwards"
     )
-    elements = count(
+    elements = shared.STRAND.count(
         60,
         (2, 20_000),
         (10, 400),
         "Number of linear elements of a wire: of its length, or of half a turn where it is bent "
         "alike all along.",
-        group="Strand",
         title="Elements per wire",
     )
     substructures = redefined(
@@ -182,30 +151,15 @@ class RopeSettings(Settings):
         return bool(self.bending == "clamp")
 
     @property
-    def n_wires(self) -> int:
+    def n_bodies(self) -> int:
         """Number of wires whose slip is sought; the core does not slip."""
         section = self.section
         return section.wires - 1 if self.is_clamped else len(section.layers)
 
     @property
-    def n_substructures(self) -> int:
-        """Number of substructures in all."""
-        return self.n_wires * int(self.substructures)
-
-    @property
     def n_interfaces(self) -> int:
         """Number of interfaces between layers, and of the first with the core."""
         return len(self.section.layers)
-
-    @property
-    def n_nodes(self) -> int:
-        """Number of nodes of all wires."""
-        return self.n_wires * int(self.elements + 1)
-
-    @property
-    def features(self) -> Features:
-        """The loop is over the curvature."""
-        return Features(loop_is_over_displacement=False)
 
     @property
     def contact_unit(self) -> float:
@@ -283,10 +237,10 @@ class RopeSettings(Settings):
 
     def sentence(self) -> str:
         """The strand in a sentence."""
-        bent = acting(self.path("load"), "bent up", "bent down", "bent up and down")
+        bent = shared.acting(self.path("load"), "bent up", "bent down", "bent up and down")
         where = "near a clamp" if self.is_clamped else "alike all along"
         tension = "" if self.tension_load == "steady" else "; its tension changes"
-        wires = counted(self.section.wires)
+        wires = self.section.wires
         return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
 
     def bent_strand(self) -> BentStrand | None:

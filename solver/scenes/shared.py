@@ -1,4 +1,4 @@
-"""Definitions of settings that several scenes have alike."""
+"""What several scenes have alike: definitions of settings, and words of their sentences."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import POSITIVE, CurveParameter, Rows, curve, quantity
+from solver.definitions import CONTACT, LOAD, POSITIVE, CurveParameter, Group, Rows
 from solver.loads import PRESETS, PRESSURES, Preset, interpolate
 from solver.profiles import means, shares_of
 from solver.settings import Settings
 
+STRAND = Group("Strand")
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
     "rising": ((0.0, 0.2), (1.0, 1.8)),
@@ -36,44 +37,43 @@ BY_UNIT = {
     "Pa": "traction",
 }
 """What a path without a word of its own has, by its unit; else it is a force."""
+AGAIN = 2
+"""Times that a load comes and goes from which it does so again and again."""
 
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
     """Define a coefficient of friction."""
-    return quantity(
+    return CONTACT.quantity(
         0.3,
         (0.0, largest),
         (0.0, 1.0),
         f"Coefficient of friction {which}.",
-        group="Contact",
         title="Friction coefficient μ",
     )
 
 
 def profile(
-    what: str, body: str, presets: Mapping[str, Rows] = PROFILES, doc: str = "", **others: Any
+    what: str,
+    body: str,
+    presets: Mapping[str, Rows] = PROFILES,
+    doc: str = "",
+    group: Group = CONTACT,
+    **others: Any,
 ) -> CurveParameter:
-    """Define a factor along a body; its default is the first preset.
+    """Define a factor on something along a body; its default is the first preset.
 
-    Parameters
-    ----------
-    what, body
-        On what, and along what.
-    presets
-        Points over shares of the length, by name.
-    doc
-        Of a factor that is more than a preset or points.
-    others
-        Of a curve, and entries of `About`.
+    Presets are points over shares of the length. Help is needed of what is more than a preset or
+    points; `others` are what a curve takes.
     """
     name = what.removeprefix("the ")
     title = name if name == what else name.capitalize()
-    return curve(
+    return group.curve(
         next(iter(presets)),
         {preset: partial(_over_length, points) for preset, points in presets.items()},
         {"position": "m", "factor": ""},
         f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
-        **{"group": "Contact", "title": f"{title} along {body}"} | others,
+        title=f"{title} along {body}",
+        **others,
     )
 
 
@@ -82,14 +82,9 @@ def _over_length(shares: Rows, settings: Settings) -> Rows:
 
 
 def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
-    """Product of the factors of profiles at nodes; of tables, its mean over their shares.
+    """Product of the factors of one or two profiles at nodes, from their places, (n_nodes,), m.
 
-    Parameters
-    ----------
-    settings, profiles
-        Whose, and the names of one or two of them.
-    places
-        Of the nodes, shape (n_nodes,), m.
+    Of tables it is the mean over the shares of the nodes.
     """
     tables = [settings.points(name) for name in profiles]
     if all(isinstance(getattr(settings, name), str) for name in profiles):
@@ -99,14 +94,13 @@ def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
 
 def friction_factors(which: str) -> CurveParameter:
     """Define how mu varies from interface to interface."""
-    return curve(
+    return CONTACT.curve(
         "same",
         {"same": lambda settings: same_for(settings.n_interfaces)},
         {"interface": "", "factor": ""},
         f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
         "each, numbered from 1 on.",
         bounds=POSITIVE,
-        group="Contact",
         title="μ of each interface",
     )
 
@@ -125,39 +119,24 @@ def sized_path(
     path_doc: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
     bounds: Sequence[tuple[float, float]] = (),
+    group: Group = LOAD,
     **record: Any,
 ) -> tuple[param.Number[float], CurveParameter]:
     """Define the largest value that presets of a path over time reach, and the path.
 
-    Where that value is 0 by default, there is no path as long as it is.
-
-    Parameters
-    ----------
-    path
-        Name of the setting of the path.
-    what, unit
-        What it is a path of, and its unit.
-    default, ends, slider, doc
-        Of the value.
-    preset, presets
-        The default of the path, and all that there are.
-    path_doc
-        What there is to say of the path beside that it is one.
-    applies, bounds
-        Of the value and the path; of the columns of the path.
-    record
-        Entries of `About`.
+    Where that value is 0 by default, there is no path as long as it is. `path` is the name of its
+    setting, `path_doc` what there is to say of it beside that it is one. The path starts as a
+    `preset`, with `bounds` of its columns; `record` is of the value.
     """
-    record = {"group": "Load", "title": f"{what[:1].upper()}{what[1:]}"} | record
-    size = quantity(default, ends, slider, doc, unit=unit, applies=applies, path=path, **record)
+    record = {"title": f"{what[:1].upper()}{what[1:]}", "unit": unit, "path": path} | record
+    size = group.quantity(default, ends, slider, doc, applies=applies, **record)
     named = (kind for kind in ("pressure", "tension") if kind in what)
-    over_time = curve(
+    over_time = group.curve(
         preset,
         presets,
         {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
         f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
         bounds=bounds,
-        group=record["group"],
         title=f"Path of the {what}",
         applies=lambda settings: applies(settings) and bool(default or settings.acts(path)),
     )
@@ -178,20 +157,14 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
         PRESSURES,
         path_doc=OF_PRESSURES,
         bounds=POSITIVE,
-        group="Contact",
+        group=CONTACT,
         title="Pressure p",
         places=("top y",),
     )
 
 
 def factors_of(settings: Any) -> Array:
-    """Factor on mu of each interface, shape (n_interfaces,).
-
-    Raises
-    ------
-    SettingError
-        For a table that lacks an interface, or has others.
-    """
+    """Factor on mu of each interface, (n_interfaces,); a table of others is refused."""
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
@@ -201,20 +174,7 @@ def same_for(count: int) -> Rows:
 
 
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
-    """Values of a table that has one for each of so many, shape (count,).
-
-    Parameters
-    ----------
-    settings, name
-        Whose, and which of its tables.
-    count, what
-        Their number, and what they are.
-
-    Raises
-    ------
-    SettingError
-        For a table that lacks one, or has others.
-    """
+    """Values of a table that has one for each of so many, (count,); others are refused."""
     table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
@@ -227,35 +187,69 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
 
 
 def size(
-    default: float, slider: tuple[float, float], title: str, doc: str, group: str
+    default: float, slider: tuple[float, float], title: str, doc: str, group: Group
 ) -> param.Number[float]:
     """Define a length of a body."""
-    return quantity(default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m")
+    return group.quantity(default, (1e-6, 1e4), slider, doc, title=title, unit="m")
 
 
 def young(
-    group: str, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
+    group: Group, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
 ) -> param.Number[float]:
     """Define Young's modulus, that of steel by default."""
-    return quantity(
+    return group.quantity(
         default,
         (1.0, 1e18),
         slider,
         "Young's modulus.",
-        group=group,
         title="Young's modulus E",
         unit="Pa",
     )
 
 
-def section(doc: str, group: str) -> param.Number[float]:
+def section(doc: str, group: Group) -> param.Number[float]:
     """Define the area of the cross section of a rod, that of Table 1 by default."""
-    return quantity(
+    return group.quantity(
         3.14e-6,
         (1e-15, 100.0),
         (1e-7, 1e-4),
         doc,
-        group=group,
         title="Cross section S",
         unit="m^2",
     )
+
+
+def acting(
+    path: Array,
+    forward: str,
+    backward: str,
+    both: str = "{} to and fro",
+    back: str = "{} and let go",
+) -> str:
+    """What is done over time by a load: forward where it is positive, backward, or both.
+
+    It is said in other words that it is done both ways, and that it comes back.
+    """
+    size = np.abs(path)
+    peak = float(size.max(initial=0.0))
+    if peak == 0.0:
+        return f"not {forward}"
+    if min(path.max(), -path.min()) > 0.0:
+        return both.format(forward)
+    word = forward if path.max() > 0.0 else backward
+    over = np.concatenate([[False], size > 0.5 * peak, [False]])
+    times = int(np.sum(over[1:] & ~over[:-1]))
+    if times >= AGAIN:
+        return f"{word} again and again"
+    return back.format(word) if size[-1] < 0.5 * peak else word
+
+
+def listed(parts: Sequence[str]) -> str:
+    """Write parts with commas, and the last with an "and"."""
+    *first, last = parts
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def is_steel(young: float) -> bool:
+    """Whether something is about as stiff as steel."""
+    return 190e9 <= young <= 220e9

@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import POSITIVE, choice, count, quantity, redefined
+from solver.definitions import LOAD, POSITIVE, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
@@ -17,8 +17,7 @@ from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain
-from solver.scenes.words import acting, counted, is_steel
-from solver.settings import Features, Icon, Settings
+from solver.settings import Icon, Settings
 
 
 class StrandSettings(Settings):
@@ -36,9 +35,8 @@ class StrandSettings(Settings):
         load="M38 16H47M43 12L47 16L43 20",
     )
     kind = "wires"
-    CHIEF = ("load", "seed", "peak", "friction", "substructures", "k_scale")
+    CHIEF = ("load", "peak")
     GROWS = ("wires",)
-    LOADS = ("peak",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
 
     peak, load = shared.sized_path(
@@ -55,48 +53,41 @@ class StrandSettings(Settings):
         title="Peak tension",
         places=("right x",),
     )
-    grip = choice(
+    grip = LOAD.choice(
         "force",
         ["force", "displacement"],
         "What is given at the right end. force: the same force for every wire. displacement: the "
         "same displacement for all, that which an unbroken wire needs for this force.",
-        group="Load",
-        title="Grip",
     )
     friction = shared.friction("mu between neighbouring wires")
     friction_factors = shared.friction_factors("between two wires, from the first on")
     pressure, pressure_load = shared.pressure("neighbouring wires on each other", 20_000.0)
-    wires = count(
+    wires = shared.STRAND.count(
         3,
         (2, 200),
         (2, 20),
         "Number of wires side by side; each rubs on the one before it and the one after it.",
-        group="Strand",
-        title="Wires",
     )
-    broken = count(
+    broken = shared.STRAND.count(
         2,
         (0, 200),
         (0, 20),
         "Which wire is broken, counted from 1; 0: none.",
-        group="Strand",
         title="Broken wire",
     )
-    break_position = quantity(
+    break_position = shared.STRAND.quantity(
         0.5,
         (0.0, 1.0),
         (0.0, 1.0),
         "Where the wire is broken, as a share of the length; at the nearest node between the ends.",
-        group="Strand",
         title="Position of the break",
         applies=lambda settings: settings.broken > 0,
     )
-    elements = count(
+    elements = shared.STRAND.count(
         60,
         (2, 20_000),
         (10, 400),
         "Number of linear elements of a wire, equal in length.",
-        group="Strand",
         title="Elements per wire",
     )
     substructures = redefined(
@@ -106,9 +97,9 @@ class StrandSettings(Settings):
         "broken: all wires are cut at the break, and alike.",
         title="Substructures per wire",
     )
-    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
-    young = shared.young("Strand")
-    section = shared.section("Area of the cross section of a wire.", "Strand")
+    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", shared.STRAND)
+    young = shared.young(shared.STRAND)
+    section = shared.section("Area of the cross section of a wire.", shared.STRAND)
 
     @property
     def n_substructures(self) -> int:
@@ -116,20 +107,14 @@ class StrandSettings(Settings):
         return int(self.wires * max(self.substructures, 2 if self.broken else 1))
 
     @property
-    def features(self) -> Features:
-        """What the scene has under its present settings."""
-        jumps = (self.wires - 1) * (self.elements + 1)
-        return Features(has_break=bool(self.broken), jumps=jumps)
+    def jumps(self) -> int:
+        """Components of all contacts, which a reference condenses."""
+        return self.n_interfaces * (self.elements + 1)
 
     @property
-    def n_interfaces(self) -> int:
-        """Number of interfaces between the wires."""
-        return self.wires - 1
-
-    @property
-    def n_nodes(self) -> int:
-        """Number of nodes of all wires."""
-        return self.wires * (self.elements + 1)
+    def n_bodies(self) -> int:
+        """Number of wires."""
+        return int(self.wires)
 
     @property
     def contact_unit(self) -> float:
@@ -180,10 +165,10 @@ class StrandSettings(Settings):
 
     def sentence(self) -> str:
         """The strand in a sentence."""
-        kind = "steel" if is_steel(self.young) else "elastic"
-        wires = f"{counted(self.wires).capitalize()} {kind} wires"
+        kind = "steel" if shared.is_steel(self.young) else "elastic"
+        wires = f"{self.wires} {kind} wires"
         broken = f", number {self.broken} broken," if self.broken else ""
-        pulled = acting(self.path("load"), "pulled", "pushed")
+        pulled = shared.acting(self.path("load"), "pulled", "pushed")
         grip = " by one grip" if self.grip == "displacement" else ""
         if self.pressure_load != "steady":
             grip += "; what presses them together changes"
@@ -205,16 +190,10 @@ class StrandSettings(Settings):
         worst = int(np.argmax(tension - most))
         largest, capacity = float(tension[worst]), float(most[worst])
         if largest > capacity or largest == capacity > 0.0:
-            name = self.size_or_table("load")
-            allowed = "no tension where no friction can hold the broken wire beyond its break"
-            if capacity > 0.0:
-                allowed = (
-                    f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
-                    "wire beyond its break"
-                )
             raise self.refusal(
-                name,
-                allowed,
+                self.size_or_table("load"),
+                f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
+                "wire beyond its break",
                 "pull less, raise friction or pressure, move the break to the left, or take the "
                 "grip of given displacement",
             )

@@ -10,13 +10,12 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Indices
-from solver.definitions import choice, count, curve, quantity, redefined
+from solver.definitions import BODY, DECOMPOSITION, LOAD, redefined
 from solver.discrete.bricks import Brick, bonded, grouped, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting, counted
-from solver.settings import Features, Icon
+from solver.settings import Icon
 
 MOST_BRICKS = 1500
 """Bricks at most: with their joints they take some 2 GB."""
@@ -34,49 +33,36 @@ class WallSettings(PlaneSettings):
         "M7 11H23V16H7ZM25 11H41V16H25Z",
         load="M14 6H34M30 3L34 6L30 9",
     )
-    CHIEF = (
-        "top_load",
-        "displacement",
-        "traction",
-        "pressure",
-        "friction",
-        "bricks",
-        "courses",
-        "multiscale",
-    )
+    CHIEF = ("top_load", "displacement", "traction", "pressure")
+    ALSO_CHIEF = ("friction", "bricks", "courses", "multiscale")
     GROWS = ("bricks", "courses")
-    LOADS = ("displacement", "traction")
+    has_joints = True
     PARTS: ClassVar = {}
 
-    bricks = count(12, (1, 200), (1, 20), "Bricks of a course.", group="Body", title="Bricks along")
-    courses = count(6, (1, 200), (1, 20), "Courses of bricks.", group="Body", title="Courses")
-    bond = choice(
+    bricks = BODY.count(12, (1, 200), (1, 20), "Bricks of a course.", title="Bricks along")
+    courses = BODY.count(6, (1, 200), (1, 20), "Courses of bricks.")
+    bond = BODY.choice(
         "running",
         ["running", "stack"],
         "running: bricks lie over the joints of the course below, and every second course begins "
         "and ends with a half. stack: joints lie one above the other.",
-        group="Body",
-        title="Bond",
     )
-    opening = count(
+    opening = BODY.count(
         0,
         (0, 198),
         (0, 6),
         "Width of an opening in the middle, in bricks, under a lintel; 0 leaves it out.",
-        group="Body",
-        title="Opening",
     )
-    opening_height = count(
+    opening_height = BODY.count(
         3,
         (1, 199),
         (1, 10),
         "Height of the opening, in courses; the lintel is the next one.",
-        group="Body",
         title="Height of the opening",
         applies=lambda settings: settings.opening > 0,
     )
-    length = shared.size(0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", "Body")
-    height = shared.size(0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", "Body")
+    length = shared.size(0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", BODY)
+    height = shared.size(0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", BODY)
     pressure, pressure_load = shared.sized_path(
         "pressure_load",
         "pressure",
@@ -88,44 +74,37 @@ class WallSettings(PlaneSettings):
         "hold",
         places=("top y",),
     )
-    top = choice(
+    top = LOAD.choice(
         "moved",
         ["moved", "pulled"],
         "What drives the top of the wall. moved: a displacement along it, with which all of it "
         "goes. pulled: a traction along it.",
-        group="Load",
-        title="Top",
     )
-    displacement = quantity(
+    displacement = LOAD.quantity(
         1e-4,
         (-1e6, 1e6),
         (-2e-4, 2e-4),
         "Largest displacement of the top along the wall.",
-        group="Load",
-        title="Displacement",
         unit="m",
         applies=lambda settings: settings.top == "moved",
         path="top_load",
         places=("top x",),
     )
-    traction = quantity(
+    traction = LOAD.quantity(
         2e5,
         (-1e15, 1e15),
         (-1e6, 1e6),
         "Largest traction on the top along the wall.",
-        group="Load",
-        title="Traction",
         unit="Pa",
         applies=lambda settings: settings.top == "pulled",
         path="top_load",
         places=("top x",),
     )
-    top_load = curve(
+    top_load = LOAD.curve(
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or Pa"},
         "Displacement or traction of the top over time: a preset, or points (s, m or Pa).",
-        group="Load",
         title="Path of the top",
     )
     slope, slope_load = shared.sized_path(
@@ -138,13 +117,11 @@ class WallSettings(PlaneSettings):
         "Largest angle by which the ground is tilted, the right end upwards.",
         "delayed",
     )
-    unit_weight = quantity(
+    unit_weight = LOAD.quantity(
         2e4,
         (0.0, 1e12),
         (0.0, 1e5),
         "Weight per volume of the bricks, which begins to act in the first quarter.",
-        group="Load",
-        title="Unit weight",
         unit="N/m^3",
         places=("body",),
     )
@@ -160,13 +137,12 @@ class WallSettings(PlaneSettings):
     substructures_up = redefined(
         PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
     )
-    brick_groups = count(
+    brick_groups = DECOMPOSITION.count(
         MOST_BRICKS,
         (1, MOST_BRICKS),
         (1, 80),
         "Groups of bricks between which macro forces are in balance; within a group none are. With "
         "as many as there are bricks the coarse problem is whole, with one there is none.",
-        group="Decomposition",
         title="Groups of bricks",
         applies=lambda settings: settings.multiscale,
     )
@@ -175,9 +151,14 @@ class WallSettings(PlaneSettings):
     )
 
     @property
-    def n_substructures(self) -> int:
+    def n_bodies(self) -> int:
         """Number of bricks, halves and a lintel among them."""
         return len(self._bricks)
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures: each brick is one."""
+        return self.n_bodies
 
     @cached_property
     def _bricks(self) -> list[Brick]:
@@ -200,17 +181,11 @@ class WallSettings(PlaneSettings):
         return super().ends | {"brick_groups": self.n_substructures}
 
     @property
-    def n_bodies(self) -> int:
-        """Number of bodies: each brick is one."""
-        return self.n_substructures
-
-    @property
-    def features(self) -> Features:
-        """A joint more has two bed nodes more."""
+    def jumps(self) -> int:
+        """Components of all contacts: a joint more has two bed nodes more."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
-        jumps = 2 * self.courses * (beds + heads)
-        return super().features._replace(jumps=jumps, bricks=self.n_substructures)
+        return int(2 * self.courses * (beds + heads))
 
     def check_together(self) -> None:
         """Refuse halves that no element fits, joints without a pair, and too many bricks."""
@@ -260,13 +235,13 @@ class WallSettings(PlaneSettings):
         """The wall in a sentence."""
         way = "moved" if self.top == "moved" else "pulled"
         ways = (f"{way} {where}" for where in ("to the right", "to the left", "to and fro"))
-        driven = acting(self.path("top_load"), *ways)
+        driven = shared.acting(self.path("top_load"), *ways)
         ground = "a tilted ground" if np.any(self.path("slope_load")) else "the ground"
         pressed = ", pressed from above," if np.any(self.path("pressure_load")) else ""
         if self.n_substructures == 1:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
         bond = "in running bond" if self.bond == "running" else "one above the other"
         hole = " round an opening" if self.opening else ""
-        bricks = f"{counted(self.n_substructures).capitalize()} bricks {bond}{hole}{pressed}"
+        bricks = f"{self.n_substructures} bricks {bond}{hole}{pressed}"
         touch = "and rub on" if self.is_rough else "and slide freely on"
         return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."

@@ -12,7 +12,7 @@ import numpy as np
 from solver.checked import dump
 from solver.definitions import about
 from solver.disk import write
-from solver.scenes.words import listed
+from solver.scenes.shared import listed
 from solver.study.fit import Fit
 from solver.study.measured_loop import MeasuredLoop, csv_of
 from solver.study.page import (

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.definitions import about
+from solver.definitions import title_of
 from solver.executors import machine
 from solver.settings import Settings
 from solver.study.measured_times import (
@@ -120,7 +120,7 @@ def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
 def _titles(settings: Settings) -> list[str]:
     """Titles of the settings that grow together."""
     definitions = settings.definitions()
-    return [about(definitions[name]).title for name in settings.GROWS]
+    return [title_of(definitions[name]) for name in settings.GROWS]
 
 
 def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:

@@ -24,8 +24,8 @@ AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
-_opens = attrgetter("features.opens")
-_over_a_displacement = attrgetter("features.loop_is_over_displacement")
+_opens = attrgetter("opens")
+_over_a_displacement = attrgetter("loop_is_over_displacement")
 
 
 def _rubs_by_mu(settings: Settings) -> bool:
@@ -172,7 +172,7 @@ peak_stress_x = _peak_stress("peak_stress_x", "x of the largest stress", "m", 1)
 peak_stress_y = _peak_stress("peak_stress_y", "y of the largest stress", "m", 2)
 
 
-@quantity("Largest force in the spring", "N", applies=lambda settings: settings.features.has_spring)
+@quantity("Largest force in the spring", "N", applies=lambda settings: settings.has("spring"))
 def spring_force(run: FinishedRun) -> float:
     """Largest force in the spring, N."""
     return float(run.force.max())

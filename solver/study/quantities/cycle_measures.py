@@ -40,8 +40,7 @@ def has_a_limit(settings: Settings) -> bool:
         return False
     if settings.kind != "plane":
         return True
-    features = settings.features
-    if not features.opens or features.has_spring or law != FrictionLaw():
+    if not settings.opens or settings.has("spring") or law != FrictionLaw():
         return False
     gaps = [hold.gap for hold in settings.structure().described().holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
@@ -189,7 +188,7 @@ def wire_work(run: FinishedRun) -> float:
 @quantity(
     "Length over which a broken wire regains its force",
     "m",
-    applies=lambda settings: settings.features.has_break,
+    applies=lambda settings: settings.has("broken"),
     when=lambda run: int(np.argmax(run.force)),
 )
 def recovery_length(run: FinishedRun, instant: int) -> float:

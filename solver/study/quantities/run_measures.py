@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+from solver.latin import Ending
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import WITHIN, Parameter, Quantity, quantity
 
@@ -53,6 +54,12 @@ def seconds(run: FinishedRun) -> float:
     """Time of the whole run, s."""
     records = run.solution.records
     return records[-1].seconds if records else math.nan
+
+
+@quantity("Whether it converged", reads="course")
+def converged(run: FinishedRun) -> float:
+    """1 where the run came to its stop rule, 0 where something else ended it."""
+    return float(run.solution.status.ending is Ending.CONVERGED)
 
 
 indicator = _record("indicator", "LATIN indicator", "indicators")

@@ -20,6 +20,7 @@ from solver.definitions import (
     allowed,
     checked_value,
     parse,
+    title_of,
     unknown,
 )
 from solver.latin import Ending
@@ -185,8 +186,8 @@ def axis_of(settings: Settings, text: str) -> Varied:
         checked_value(definitions[name], name, end)
     checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
     ordered = sorted(checked) if isinstance(definitions[name], param.Number) else checked
-    kind = about(definitions[name])
-    return Varied(name, kind.title, kind.unit, tuple(ordered), logarithmic)
+    title, unit = title_of(definitions[name]), about(definitions[name]).unit
+    return Varied(name, title, unit, tuple(ordered), logarithmic)
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:
