@@ -43,11 +43,6 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     return np.concatenate([np.broadcast_to(field, (len(field), *shape)) for field in fields])
 
 
-def at_instant(field: Array, instant: int) -> Array:
-    """What a field has at an instant, shape (n, 1); a single column is of all instants."""
-    return field if field.shape[1] == 1 else field[:, instant : instant + 1]
-
-
 def without_residue(values: Array, terms: Array) -> Array:
     """Sums, (n_instants,), with zero where rounding alone leaves something of terms of a size."""
     return np.where(np.abs(values) <= RESIDUE * np.max(terms, initial=0.0), 0.0, values)

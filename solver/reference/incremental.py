@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.linalg import LinAlgError
 
-from solver.arrays import Array, at_instant
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
 from solver.reference.condensation import LEFT_INSIDE, NoReferenceError
@@ -119,7 +119,7 @@ class IncrementalRod:
 
     def _bound(self, instant: int) -> Array:
         """Friction bound before any slip, shape (n_dofs,), scaled."""
-        return self._on_dofs(at_instant(self._rules.bound, instant)[:, 0])
+        return self._on_dofs(self._rules.bound_at(instant))
 
     def _search_within(self, bound: Array) -> Search:
         return Search(self._stiffness, bound * self._movable, self._movable)

@@ -13,7 +13,7 @@ from itertools import chain
 
 import numpy as np
 
-from solver.arrays import Array, at_instant
+from solver.arrays import Array
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
@@ -95,7 +95,7 @@ class Instants:
 
     def _bound(self, instant: int) -> Array:
         """Friction force that needs no pressing one, where no bond is broken yet, (n,)."""
-        return at_instant(self._rules.bound, instant)[:, 0] * self._intact
+        return self._rules.bound_at(instant) * self._intact
 
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""

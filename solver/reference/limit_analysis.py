@@ -16,7 +16,7 @@ import numpy as np
 from scipy import sparse
 from scipy.optimize import linprog
 
-from solver.arrays import Array, at_instant
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import external_force, jumps
 from solver.reference.condensation import NoReferenceError
@@ -79,7 +79,7 @@ def collapse_of(problem: Problem) -> Collapse | None:
     bounds = np.stack([np.append(lows, 0.0), np.append(np.full(size, np.inf), 1.0)], axis=1)
     before, times = np.zeros(len(loads)), problem.instants
     for instant, now in enumerate(loads.T / unit):
-        known = strongest * at_instant(rules.bound, instant)[rubs, 0] / unit
+        known = strongest * rules.bound_at(instant)[rubs] / unit
         step = sparse.csr_array((now - before)[:, None])
         if not step.nnz and instant:
             continue

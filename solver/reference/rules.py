@@ -105,6 +105,10 @@ class Rules:
         """Whether friction is not linear in pressing force and slip: it changes, or has a cap."""
         return self.ages or bool(np.isfinite(self.cap).any())
 
+    def bound_at(self, instant: int) -> Array:
+        """Friction force at an instant that needs no normal force, (n,)."""
+        return np.asarray(self.bound[:, 0 if self.bound.shape[1] == 1 else instant])
+
     def without_slip(self, factor: Array) -> Rules:
         """Rules of a friction that slip has changed by a factor, (n,), and changes no more."""
         endless = np.full_like(self.cap, np.inf)
