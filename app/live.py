@@ -34,7 +34,7 @@ class Live:
 
     def __init__(self, state: PageState, document: Any) -> None:
         self.state = state
-        self._status = _words("status", margin=(8, 6), styles={"flex": "1 1 240px"})
+        self._status = _words("status", margin=(4, 6), styles={"flex": "1 1 240px"})
         self._sentence, self._figures = _words("sentence"), _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._all = self._cards = [Card(kinds, state) for kinds in CARDS]

@@ -25,11 +25,16 @@ def status_line(state: PageState) -> str:
     What the page says beside is one line, and whole in the details.
     """
     frame, newest, said = state.frame, state.newest, _said(state)
-    text = " ".join(said)
-    line = f'<div class="said" title="{text}">{text}</div>' if said else ""
     if frame is None or newest is None:
-        return "<b>starting</b>" + line
-    return _progress(state, frame, newest) + _details(frame, said) + line
+        progress, details = "<b>starting</b>", ""
+    else:
+        progress, details = _progress(state, frame, newest), _details(frame, said)
+    text = " ".join(said)
+    # Two lines, whatever they hold: figures below do not follow what becomes higher.
+    return (
+        f'<div class="progress">{progress}</div>'
+        f'<div class="said">{details}<b title="{text}">{text}</b></div>'
+    )
 
 
 def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
@@ -65,7 +70,7 @@ def _details(frame: Frame, said: list[str]) -> str:
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
         words.append(escape(frame.status.advice))
     lines = "".join(f"<div>{word}</div>" for word in [*words, *said])
-    return f" <details><summary>details</summary><div>{lines}</div></details>"
+    return f"<details><summary>details</summary><div>{lines}</div></details>"
 
 
 def _said(state: PageState) -> list[str]:
