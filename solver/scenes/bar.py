@@ -284,6 +284,7 @@ class BarSettings(Settings):
         The bar is at rest and free of stress before the first instant.
         """
         nodes = np.linspace(0.0, self.length, self.elements + 1)
+        factors = shared.at_nodes(self, nodes, "friction_profile", "pressure_profile")
         mean, section = self._uneven_section()
         strain = settlement = None
         if self.acts("temperature_load"):
@@ -297,7 +298,7 @@ class BarSettings(Settings):
             stiffness=self.young * self.section * mean,
             elements=self.elements,
             substructures=self.substructures,
-            bound=self._bound(nodes),
+            bound=shared.bound(self, factors),
             left=_end_of(self, "left"),
             right=_end_of(self, "right"),
             instants=self.times(),
@@ -332,15 +333,6 @@ class BarSettings(Settings):
         acting = {name for name in self.paths if self.acts(name)}
         driven = {path for paths in PATHS.values() for path in paths.values()}
         return bool(acting & driven)
-
-    def _bound(self, nodes: Array) -> Array:
-        """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
-        density = self.friction * shared.at_nodes(
-            self, nodes, "friction_profile", "pressure_profile"
-        )
-        if self.pressure_load == "steady":
-            return density * self.pressure
-        return np.outer(density, self.path("pressure_load"))
 
     def _check_equilibrium(self) -> None:
         """Refuse more force than friction carries, where it alone holds the bar."""

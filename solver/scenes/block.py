@@ -258,9 +258,8 @@ class BlockSettings(SideSettings):
     def structure(self) -> Stack:
         """Make the block; one metre thick."""
         sides = {side: self.side(side) for side in ("left", "right", "top")}
-        nodes = np.linspace(0.0, self.length, self.nodes[0])
-        table = self.gap
-        gap = self.gap_at(nodes) if isinstance(table, str) else gap_at(table, nodes)
+        is_preset = isinstance(self.gap, str)
+        gap = self.gap_at(self.places) if is_preset else gap_at(self.gap, self.places)
         return replace(
             self.stack(),
             support=Support(gap, self.friction_at_nodes()),

@@ -186,23 +186,18 @@ class FaultSettings(PlaneSettings):
 
     def pressing_at_nodes(self) -> Array:
         """Normal stress of the nodes before any fluid is let in, shape (n_nodes,), Pa."""
-        return np.asarray(self.normal_stress * self.factor_at_nodes("normal_profile"))
+        return np.asarray(self.normal_stress * shared.at_nodes(self, self.places, "normal_profile"))
 
     def strength_at_nodes(self) -> Array:
         """Largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
-        effective = self.pressing_at_nodes()[:, None] - self.fluid(self._places)
+        effective = self.pressing_at_nodes()[:, None] - self.fluid(self.places)
         return np.asarray(np.reshape(self.friction_at_nodes(), (-1, 1)) * effective)
-
-    @property
-    def _places(self) -> Array:
-        return np.linspace(0.0, self.length, self.nodes[0])
 
     def check_together(self) -> None:
         """Refuse a fluid that would open the fault, or that sucks."""
         super().check_together()
         self._check_work()
-        place = self._places
-        pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
+        pressing, fluid = self.pressing_at_nodes(), self.fluid(self.places)
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:

@@ -144,16 +144,16 @@ class PlaneSettings(Settings):
         """Whether anything rubs."""
         return bool(self.friction or self.law.cohesion)
 
-    def factor_at_nodes(self, profile: str) -> Array:
-        """Factor of a profile at the nodes along a body; of a table, its mean over their shares."""
-        places = np.linspace(0.0, self.length, self.nodes[0])
-        return shared.at_nodes(self, places, profile)
+    @property
+    def places(self) -> Array:
+        """Places of the nodes along a body, (n_nodes,), m."""
+        return np.linspace(0.0, self.length, self.nodes[0])
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
-        return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
+        return np.asarray(self.friction * shared.at_nodes(self, self.places, "friction_profile"))
 
     @property
     def nodes(self) -> tuple[int, int]:

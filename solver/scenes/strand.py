@@ -132,10 +132,6 @@ class StrandSettings(Settings):
 
         The wires are at rest and free of stress before the first instant.
         """
-        bound = np.full(self.elements + 1, self.friction * self.pressure)
-        if self.pressure_load != "steady":
-            pressure = self.path("pressure_load")
-            bound = np.tile(self.friction * pressure, (self.elements + 1, 1))
         stiffness, load = self.young * self.section, self.path("load")
         is_moved = self.grip == "displacement"
         return Rods(
@@ -143,7 +139,7 @@ class StrandSettings(Settings):
             stiffness=stiffness,
             elements=self.elements,
             substructures=self.substructures,
-            bound=bound,
+            bound=shared.bound(self, np.ones(self.elements + 1)),
             left=End(displacement=np.zeros_like(load)),
             right=End(displacement=load * self.length / stiffness) if is_moved else End(load),
             instants=self.times(),
