@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.checked import dump
 from solver.definitions import SettingError
 from solver.files import (
     check_controls,
     check_keys,
+    dump,
     fields_in,
     placed,
     read_toml,
