@@ -205,26 +205,21 @@ class LayersSettings(PlaneSettings):
         bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
         stack = replace(stack, bricks=bricks)
         held, free = Given(True, rest), Given(False, rest)
-        pressing = self.path("pressure_load")
-        pull = self.path("pull_load")
-        if self.bending == "deflection":
-            bent = Given(True, self.path("bend_load"))
-            right = Side(Given(False, pull), bent)
-        elif self.bending == "force":
-            traction = self.path("bend_load") / (stack.longest * self.thickness)
-            right = Side(Given(False, pull), Given(False, traction))
-        else:
+        pressing, bend = self.path("pressure_load"), self.path("bend_load")
+        pull, bent = Given(False, self.path("pull_load")), Given(True, bend)
+        if self.bending == "force":
+            bent = Given(False, bend / (stack.longest * self.thickness))
+        elif self.bending == "moment":
             # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
-            moment = self.path("bend_load")
-            extreme = -6.0 * moment / (stack.longest * self.thickness**2)
-            right = Side(Given(False, pull, extreme), free)
+            extreme = -6.0 * bend / (stack.longest * self.thickness**2)
+            pull, bent = replace(pull, slope=extreme), free
         return replace(
             stack,
             friction=shared.factors_of(self)[:, None] * stack.friction,
             stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
             sides={
                 "left": Side(held, held),
-                "right": right,
+                "right": Side(pull, bent),
                 "top": Side(free, Given(False, -pressing)),
                 "bottom": Side(free, Given(False, pressing)),
             },
