@@ -122,11 +122,6 @@ class Lesson:
                 curve[values[self.draw]] = 0.5 * (claim.low + claim.high)
         return sorted(curve.items())
 
-    @property
-    def drawn_quantity(self) -> str:
-        """What that curve shows, in words."""
-        return self.checkpoints[0].quantity.title
-
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
