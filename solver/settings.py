@@ -94,7 +94,7 @@ class Settings(LoadSettings):
     @property
     def jumps(self) -> int:
         """Components of all contacts, which a reference condenses; none on a lone rod."""
-        return 0
+        return (2 if self.opens else 1) * self.n_interfaces * (self.elements + 1)
 
     @property
     def loop_is_over_displacement(self) -> bool:

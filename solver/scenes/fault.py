@@ -164,11 +164,6 @@ class FaultSettings(PlaneSettings):
     young = shared.young(BODY, 6e10, (1e9, 1e12))
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
-    @property
-    def jumps(self) -> int:
-        """Components of all contacts: a fault stays closed."""
-        return self.nodes[0]
-
     def fluid(self, place: Array) -> Array:
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
@@ -187,9 +182,16 @@ class FaultSettings(PlaneSettings):
         return np.asarray(mu[:, None] * (self.pressing(place)[:, None] - self.fluid(place)))
 
     def check_together(self) -> None:
-        """Refuse a fluid that would open the fault, or that sucks."""
+        """Refuse a fluid that would open the fault, or take minutes to spread."""
         super().check_together()
-        self._check_work()
+        bends = len(self.knots("injection_load"))
+        if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
+            raise SettingError(
+                "injection_load",
+                f"a path of {bends} points",
+                f"at most {most} points with {self.n_instants} instants",
+                "give fewer points, or fewer elements along",
+            )
         pressing, fluid = self.pressing(self.places), self.fluid(self.places)
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
@@ -198,17 +200,6 @@ class FaultSettings(PlaneSettings):
                 self.size_or_table("injection_load"),
                 f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
                 "it would open the fault: lower the pressure of the fluid, or press more",
-            )
-
-    def _check_work(self) -> None:
-        """Refuse a fluid whose pressure would take minutes to spread."""
-        bends = len(self.knots("injection_load"))
-        if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
-            raise SettingError(
-                "injection_load",
-                f"a path of {bends} points",
-                f"at most {most} points with {self.n_instants} instants",
-                "give fewer points, or fewer elements along",
             )
 
     def structure(self) -> Fault:

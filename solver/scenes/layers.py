@@ -176,11 +176,6 @@ class LayersSettings(PlaneSettings):
 
     def check_together(self) -> None:
         """Refuse lengths and factors on mu that are not one for each layer or interface, too."""
-        self._check_lengths()
-        super().check_together()
-        shared.factors_of(self)
-
-    def _check_lengths(self) -> None:
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
             raise self.refusal(
@@ -188,6 +183,8 @@ class LayersSettings(PlaneSettings):
                 "shares above 0, the largest of them 1",
                 "give each length over that of the longest layer",
             )
+        super().check_together()
+        shared.factors_of(self)
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, and how far layers end from where given."""

@@ -107,11 +107,6 @@ class StrandSettings(Settings):
         return int(self.wires * max(self.substructures, 2 if self.broken else 1))
 
     @property
-    def jumps(self) -> int:
-        """Components of all contacts, which a reference condenses."""
-        return self.n_interfaces * (self.elements + 1)
-
-    @property
     def n_bodies(self) -> int:
         """Number of wires."""
         return int(self.wires)
