@@ -33,14 +33,14 @@ def curve_of(
     Columns that cannot be chosen, other units, what is no number, and an abscissa that does not
     increase are refused.
     """
-    columns, each = table.columns, "points" if definition.is_path else "rows"
+    columns = table.columns
     if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):
         columns = _chosen(table, definition, name, units)
     elif len(columns) != len(units):
         *others, last = definition.columns
         names = f"{', '.join(others)} and {last}"
         raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
-    numbers, message = table.read(columns, definition.columns, units, each)
+    numbers, message = table.read(columns, definition.columns, units)
     falls = np.flatnonzero(np.diff(numbers[0]) <= 0.0)
     if definition.is_path and len(falls):
         line = table.rows[falls[0] + 1][0]
