@@ -25,10 +25,6 @@ def _on_modes(settings: MethodSettings) -> bool:
     return bool(settings.linear_stage == "pgd")
 
 
-def _on_fields(settings: MethodSettings) -> bool:
-    return bool(settings.linear_stage == "full")
-
-
 class MethodSettings(param.Parameterized):
     """Settings of the method, which hold alone and together; a scene adds its own.
 
@@ -147,7 +143,7 @@ class MethodSettings(param.Parameterized):
         ["none", "anderson"],
         "anderson: combine the last iterates so that the two stages agree best, which saves "
         "iterations. none: take the newest as it is.",
-        applies=_on_fields,
+        applies=lambda settings: not _on_modes(settings),
     )
     start = METHOD.choice(
         "nested",
@@ -161,7 +157,7 @@ class MethodSettings(param.Parameterized):
         "none: k is as the search direction says. status: once stick and slip have settled, k "
         "becomes smaller where points slip; taken back if that does not help.",
         title="Update of k",
-        applies=_on_fields,
+        applies=lambda settings: not _on_modes(settings),
     )
     finish = METHOD.choice(
         "at-once",

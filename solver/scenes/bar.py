@@ -258,25 +258,19 @@ class BarSettings(Settings):
 
     def check_together(self) -> None:
         """Refuse what has no digits left, or no equilibrium, too."""
-        self._check_section()
-        super().check_together()
-        size = self.young * self.section / self.length
-        for side in PATHS:
-            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
-        self._check_equilibrium()
-
-    def _check_section(self) -> None:
-        """Refuse a section that is too uneven for the digits of a number."""
         table = self.section_profile
-        if isinstance(table, str):
-            return
-        factors = [factor for _, factor in table]
+        factors = [1.0] if isinstance(table, str) else [factor for _, factor in table]
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",
                 f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
                 "bring the factors nearer to each other",
             )
+        super().check_together()
+        size = self.young * self.section / self.length
+        for side in PATHS:
+            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
+        self._check_equilibrium()
 
     def structure(self) -> Rods:
         """Make the friction bar (paper, section 3 and Table 1).
