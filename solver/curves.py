@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -25,36 +25,29 @@ _SETTINGS = {
 """Names of curves that are no common words: a column of another one is not taken."""
 
 
-class GivenCurve(NamedTuple):
-    """Points of a curve, or rows of a table, in the units of the setting, and a message."""
-
-    points: list[list[float]]
-    message: str
-
-
 def curve_of(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
-) -> GivenCurve:
+) -> tuple[list[list[float]], str]:
     """Points of a curve in a table, in units as of `Settings.curve_units`, and what was understood.
 
     Columns that cannot be chosen, other units, what is no number, and an abscissa that does not
     increase are refused.
     """
-    columns, each = table.columns, "points" if definition.is_path else "rows"
+    columns = table.columns
     if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):
         columns = _chosen(table, definition, name, units)
     elif len(columns) != len(units):
         *others, last = definition.columns
         names = f"{', '.join(others)} and {last}"
         raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
-    numbers, message = table.read(columns, definition.columns, units, each)
+    numbers, message = table.read(columns, definition.columns, units)
     falls = np.flatnonzero(np.diff(numbers[0]) <= 0.0)
     if definition.is_path and len(falls):
         line = table.rows[falls[0] + 1][0]
         remedy = f"line {line}: {definition.abscissa} must increase from row to row"
         loop = "; of a loop, as force over displacement, give the time of every row"
         raise table.refuse(remedy + (loop if definition.abscissa == "time" else ""))
-    return GivenCurve(numbers.T.tolist(), message)
+    return numbers.T.tolist(), message
 
 
 def _chosen(
@@ -89,7 +82,7 @@ def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -
             continue
         if value not in ("", *definition.presets):
             table = tables[name] = _read_file(folder / value, definition, name)
-            values[name] = curve_of(table, definition, name, definition.units).points
+            values[name], _ = curve_of(table, definition, name, definition.units)
     return tables
 
 
@@ -100,7 +93,7 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     """
     definitions: Mapping[str, Any] = settings.definitions()
     return {
-        name: curve_of(table, definitions[name], name, settings.curve_units(name)).message
+        name: curve_of(table, definitions[name], name, settings.curve_units(name))[1]
         for name, table in tables.items()
     }
 

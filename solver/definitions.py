@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import copy
 import difflib
-import math
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -278,8 +277,6 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
             raise refuse(f"row {number} has an entry that is not a number")
         columns = definition.columns, definition.units, definition.bounds
         for entry, column, unit, (low, high) in zip(row, *columns, strict=True):
-            if isinstance(entry, float) and not math.isfinite(entry):
-                raise refuse(f"row {number} has an entry that is not finite")
             if entry < low == 0.0:
                 least = f"{column}s of at least 0 {unit}".rstrip()
                 raise SettingError(name, value, least, f"raise the negative {column}")

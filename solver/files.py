@@ -41,6 +41,12 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
     return scene_settings(values.pop("scene", None)).checked(values)
 
 
+def dump(settings: Settings) -> str:
+    """Text of a TOML file of settings, which every front reads."""
+    lines = [f"{name} = {json.dumps(value)}" for name, value in settings.values().items()]
+    return "\n".join([f"scene = {json.dumps(settings.scene)}", *lines, ""])
+
+
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:

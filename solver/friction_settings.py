@@ -137,26 +137,22 @@ class FrictionSettings(MethodSettings):
     def check_together(self) -> None:
         """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
         super().check_together()
+        table = self.strength
+        if self.is_general and not isinstance(table, str):
+            begins = len(table) > 1 and table[0] == (0.0, 1.0)
+            if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
+                raise self.refusal(
+                    "strength",
+                    "at least two points (slip, factor), the first (0, 1), and slips that grow by "
+                    f"{plain(SHORTEST_SLIP)} m",
+                    "the factor at slip 0 is 1, as the rest of the law says what friction is there",
+                )
         if self.is_general:
-            self._check_strength()
             for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
                 remedy = (
                     "write 0 where nothing gives way, or take away friction where nothing holds"
                 )
                 self.check_digits(name, self.contact_unit, remedy)
-
-    def _check_strength(self) -> None:
-        table = self.strength
-        if isinstance(table, str):
-            return
-        begins = len(table) > 1 and table[0] == (0.0, 1.0)
-        if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
-            raise self.refusal(
-                "strength",
-                "at least two points (slip, factor), the first (0, 1), and slips that grow by "
-                f"{plain(SHORTEST_SLIP)} m",
-                "the factor at slip 0 is 1, as the rest of the law says what friction is there",
-            )
 
     def check_digits(self, name: str, size: float, remedy: str) -> None:
         """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""

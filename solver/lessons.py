@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.checked import dump
 from solver.definitions import SettingError
 from solver.files import (
     check_controls,
     check_keys,
+    dump,
     fields_in,
     placed,
     read_toml,
@@ -121,11 +121,6 @@ class Lesson:
                 asked = claim.quantity.name
                 curve[values[self.draw]] = 0.5 * (claim.low + claim.high)
         return sorted(curve.items())
-
-    @property
-    def drawn_quantity(self) -> str:
-        """What that curve shows, in words."""
-        return self.checkpoints[0].quantity.title
 
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:

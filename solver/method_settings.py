@@ -1,11 +1,22 @@
-"""Settings of the method, which all scenes have."""
+"""Settings of the method, which all scenes have, and how settings are checked and changed."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from functools import cache, cached_property
+from typing import Any, ClassVar, Self
 
-from solver.checked import Checked
-from solver.definitions import DECOMPOSITION, METHOD, Group
+import param
+
+from solver.definitions import (
+    DECOMPOSITION,
+    METHOD,
+    Group,
+    SettingError,
+    about,
+    checked_value,
+    unknown,
+)
 
 STOP = Group("Stop")
 
@@ -14,14 +25,15 @@ def _on_modes(settings: MethodSettings) -> bool:
     return bool(settings.linear_stage == "pgd")
 
 
-def _on_fields(settings: MethodSettings) -> bool:
-    return bool(settings.linear_stage == "full")
+class MethodSettings(param.Parameterized):
+    """Settings of the method, which hold alone and together; a scene adds its own.
 
+    `checked` is the one edge at which values are verified; `replace` gives new settings.
+    """
 
-class MethodSettings(Checked):
-    """Settings of the method; a scene adds its own."""
+    scene: str = ""
 
-    METHODS: ClassVar = {
+    METHODS: ClassVar[Mapping[str, Mapping[str, object]]] = {
         "fast": {
             "search_direction": "auto",
             "acceleration": "anderson",
@@ -39,7 +51,7 @@ class MethodSettings(Checked):
             "tolerance": 1e-10,
         },
     }
-    """What `method` sets at once."""
+    """What `method` sets at once; a scene that lacks an option keeps its own default."""
 
     substructures = DECOMPOSITION.count(
         10,
@@ -131,7 +143,7 @@ class MethodSettings(Checked):
         ["none", "anderson"],
         "anderson: combine the last iterates so that the two stages agree best, which saves "
         "iterations. none: take the newest as it is.",
-        applies=_on_fields,
+        applies=lambda settings: not _on_modes(settings),
     )
     start = METHOD.choice(
         "nested",
@@ -145,7 +157,7 @@ class MethodSettings(Checked):
         "none: k is as the search direction says. status: once stick and slip have settled, k "
         "becomes smaller where points slip; taken back if that does not help.",
         title="Update of k",
-        applies=_on_fields,
+        applies=lambda settings: not _on_modes(settings),
     )
     finish = METHOD.choice(
         "at-once",
@@ -194,3 +206,90 @@ class MethodSettings(Checked):
     def n_substructures(self) -> int:
         """Number of substructures in all."""
         return self.n_bodies * self.substructures
+
+    @classmethod
+    @cache
+    def definitions(cls) -> Mapping[str, Any]:
+        """Definition of every setting, by name, in the order of their groups."""
+        parameters = {name: cls.param[name] for name in cls.param}
+        return {n: one for n, one in parameters.items() if "about" in (one.metadata or {})}
+
+    @classmethod
+    def checked(cls, values: Mapping[str, object]) -> Self:
+        """Settings of plain values by name; what is left out is as by default, or by the method.
+
+        Refuses an unknown name, a wrong type, a value out of range, and values that do not fit
+        together with a `SettingError`.
+        """
+        definitions = cls.definitions()
+        clean = {}
+        for name, value in values.items():
+            if name not in definitions:
+                raise unknown(name, value, definitions)
+            clean[name] = checked_value(definitions[name], name, value)
+        values = {**cls.of_method(clean.get("method", definitions["method"].default)), **clean}
+        # A default that is given takes param as long as anything else.
+        others = {n: value for n, value in values.items() if value is not definitions[n].default}
+        settings = cls(**others)
+        settings.check_together()
+        return settings
+
+    @classmethod
+    def of_method(cls, method: str) -> dict[str, Any]:
+        """Values of the settings that a method sets."""
+        values = dict(cls.METHODS[method])
+        for name, value in values.items():
+            definition = cls.definitions()[name]
+            if isinstance(definition, param.Selector) and value not in definition.objects:
+                values[name] = definition.default
+        return values
+
+    @classmethod
+    def defaults(cls, method: str) -> dict[str, Any]:
+        """Value of every setting where only the method is given."""
+        values = {name: definition.default for name, definition in cls.definitions().items()}
+        return {**values, **cls.of_method(method)}
+
+    def check_together(self) -> None:
+        """Check what no setting can check alone; a scene extends this."""
+
+    def values(self) -> dict[str, Any]:
+        """Plain value of every setting, by name."""
+        return dict(self._values)
+
+    @cached_property
+    def _values(self) -> Mapping[str, Any]:
+        # To ask param for all of them takes longer than an iteration, and they never change.
+        return {name: getattr(self, name) for name in self.definitions()}
+
+    def changed(self, base: Self | None = None) -> dict[str, Any]:
+        """Settings that differ from others, or from their defaults.
+
+        Where the method differs too, those that it sets are compared with what it says.
+        """
+        defaults = base.values() if base else self.defaults(self.method)
+        if base and base.method != self.method:
+            defaults.update(self.of_method(self.method))
+        return {name: value for name, value in self._values.items() if value != defaults[name]}
+
+    def replace(self, /, **changes: object) -> Self:
+        """New settings with some values changed, checked as a whole.
+
+        Another method brings its own values of all that it sets.
+        """
+        values = self.values()
+        if changes.get("method", self.method) != self.method:
+            own = self.METHODS[self.method]
+            values = {name: value for name, value in values.items() if name not in own}
+        return self.checked({**values, **changes})
+
+    def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
+        """Refusal of the present value of a setting: what is allowed beside others, what to do."""
+        return SettingError(name, getattr(self, name), allowed, remedy)
+
+    def applies(self, name: str) -> bool:
+        """Whether a setting does anything under the present values."""
+        record = about(self.definitions()[name])
+        if record.path and not isinstance(getattr(self, record.path), str):
+            return False
+        return record.applies(self)

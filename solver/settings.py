@@ -68,8 +68,8 @@ class Settings(LoadSettings):
         """What there is, what acts on it, and what rubs, for whoever sees it for the first time."""
         raise NotImplementedError
 
-    def coarser(self) -> Iterator[Structure]:
-        """Yield the same scene, uncut, on ever coarser meshes, as long as a front is seen.
+    def coarser(self) -> Iterator[Problem]:
+        """Yield the same problem, uncut, on ever coarser meshes, as long as a front is seen.
 
         Until it does not fit its mesh, as where the break of a wire, at the nearest node, leaves
         less than the tension to friction, or where a mesh so coarse has more instants.
@@ -82,7 +82,7 @@ class Settings(LoadSettings):
                 return
             if not np.array_equal(coarse.times(), self.times()):
                 return
-            yield coarse.structure()
+            yield coarse.structure().discretise()
 
     def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
         """What is known of the scene without a mesh; often that is nothing.
@@ -94,7 +94,7 @@ class Settings(LoadSettings):
     @property
     def jumps(self) -> int:
         """Components of all contacts, which a reference condenses; none on a lone rod."""
-        return 0
+        return (2 if self.opens else 1) * self.n_interfaces * (self.elements + 1)
 
     @property
     def loop_is_over_displacement(self) -> bool:

@@ -92,12 +92,11 @@ class Table:
         columns: Sequence[TableColumn],
         names: Sequence[str],
         units: Sequence[str],
-        each: str = "points",
     ) -> tuple[Array, str]:
         """Numbers of some columns in their units, (n_columns, n_rows), and what was understood.
 
-        Names are those of columns that lack one, and `each` is what lines are called. A unit of
-        another quantity is refused, and a cell that is no finite number, with its line.
+        Names are those of columns that lack one. A unit of another quantity is refused, and a cell
+        that is no finite number, with its line.
         """
         sizes = [
             column.size(unit, self.refuse) for column, unit in zip(columns, units, strict=True)
@@ -110,7 +109,7 @@ class Table:
         ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
         others = [repr(column.name) for column in self.columns if column not in columns]
         passed = f"; passed over: {', '.join(others)}" if others else ""
-        message = f"{parts}, {numbers.shape[1]} {each}, {ends}{passed}"
+        message = f"{parts}, {numbers.shape[1]} points, {ends}{passed}"
         return numbers * np.array(sizes)[:, None], message
 
     def _numbers(self, columns: Sequence[TableColumn]) -> Array:

@@ -72,7 +72,7 @@ def test_it_comes_from_a_file_with_units_in_its_head_and_what_was_understood_is_
     settings, messages = settings_from_command("rope", [f"construction={path}"])
     np.testing.assert_allclose(np.array(settings.values()["construction"]), OWN, rtol=1e-12)
     assert messages["construction"] == (
-        "wires, diameter in mm, lay angle in deg, E in GPa, 3 rows, from 70 to 200 GPa; "
+        "wires, diameter in mm, lay angle in deg, E in GPa, 3 points, from 70 to 200 GPa; "
         "passed over: 'layer'"
     )
 

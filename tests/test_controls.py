@@ -12,8 +12,8 @@ from app.controls import POINTS, Controls, SettingControl
 from app.files.opener import TableOpener
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
-from solver.checked import dump
 from solver.definitions import CurveParameter
+from solver.files import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 

@@ -184,7 +184,7 @@ def test_all_strength_of_a_fault_is_there_whatever_the_mesh():
         values = {"normal_profile": table, "elements": elements}
         settings = CATALOGUE["fault"].checked({**values, "overpressure": 0.0})
         (law,) = discretise(settings).rubbing.values()
-        nodal = settings.strength_at_nodes()[:, 0]
+        nodal = settings.largest_friction(settings.places)[:, 0]
         assert nodal @ law.by_point(law.weights[:, None])[:, 0] == pytest.approx(whole, rel=1e-4)
 
 

@@ -5,9 +5,8 @@ import json
 import pytest
 
 from app.files.link import query_of, read
-from solver.checked import dump
 from solver.definitions import allowed, parse
-from solver.files import settings_from_command, settings_from_toml
+from solver.files import dump, settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.random_runs import draw

@@ -66,7 +66,7 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
     assert found.converged.all()
     assert slips[:, 1:].mean() > 0.9
     contact = problem.rubbing["support"]
-    bound = settings.strength_along(contact.positions) * contact.weights[:, None]
+    bound = settings.largest_friction(contact.positions) * contact.weights[:, None]
     friction = found.contact("support").tangential_force
     np.testing.assert_allclose(np.abs(friction)[slips], bound[slips], rtol=1e-9)
     assert solve(problem, method_of(settings)).is_certified

@@ -26,8 +26,7 @@ from app.views.timeline import Timeline
 from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
-from solver.checked import dump
-from solver.files import settings_from_toml
+from solver.files import dump, settings_from_toml
 
 NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
 

@@ -22,7 +22,7 @@ from app.experiments.questions import (
 from app.state import PageState, answer
 from app.units import unit_for
 from app.widgets import button, changing_text, download
-from solver.checked import dump
+from solver.files import dump
 from solver.settings import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart

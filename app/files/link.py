@@ -14,8 +14,8 @@ from app.frame import Selection
 from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from solver.checked import dump
 from solver.definitions import Group, checked_value, parse, title_of
+from solver.files import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings

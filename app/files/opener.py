@@ -24,9 +24,8 @@ from app.files.tables import (
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.widgets import button, changing_text, dialog, download
-from solver.checked import dump
 from solver.definitions import title_of
-from solver.files import settings_from_toml
+from solver.files import dump, settings_from_toml
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.comparison import read_results

@@ -48,9 +48,9 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     A run then lasts until the last of its tables ends.
     """
     definition = settings.definitions()[name]
-    curve = curve_of(table, definition, name, settings.curve_units(name))
-    changed = settings.replace(**{name: curve.points})
-    message = f"{title_of(definition)}: {curve.message}."
+    points, message = curve_of(table, definition, name, settings.curve_units(name))
+    changed = settings.replace(**{name: points})
+    message = f"{title_of(definition)}: {message}."
     if definition.abscissa == "time":
         ends = max(ends_of_tables(changed).values(), default=0.0)
         changed = changed.replace(duration=ends) if ends > 0.0 else changed

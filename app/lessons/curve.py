@@ -29,7 +29,7 @@ class DrawnCurve:
             x_axis_type="log",
             y_axis_type="log",
             x_axis_label=title_of(lesson.settings.definitions()[lesson.draw]),
-            y_axis_label=lesson.drawn_quantity.split(" to ")[0],
+            y_axis_label=lesson.checkpoints[0].quantity.title.split(" to ")[0],
             x_range=(places[0] / 2.0, places[-1] * 2.0),
             y_range=(1.0, self._top),
             height=200,

@@ -258,25 +258,19 @@ class BarSettings(Settings):
 
     def check_together(self) -> None:
         """Refuse what has no digits left, or no equilibrium, too."""
-        self._check_section()
-        super().check_together()
-        size = self.young * self.section / self.length
-        for side in PATHS:
-            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
-        self._check_equilibrium()
-
-    def _check_section(self) -> None:
-        """Refuse a section that is too uneven for the digits of a number."""
         table = self.section_profile
-        if isinstance(table, str):
-            return
-        factors = [factor for _, factor in table]
+        factors = [1.0] if isinstance(table, str) else [factor for _, factor in table]
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",
                 f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
                 "bring the factors nearer to each other",
             )
+        super().check_together()
+        size = self.young * self.section / self.length
+        for side in PATHS:
+            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
+        self._check_equilibrium()
 
     def structure(self) -> Rods:
         """Make the friction bar (paper, section 3 and Table 1).
@@ -284,6 +278,7 @@ class BarSettings(Settings):
         The bar is at rest and free of stress before the first instant.
         """
         nodes = np.linspace(0.0, self.length, self.elements + 1)
+        factors = shared.at_nodes(self, nodes, "friction_profile", "pressure_profile")
         mean, section = self._uneven_section()
         strain = settlement = None
         if self.acts("temperature_load"):
@@ -297,7 +292,7 @@ class BarSettings(Settings):
             stiffness=self.young * self.section * mean,
             elements=self.elements,
             substructures=self.substructures,
-            bound=self._bound(nodes),
+            bound=shared.bound(self, factors),
             left=_end_of(self, "left"),
             right=_end_of(self, "right"),
             instants=self.times(),
@@ -332,15 +327,6 @@ class BarSettings(Settings):
         acting = {name for name in self.paths if self.acts(name)}
         driven = {path for paths in PATHS.values() for path in paths.values()}
         return bool(acting & driven)
-
-    def _bound(self, nodes: Array) -> Array:
-        """Mu p at the nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
-        density = self.friction * shared.at_nodes(
-            self, nodes, "friction_profile", "pressure_profile"
-        )
-        if self.pressure_load == "steady":
-            return density * self.pressure
-        return np.outer(density, self.path("pressure_load"))
 
     def _check_equilibrium(self) -> None:
         """Refuse more force than friction carries, where it alone holds the bar."""

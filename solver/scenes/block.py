@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -196,6 +196,7 @@ class BlockSettings(SideSettings):
         "Largest force per volume along x.",
         title="Body force along x",
         unit="N/m^3",
+        places=("body",),
     )
     body_force_y = BODY_FORCE.quantity(
         0.0,
@@ -204,6 +205,7 @@ class BlockSettings(SideSettings):
         "Largest force per volume along y, upward; weight is negative.",
         title="Body force along y",
         unit="N/m^3",
+        places=("body",),
     )
     body_load = BODY_FORCE.choice(
         "hold",
@@ -215,11 +217,6 @@ class BlockSettings(SideSettings):
     top = redefined(SideSettings.param["top"], "displacement")
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
-
-    def behind(self) -> Mapping[str, str]:
-        """Settings behind what acts; where both body forces do, the larger stands for their sum."""
-        force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
-        return {**super().behind(), "body": force}
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, the gap among them."""
@@ -258,9 +255,8 @@ class BlockSettings(SideSettings):
     def structure(self) -> Stack:
         """Make the block; one metre thick."""
         sides = {side: self.side(side) for side in ("left", "right", "top")}
-        nodes = np.linspace(0.0, self.length, self.nodes[0])
-        table = self.gap
-        gap = self.gap_at(nodes) if isinstance(table, str) else gap_at(table, nodes)
+        is_preset = isinstance(self.gap, str)
+        gap = self.gap_at(self.places) if is_preset else gap_at(self.gap, self.places)
         return replace(
             self.stack(),
             support=Support(gap, self.friction_at_nodes()),

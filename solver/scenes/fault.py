@@ -19,7 +19,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
-from solver.loads import INJECTIONS, instants_of, interpolate
+from solver.loads import INJECTIONS, instants_of
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
@@ -164,11 +164,6 @@ class FaultSettings(PlaneSettings):
     young = shared.young(BODY, 6e10, (1e9, 1e12))
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
-    @property
-    def jumps(self) -> int:
-        """Components of all contacts: a fault stays closed."""
-        return self.nodes[0]
-
     def fluid(self, place: Array) -> Array:
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
         times = start = self.times()
@@ -177,32 +172,27 @@ class FaultSettings(PlaneSettings):
         fluid = spread(place, start, self.path_at("injection_load", start), self.diffusivity)
         return fluid if start is times else fluid[:, np.searchsorted(start, times)]
 
-    def strength_along(self, place: Array) -> Array:
-        """Largest friction per area, shape (n_places, n_instants), Pa."""
-        profiles = "friction_profile", "normal_profile"
-        mu, pressed = (interpolate(self.points(name), place)[:, None] for name in profiles)
-        effective = self.normal_stress * pressed - self.fluid(place)
-        return np.asarray(self.friction * mu * effective)
+    def pressing(self, place: Array) -> Array:
+        """Normal stress along the fault before any fluid is let in, shape (n_places,), Pa."""
+        return np.asarray(self.normal_stress * shared.at_nodes(self, place, "normal_profile"))
 
-    def pressing_at_nodes(self) -> Array:
-        """Normal stress of the nodes before any fluid is let in, shape (n_nodes,), Pa."""
-        return np.asarray(self.normal_stress * self.factor_at_nodes("normal_profile"))
-
-    def strength_at_nodes(self) -> Array:
-        """Largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
-        effective = self.pressing_at_nodes()[:, None] - self.fluid(self._places)
-        return np.asarray(np.reshape(self.friction_at_nodes(), (-1, 1)) * effective)
-
-    @property
-    def _places(self) -> Array:
-        return np.linspace(0.0, self.length, self.nodes[0])
+    def largest_friction(self, place: Array) -> Array:
+        """Largest friction per area along the fault, shape (n_places, n_instants), Pa."""
+        mu = self.friction * shared.at_nodes(self, place, "friction_profile")
+        return np.asarray(mu[:, None] * (self.pressing(place)[:, None] - self.fluid(place)))
 
     def check_together(self) -> None:
-        """Refuse a fluid that would open the fault, or that sucks."""
+        """Refuse a fluid that would open the fault, or take minutes to spread."""
         super().check_together()
-        self._check_work()
-        place = self._places
-        pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
+        bends = len(self.knots("injection_load"))
+        if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
+            raise SettingError(
+                "injection_load",
+                f"a path of {bends} points",
+                f"at most {most} points with {self.n_instants} instants",
+                "give fewer points, or fewer elements along",
+            )
+        pressing, fluid = self.pressing(self.places), self.fluid(self.places)
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
@@ -212,24 +202,13 @@ class FaultSettings(PlaneSettings):
                 "it would open the fault: lower the pressure of the fluid, or press more",
             )
 
-    def _check_work(self) -> None:
-        """Refuse a fluid whose pressure would take minutes to spread."""
-        bends = len(self.knots("injection_load"))
-        if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
-            raise SettingError(
-                "injection_load",
-                f"a path of {bends} points",
-                f"at most {most} points with {self.n_instants} instants",
-                "give fewer points, or fewer elements along",
-            )
-
     def structure(self) -> Fault:
         """Make the quarter of the body; one metre thick.
 
         Its top is moved as far as the stress takes, and holds it where all of the fault slips.
         """
-        modulus, strength = 0.5 * self.young / (1.0 + self.poisson), self.strength_at_nodes()
-        none = np.zeros(self.n_instants)
+        modulus = 0.5 * self.young / (1.0 + self.poisson)
+        strength, none = self.largest_friction(self.places), np.zeros(self.n_instants)
         level, free = Given(True, none), Given(False, none)
         moved = none + self.shear_stress / modulus * self.height
         body = replace(
@@ -263,7 +242,7 @@ class FaultSettings(PlaneSettings):
         if np.any(np.diff(self.path("injection_load")) < 0.0):
             return
         place = np.linspace(0.0, self.length, FINE + 1)
-        lack = self.strength_along(place) - stress
+        lack = self.largest_friction(place) - stress
         small = ROUND * float(np.abs(lack).max())
         spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
         if self.law != FrictionLaw() or not spreads or stress <= 0.0:
@@ -274,7 +253,7 @@ class FaultSettings(PlaneSettings):
         yield ExactCurve("front", front, self.times())
         nodes = problem.rubbing["support"].positions
         friction = np.full((len(nodes), self.n_instants), stress)
-        strength = self.strength_at_nodes()
+        strength = self.largest_friction(nodes)
         for instant in np.flatnonzero(front):
             ahead = nodes > front[instant]
             added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))

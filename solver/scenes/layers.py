@@ -176,11 +176,6 @@ class LayersSettings(PlaneSettings):
 
     def check_together(self) -> None:
         """Refuse lengths and factors on mu that are not one for each layer or interface, too."""
-        self._check_lengths()
-        super().check_together()
-        shared.factors_of(self)
-
-    def _check_lengths(self) -> None:
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
             raise self.refusal(
@@ -188,6 +183,8 @@ class LayersSettings(PlaneSettings):
                 "shares above 0, the largest of them 1",
                 "give each length over that of the longest layer",
             )
+        super().check_together()
+        shared.factors_of(self)
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, and how far layers end from where given."""
@@ -205,26 +202,21 @@ class LayersSettings(PlaneSettings):
         bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
         stack = replace(stack, bricks=bricks)
         held, free = Given(True, rest), Given(False, rest)
-        pressing = self.path("pressure_load")
-        pull = self.path("pull_load")
-        if self.bending == "deflection":
-            bent = Given(True, self.path("bend_load"))
-            right = Side(Given(False, pull), bent)
-        elif self.bending == "force":
-            traction = self.path("bend_load") / (stack.longest * self.thickness)
-            right = Side(Given(False, pull), Given(False, traction))
-        else:
+        pressing, bend = self.path("pressure_load"), self.path("bend_load")
+        pull, bent = Given(False, self.path("pull_load")), Given(True, bend)
+        if self.bending == "force":
+            bent = Given(False, bend / (stack.longest * self.thickness))
+        elif self.bending == "moment":
             # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
-            moment = self.path("bend_load")
-            extreme = -6.0 * moment / (stack.longest * self.thickness**2)
-            right = Side(Given(False, pull, extreme), free)
+            extreme = -6.0 * bend / (stack.longest * self.thickness**2)
+            pull, bent = replace(pull, slope=extreme), free
         return replace(
             stack,
             friction=shared.factors_of(self)[:, None] * stack.friction,
             stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
             sides={
                 "left": Side(held, held),
-                "right": right,
+                "right": Side(pull, bent),
                 "top": Side(free, Given(False, -pressing)),
                 "bottom": Side(free, Given(False, pressing)),
             },

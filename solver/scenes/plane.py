@@ -31,12 +31,7 @@ class PlaneSettings(Settings):
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
     MESH = ("elements", "elements_up")
-    GROWS: ClassVar[tuple[str, ...]] = (
-        "elements",
-        "elements_up",
-        "substructures",
-        "substructures_up",
-    )
+    GROWS = (*MESH, *PARTS)
     kind = "plane"
     opens = True
 
@@ -144,16 +139,16 @@ class PlaneSettings(Settings):
         """Whether anything rubs."""
         return bool(self.friction or self.law.cohesion)
 
-    def factor_at_nodes(self, profile: str) -> Array:
-        """Factor of a profile at the nodes along a body; of a table, its mean over their shares."""
-        places = np.linspace(0.0, self.length, self.nodes[0])
-        return shared.at_nodes(self, places, profile)
+    @property
+    def places(self) -> Array:
+        """Places of the nodes along a body, (n_nodes,), m."""
+        return np.linspace(0.0, self.length, self.nodes[0])
 
     def friction_at_nodes(self) -> float | Array:
         """The coefficient mu of the nodes along a body."""
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
-        return np.asarray(self.friction * self.factor_at_nodes("friction_profile"))
+        return np.asarray(self.friction * shared.at_nodes(self, self.places, "friction_profile"))
 
     @property
     def nodes(self) -> tuple[int, int]:
@@ -166,9 +161,9 @@ class PlaneSettings(Settings):
         return self.n_bodies * math.prod(self.nodes)
 
     @property
-    def jumps(self) -> int:
-        """Components of all contacts, which a reference condenses."""
-        return 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
+    def n_interfaces(self) -> int:
+        """Number of interfaces: a lone body has that with its support."""
+        return max(self.n_bodies - 1, 1)
 
     @property
     def n_substructures(self) -> int:
@@ -192,8 +187,8 @@ class PlaneSettings(Settings):
             duration=self.duration,
         )
 
-    def _check_shape(self) -> None:
-        """Refuse elements so flat that their stiffness has no digits left."""
+    def check_together(self) -> None:
+        """Refuse elements so flat that no digits are left, too, and matrices beyond memory."""
         height: float = getattr(self, self.across)
         ratio = self.length * self.elements_up / (height * self.elements)
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:
@@ -203,9 +198,6 @@ class PlaneSettings(Settings):
                 f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
             )
 
-    def check_together(self) -> None:
-        """Refuse flat elements too, and matrices beyond memory."""
-        self._check_shape()
         super().check_together()
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)

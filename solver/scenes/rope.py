@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import POSITIVE, Rows, SettingError, redefined
+from solver.definitions import POSITIVE, redefined
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope, RopeWire
@@ -41,6 +41,7 @@ class RopeSettings(Settings):
     ALSO_CHIEF = ("friction", "k_scale")
     GROWS = ("layers",)
     loop_is_over_displacement = False
+    jumps = 0
 
     construction = shared.STRAND.curve(
         "mooring",
@@ -143,7 +144,14 @@ class RopeSettings(Settings):
         """The strand's cross-section."""
         if isinstance(self.construction, str):
             return CONSTRUCTIONS[self.construction](self.layers)
-        return _section_of(self.construction)
+        try:
+            section = laid(self.construction)
+        except RefusedError as refused:
+            raise self.refusal("construction", refused.allowed, refused.remedy) from refused
+        if section.wires > MOST_WIRES:
+            remedy = f"it has {section.wires}: leave some out"
+            raise self.refusal("construction", f"at most {MOST_WIRES} wires", remedy)
+        return section
 
     @property
     def is_clamped(self) -> bool:
@@ -259,15 +267,3 @@ class RopeSettings(Settings):
         if strand is not None:
             curvature = self.path("load")
             yield ExactCurve("loop", curvature, strand.along(curvature))
-
-
-def _section_of(rows: Rows) -> CrossSection:
-    """Cross-section of one's own."""
-    try:
-        section = laid(rows)
-    except RefusedError as refused:
-        raise SettingError("construction", rows, refused.allowed, refused.remedy) from refused
-    if section.wires > MOST_WIRES:
-        remedy = f"it has {section.wires}: leave some out"
-        raise SettingError("construction", rows, f"at most {MOST_WIRES} wires", remedy)
-    return section

@@ -163,6 +163,14 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
     )
 
 
+def bound(settings: Any, factors: Array) -> Array:
+    """Mu p of rods at nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
+    density = settings.friction * factors
+    if settings.pressure_load == "steady":
+        return np.asarray(density * settings.pressure)
+    return np.outer(density, settings.path("pressure_load"))
+
+
 def factors_of(settings: Any) -> Array:
     """Factor on mu of each interface, (n_interfaces,); a table of others is refused."""
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")

@@ -107,11 +107,6 @@ class StrandSettings(Settings):
         return int(self.wires * max(self.substructures, 2 if self.broken else 1))
 
     @property
-    def jumps(self) -> int:
-        """Components of all contacts, which a reference condenses."""
-        return self.n_interfaces * (self.elements + 1)
-
-    @property
     def n_bodies(self) -> int:
         """Number of wires."""
         return int(self.wires)
@@ -132,10 +127,6 @@ class StrandSettings(Settings):
 
         The wires are at rest and free of stress before the first instant.
         """
-        bound = np.full(self.elements + 1, self.friction * self.pressure)
-        if self.pressure_load != "steady":
-            pressure = self.path("pressure_load")
-            bound = np.tile(self.friction * pressure, (self.elements + 1, 1))
         stiffness, load = self.young * self.section, self.path("load")
         is_moved = self.grip == "displacement"
         return Rods(
@@ -143,7 +134,7 @@ class StrandSettings(Settings):
             stiffness=stiffness,
             elements=self.elements,
             substructures=self.substructures,
-            bound=bound,
+            bound=shared.bound(self, np.ones(self.elements + 1)),
             left=End(displacement=np.zeros_like(load)),
             right=End(displacement=load * self.length / stiffness) if is_moved else End(load),
             instants=self.times(),

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from solver.checked import dump
 from solver.definitions import about
 from solver.disk import write
+from solver.files import dump
 from solver.scenes.shared import listed
 from solver.study.fit import Fit
 from solver.study.measured_loop import MeasuredLoop, csv_of

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from solver.arrays import Array
-from solver.checked import dump
 from solver.definitions import SettingError
+from solver.files import dump
 from solver.study.page import (
     Chart,
     Map,
