@@ -201,8 +201,8 @@ class Contact(Interface):
     def shares(self) -> Array:
         """Share of each pair in the force of its point: as its law says, or of its area."""
         softness = self.tangential.softness
-        strengths = self.tangential.most if softness is None else 1.0 / softness
-        for weights in (strengths, self.weights):
+        along = self.tangential.highest.max(axis=1) if softness is None else 1.0 / softness
+        for weights in (along, self.weights):
             whole = self.by_point(weights)[self.points]
             if np.all(whole > 0.0):
                 return np.asarray(weights / whole)

@@ -198,11 +198,6 @@ class Friction:
         return np.asarray(bound * self.strength(np.cumsum(np.abs(slip), axis=1)))
 
     @property
-    def most(self) -> Array:
-        """Largest value that the known part of the bound ever has, shape (n_pairs,)."""
-        return np.asarray(self.highest.max(axis=1))
-
-    @property
     def highest(self) -> Array:
         """Largest value that slip may give the known part of the bound, of its shape."""
         return self.bound if self.strength is None else self.bound * max(self.strength.factors)
