@@ -41,7 +41,8 @@ def boundary_of(problem, reference):
     law = problem.friction
     displacement = reference.displacement / problem.scales.displacement
     friction = reference.friction_force / problem.scales.force
-    share = law.tangential.most / np.bincount(law.points, weights=law.tangential.most)[law.points]
+    most = law.tangential.highest.max(axis=1)
+    share = most / np.bincount(law.points, weights=most)[law.points]
     force = np.zeros((problem.n_rows, problem.n_instants))
     force[law.tangent.above] = share[:, None] * friction[law.points]
     for part in problem.substructures:

@@ -146,7 +146,7 @@ def dissipation(iterate):
     """Bound times the slip of each step, shape (n_instants,), J."""
     found = np.zeros(iterate.problem.n_instants)
     for name, law in iterate.problem.rubbing.items():
-        bound = law.by_point(law.tangential.most) * iterate.problem.scales.force
+        bound = law.by_point(law.tangential.highest.max(axis=1)) * iterate.problem.scales.force
         found += bound @ np.abs(np.diff(iterate.contact(name).slip, axis=1, prepend=0.0))
     return found
 

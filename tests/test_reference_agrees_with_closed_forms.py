@@ -124,7 +124,8 @@ def problems(draw: st.DrawFn) -> Problem:
 
 def bounds(of: Problem) -> np.ndarray:
     law = of.friction
-    return np.bincount(law.points, weights=law.tangential.most)[:, None] * of.scales.force
+    most = law.tangential.highest.max(axis=1)
+    return np.bincount(law.points, weights=most)[:, None] * of.scales.force
 
 
 def assert_coulomb(of: Problem, found: Reference) -> None:

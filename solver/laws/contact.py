@@ -26,6 +26,7 @@ from solver.laws.interface import (
     MacroPart,
     Rule,
     beyond,
+    joined,
     squared,
 )
 from solver.laws.unilateral import ContactRule, Unilateral
@@ -164,18 +165,11 @@ class Contact(Interface):
     @classmethod
     def concatenated(cls, laws: Sequence[Self]) -> Self:
         """Interfaces of one kind put one after the other, without macro bases."""
-        normals = [law.normal for law in laws if law.normal is not None]
         firsts = np.cumsum([0, *(len(law.positions) for law in laws[:-1])])
         points = [first + law.points for first, law in zip(firsts, laws, strict=True)]
-        return replace(
-            laws[0],
-            tangential=Friction.concatenated([law.tangential for law in laws]),
-            normal=Unilateral.concatenated(normals) if normals else None,
-            points=np.concatenate(points),
-            positions=np.concatenate([law.positions for law in laws]),
-            weights=np.concatenate([law.weights for law in laws]),
-            macro=None,
-        )
+        names = "tangential", "normal", "positions", "weights"
+        both = {name: joined([getattr(law, name) for law in laws]) for name in names}
+        return replace(laws[0], **both, points=np.concatenate(points), macro=None)
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Law for one k."""
@@ -183,17 +177,14 @@ class Contact(Interface):
 
     def by_point(self, values: Array) -> Array:
         """Sum of the values of each point's pairs: (n_pairs, ...) to (n_points, ...)."""
-        once, again = self._first_pairs
-        sums = np.zeros((len(self.positions), *values.shape[1:]))
-        sums[self.points[once]] = values[once]
-        np.add.at(sums, self.points[again], values[again])
-        return sums
+        return np.asarray(self._pairs_of_points @ values)
 
     @cached_property
-    def _first_pairs(self) -> tuple[Indices, Indices]:
-        """The first pair of every point, and those of points that have had one."""
-        _, once = np.unique(self.points, return_index=True)
-        return once, np.setdiff1d(np.arange(len(self.points)), once)
+    def _pairs_of_points(self) -> sparse.csr_array:
+        """1 where a pair is of a point, shape (n_points, n_pairs)."""
+        size = len(self.points)
+        places = self.points, np.arange(size)
+        return sparse.csr_array((np.ones(size), places), shape=(len(self.positions), size))
 
     def mean_by_point(self, values: Array) -> Array:
         """Mean of the values of each point's pairs, shape (n_points, ...)."""
@@ -210,8 +201,8 @@ class Contact(Interface):
     def shares(self) -> Array:
         """Share of each pair in the force of its point: as its law says, or of its area."""
         softness = self.tangential.softness
-        strengths = self.tangential.most if softness is None else 1.0 / softness
-        for weights in (strengths, self.weights):
+        along = self.tangential.highest.max(axis=1) if softness is None else 1.0 / softness
+        for weights in (along, self.weights):
             whole = self.by_point(weights)[self.points]
             if np.all(whole > 0.0):
                 return np.asarray(weights / whole)

@@ -16,13 +16,12 @@ Where contact opens the cohesion of a pair is gone for good: a brittle bond.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.arrays import Array, in_rows
-from solver.laws.interface import Component, joined
+from solver.arrays import Array
+from solver.laws.interface import Component
 from solver.laws.play import Strength
 from solver.refusal import RefusedError, check_range
 
@@ -199,11 +198,6 @@ class Friction:
         return np.asarray(bound * self.strength(np.cumsum(np.abs(slip), axis=1)))
 
     @property
-    def most(self) -> Array:
-        """Largest value that the known part of the bound ever has, shape (n_pairs,)."""
-        return np.asarray(self.highest.max(axis=1))
-
-    @property
     def highest(self) -> Array:
         """Largest value that slip may give the known part of the bound, of its shape."""
         return self.bound if self.strength is None else self.bound * max(self.strength.factors)
@@ -222,19 +216,6 @@ class Friction:
     def during(self, instants: slice) -> Friction:
         """Law of some instants alone."""
         return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, instants])
-
-    @classmethod
-    def concatenated(cls, laws: Sequence[Friction]) -> Friction:
-        """Laws that have the same fields put one after the other, all on supports, or none."""
-        return replace(
-            laws[0],
-            component=Component.concatenated([law.component for law in laws]),
-            bound=in_rows([law.bound for law in laws]),
-            friction=np.concatenate([law.friction for law in laws]),
-            cap=joined([law.cap for law in laws]),
-            softness=joined([law.softness for law in laws]),
-            start=joined([law.start for law in laws]),
-        )
 
 
 def is_intact(opening: Array, pressing: Array) -> Array:

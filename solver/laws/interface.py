@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple, Self
+from dataclasses import fields, is_dataclass
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, Indices, as_slice
+from solver.arrays import Array, Indices, as_slice, in_rows
 
 
 class Component(NamedTuple):
@@ -21,12 +21,6 @@ class Component(NamedTuple):
 
     above: Indices
     below: Indices | None = None
-
-    @classmethod
-    def concatenated(cls, components: Sequence[Component]) -> Component:
-        """Rows put one after the other, all on supports, or none."""
-        above = np.concatenate([each.above for each in components])
-        return cls(above, joined([each.below for each in components]))
 
     def jump(self, field: Array) -> Array:
         """A row field above minus that below, shape (n_pairs, ...)."""
@@ -138,10 +132,17 @@ class Interface(ABC):
         return False
 
 
-def joined(fields: Sequence[NDArray[Any] | None]) -> NDArray[Any] | None:
-    """Fields of pairs put one after the other: of all interfaces, or None of any."""
-    some = [field for field in fields if field is not None]
-    return np.concatenate(some) if some else None
+def joined(parts: Sequence[Any]) -> Any:
+    """Laws of one kind as one: arrays of pairs one after the other, all else as in the first."""
+    first, kind = parts[0], cast(Any, type(parts[0]))
+    if isinstance(first, np.ndarray):
+        return in_rows(parts)
+    if isinstance(first, Component):
+        return Component(*map(joined, zip(*parts, strict=True)))
+    if not is_dataclass(first):
+        return first
+    names = [field.name for field in fields(first)]
+    return kind(**{n: joined([getattr(part, n) for part in parts]) for n in names})
 
 
 def beyond(field: Array, noise: float) -> Array:

@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array, Indices, as_slice
-from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, squared
+from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, joined, squared
 
 
 @dataclass(frozen=True)
@@ -88,11 +88,7 @@ class Perfect(Interface):
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
         """Join all cuts; the macro bases stay behind."""
-        if not laws:
-            return []
-        first = np.concatenate([law.first for law in laws])
-        second = np.concatenate([law.second for law in laws])
-        return [cls(first, second, np.zeros((len(first), 0)))]
+        return [joined([replace(law, macro=law.macro[:, :0]) for law in laws])]
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Both sides move by the mean of their z, weighted by k (solver/README.md, 2)."""

@@ -6,14 +6,13 @@ N >= 0, and one of them is zero; so along the search direction both springs shar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction import Friction
-from solver.laws.interface import Component, Springs, joined
+from solver.laws.interface import Component, Springs
 from solver.laws.play import Play, follow
 
 
@@ -46,15 +45,6 @@ class Unilateral:
         if self.softness is not None:
             opening = opening + self.softness[:, None] * force[self.component.above]
         return np.asarray(opening)
-
-    @classmethod
-    def concatenated(cls, laws: Sequence[Unilateral]) -> Unilateral:
-        """Laws put one after the other, all on supports, or none; all with a spring, or none."""
-        return cls(
-            component=Component.concatenated([law.component for law in laws]),
-            gap=np.concatenate([law.gap for law in laws]),
-            softness=joined([law.softness for law in laws]),
-        )
 
 
 class ContactRule:

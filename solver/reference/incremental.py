@@ -66,7 +66,8 @@ class IncrementalRod:
         self._moves = np.diff(prescribed.T, axis=0, prepend=0.0)
         self._movable = np.ones(problem.n_dofs)
         self._movable[self._fixed] = 0.0
-        self._search = self._search_within(self._bound(0))
+        first = self._on_dofs(self._rules.bound_at(0)) * self._movable
+        self._search = Search(self._stiffness, first, self._movable)
         self._systems = 0
 
     @cached_property
@@ -117,13 +118,6 @@ class IncrementalRod:
         spread[self._dofs] = values
         return spread
 
-    def _bound(self, instant: int) -> Array:
-        """Friction bound before any slip, shape (n_dofs,), scaled."""
-        return self._on_dofs(self._rules.bound_at(instant))
-
-    def _search_within(self, bound: Array) -> Search:
-        return Search(self._stiffness, bound * self._movable, self._movable)
-
     def _minimise(self, instant: int, force: Array, status: Array, gone: Array) -> Minimum | None:
         """Minimise phi over one instant, from a guess of the statuses; None where it has none.
 
@@ -133,14 +127,14 @@ class IncrementalRod:
         given = np.zeros(len(force))
         given[self._fixed] = move
         load = self._movable * (force - self._stiffness.product(given))
-        bound = self._bound(instant)
+        bound = self._on_dofs(rules.bound_at(instant))
         least: Minimum | None
         if rules.ages:
             least = self._with_changing_bound(bound, load, status, gone)
         else:
             search = self._search
             if rules.bound.shape[1] > 1:
-                search = self._search_within(bound)
+                search = Search(self._stiffness, bound * self._movable, self._movable)
             done = search.solutions
             least = search(load, status * search.rubs)
             self._systems += search.solutions - done

@@ -4,15 +4,13 @@ Meshes differ, and with them nodal forces: so friction is brought as a force per
 rods, and per area, Pa, of bodies in the plane: the traction along the interface, on the body above.
 
 Our field is linear between its points and between its instants; so it has a value w(x, t) at every
-row of the table, which has v. With d = w - v,
+row of the table, which has v. With the norm |.| over all rows, each of which counts alike,
 
-    distance = |d| / |v|,    |d|^2 = sum over instants of their weight times the mean of d^2 there.
+    distance = |w - v| / |v|.
 
-The mean is over the points of that instant, each of which counts as half of the distance to its
-neighbours does; an instant has the trapezoidal weight of the table's own instants. So rows may lie
-anywhere, in any order, and a place that is sampled densely counts no more for that. What only one
-of both covers is left out: rows beside the body or the run, or where our force is an arbitrary
-share of what a support holds. Where v vanishes everywhere, |w| stands in its place.
+Rows may lie anywhere, in any order. What only one of both covers is left out: rows beside the body
+or the run, or where our force is an arbitrary share of what a support holds. Where v vanishes
+everywhere, |w| stands in its place.
 """
 
 from __future__ import annotations
@@ -23,6 +21,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.linalg import norm
 from scipy.ndimage import map_coordinates
 
 from solver.arrays import Array, Flags
@@ -34,14 +33,16 @@ from solver.reference.distance import Fields, determinate_forces
 from solver.settings import Settings
 from solver.tables import Table, read_table
 
-FRICTION, DISPLACEMENT = "friction force", "displacement"
+FRICTION = "friction force"
+COLUMNS = {"x": "position", "t": "time", FRICTION: FRICTION}
+"""What a table has to have, by the names that it is asked for with."""
 FEWEST = 4
 """Rows from which on a distance says anything."""
 MOST = 20_000
 """Rows at most, which take a fifth of a second to read: a page's server does nothing else then."""
 EDGE = 1e-6
 """Share of the body's length by which a point may lie beyond it: of rounded numbers."""
-CAN = "CSV whose head names x, t, and friction force or displacement"
+CAN = "CSV whose head names x, t, and friction force"
 PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
 """Unit of friction, by what there is to see of a scene."""
 
@@ -50,11 +51,10 @@ PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
 class OtherResults:
     """Results of another program for a scene, in SI, and what was understood of the file.
 
-    The quantity is `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane, or
-    `DISPLACEMENT`, m. Positions, m, times, s, and values are of every row, shape (n_rows,).
+    Positions, m, times, s, and values are of every row, shape (n_rows,): friction force on the body
+    above, N/m of rods and Pa of bodies in the plane.
     """
 
-    quantity: str
     positions: Array
     times: Array
     values: Array
@@ -66,31 +66,26 @@ class OtherResults:
 def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
     """Read results of another program for a scene, of a table, bytes or text.
 
-    Its head names the columns x (m), t (s), and friction force or displacement, with units if they
-    are others; further columns are passed over, and rows may have any order.
+    Its head names the columns x (m), t (s), and friction force, with units if they are others;
+    further columns are passed over, and rows may have any order.
 
     Raises
     ------
     SettingError
         For a table that is too large, or without these columns; for what is no finite number,
-        another unit, points outside of the body, or fewer than `FEWEST` rows during the run; for a
-        displacement of other scenes than a single rod.
+        another unit, points outside of the body, or fewer than `FEWEST` rows during the run.
     """
     refuse = partial(SettingError, "the results", source, CAN)
     table = read_table(data, refuse)
-    kind = settings.kind
-    quantity, columns = _columns(table)
-    if quantity == DISPLACEMENT and kind != "rod":
-        raise refuse("displacements are compared along a single rod: give the friction force here")
-    units = "m", "s", PER[kind] if quantity == FRICTION else "m"
-    if quantity == FRICTION and size_in(columns[2].unit, "N") is not None:
+    columns, units = _columns(table), ("m", "s", PER[settings.kind])
+    if size_in(columns[2].unit, "N") is not None:
         nodal = "divide nodal forces by what a node stands for"
         columns[2].size(units[2], lambda remedy: refuse(f"{remedy}; {nodal}"))
     pairs = zip(columns, units, strict=True)
-    (x, t, values), message = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
+    (x, t, values), message = in_si(table, dict(zip(COLUMNS, pairs, strict=True)))
     _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
     x = np.clip(x, 0.0, settings.length)
-    return OtherResults(quantity, x, t, values, source, settings.scene, message)
+    return OtherResults(x, t, values, source, settings.scene, message)
 
 
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
@@ -101,20 +96,17 @@ def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Ar
     return table.read(columns, list(used), units)
 
 
-def _columns(table: Table) -> tuple[str, list[TableColumn]]:
-    """The quantity that is named, and the columns of x, t, and of it."""
+def _columns(table: Table) -> list[TableColumn]:
+    """Columns of x, t and the friction force."""
     if not any(column.quantities[0] for column in table.columns):
         raise table.refuse("name its columns in the first line, as in x,t,friction force")
-    x, t = (table.find(table.columns, {kind}) for kind in ("position", "time"))
-    if x is None or t is None:
-        raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
-    fields = {kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)}
-    named = [(kind, column) for kind, column in fields.items() if column]
-    if len(named) != 1:
-        which = "both friction force and" if named else "neither friction force nor"
-        raise table.refuse(f"its head names {which} displacement: give one of them")
-    quantity, column = named[0]
-    return quantity, [x, t, column]
+    columns = []
+    for name, kind in COLUMNS.items():
+        column = table.find(table.columns, {kind})
+        if column is None:
+            raise table.refuse(f"its head names no column {name}: add it")
+        columns.append(column)
+    return columns
 
 
 def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refuse: Refuse) -> None:
@@ -141,68 +133,41 @@ class Comparison:
 
     def __init__(self, results: OtherResults, problem: Problem, interface: str = "") -> None:
         names = list(problem.rubbing)
-        self.results, self._problem = results, problem
+        self.results = results
         self.interface = interface if interface in names else names[0]
-        x, t, positions = results.positions, results.times, problem.positions
-        self._places, self._sizes = None, np.ones((1, 1))
-        if results.quantity == FRICTION:
-            law = problem.rubbing[self.interface]
-            self._places = problem.contact_places[self.interface][-1]
-            self._sizes, positions = law.by_point(law.weights)[:, None], law.positions
-        self._order = np.argsort(positions, kind="stable")
-        grids = positions[self._order], problem.instants
+        x, t, law = results.positions, results.times, problem.rubbing[self.interface]
+        self._places = problem.contact_places[self.interface][-1]
+        self._sizes = law.by_point(law.weights)[:, None]
+        self._order = np.argsort(law.positions, kind="stable")
+        grids = law.positions[self._order], problem.instants
         # Rows as fractional numbers of points and instants
         at = np.array(
             [np.interp(r, g, np.arange(len(g))) for r, g in zip((x, t), grids, strict=True)]
         )
+        unknown = ~determinate_forces(problem)[self._places][self._order]
         counts = _covers(grids[0], x) & _covers(grids[1], t)
-        if self._places is not None:
-            unknown = ~determinate_forces(problem)[self._places][self._order]
-            counts &= _interpolated(unknown.astype(float), at) == 0.0
+        counts &= _interpolated(unknown.astype(float), at) == 0.0
         self.counted, self._at = int(counts.sum()), at[:, counts]
         self._values = results.values[counts]
-        if self.counted >= FEWEST:
-            self._weights = weights_of(x[counts], t[counts])
 
     def of(self, fields: Fields) -> float:
         """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
         if self.counted < FEWEST:
             return float("nan")
-        if self._places is None:
-            field = self._problem.at_rest(fields.displacement)
-        else:
-            field = fields.contact_force[self._places] / self._sizes
+        field = fields.contact_force[self._places] / self._sizes
         own = _interpolated(field[self._order], self._at)
-        size = self._norm(self._values) or self._norm(own) or 1.0
-        return self._norm(own - self._values) / size
+        size = norm(self._values) or norm(own) or 1.0
+        return float(norm(own - self._values) / size)
 
     def figures(self, fields: Fields) -> dict[str, Any]:
         """What is compared, the distance, and numbers of rows, by the names of scripts."""
         return {
-            "quantity": self.results.quantity,
-            "interface": None if self._places is None else self.interface,
+            "quantity": FRICTION,
+            "interface": self.interface,
             "distance": self.of(fields),
             "rows": len(self.results.times),
             "rows_compared": self.counted,
         }
-
-    def _norm(self, values: Array) -> float:
-        return float(np.sqrt(self._weights @ values**2))
-
-
-def weights_of(positions: Array, times: Array) -> Array:
-    """What every row counts, as above, shape (n_rows,)."""
-    order = np.lexsort((positions, times))
-    instants, number = np.unique(times[order], return_inverse=True)
-    own = _halves(positions[order], np.diff(number) == 0)
-    lengths = np.bincount(number, own, len(instants))
-    # All points of an instant may be one.
-    own[lengths[number] == 0.0] = 1.0
-    lengths = np.bincount(number, own, len(instants))
-    over_time = _halves(instants) if len(instants) > 1 else np.ones(len(instants))
-    weights = np.empty(len(times))
-    weights[order] = over_time[number] * own / lengths[number]
-    return weights
 
 
 def _covers(grid: Array, places: Array) -> Flags:
@@ -215,8 +180,3 @@ def _covers(grid: Array, places: Array) -> Flags:
 def _interpolated(field: Array, at: Array) -> Array:
     """Field, shape (n_points, n_instants), at fractional numbers of both, shape (2, n)."""
     return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
-
-
-def _halves(places: Array, joined: Flags | bool = True) -> Array:
-    """Half of the distances to the neighbours, of places that rise where they are joined."""
-    return np.convolve(np.diff(places) * joined, [0.5, 0.5])

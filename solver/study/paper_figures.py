@@ -165,18 +165,13 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
     ]
     front = PanelCurve("1/(2n − 1)", orders, front_decay(len(orders)), 0, "dotted")
     error = PanelCurve("error of the solution", orders, np.full(len(orders), noise), 0, "dashed")
-    panels = tuple(
-        Panel(
-            title,
-            PanelAxis("Mode n", whole=True),
-            PanelAxis("Singular value / largest", logarithmic=True, limits=limits),
-            (*shown, front, *below),
-        )
-        for title, limits, shown, below in (
-            ("All, numbered from the clamp", (1e-11, 3.0), curves, [error]),
-            ("Those that the front sweeps", (1e-2, 1.5), curves[2:], []),
-        )
-    )
+    panels = []
+    for title, limits, shown in (
+        ("All, numbered from the clamp", (1e-11, 3.0), (*curves, front, error)),
+        ("Those that the front sweeps", (1e-2, 1.5), (*curves[2:], front)),
+    ):
+        share = PanelAxis("Singular value / largest", logarithmic=True, limits=limits)
+        panels.append(Panel(title, PanelAxis("Mode n", whole=True), share, shown))
     return paper_figure(5, panels, _mode_counts(parts, noise * largest), noise=noise)
 
 
@@ -204,22 +199,14 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     alike = fourth.correlations(fifth.space_modes)
     turned = fifth.space_modes * np.sign(alike)
     inside = fourth.positions - fourth.positions[0]
-    panels = tuple(
-        Panel(
-            f"Mode {order}",
-            PanelAxis("Position in the substructure", "m"),
-            MODE,
-            (
-                PanelCurve("substructure 4", inside, fourth.space_modes[:, order - 1], 4),
-                PanelCurve("substructure 5", inside, turned[:, order - 1], 5, "dashed"),
-            ),
+    panels, across = [], PanelAxis("Position in the substructure", "m")
+    for order in (1, 3, 5):
+        both = (
+            PanelCurve("substructure 4", inside, fourth.space_modes[:, order - 1], 4),
+            PanelCurve("substructure 5", inside, turned[:, order - 1], 5, "dashed"),
         )
-        for order in (1, 3, 5)
-    )
-    values = np.abs(alike[[0, 2, 4]])
-    words = ", ".join(f"{value:.3f}" for value in values)
-    text = f"Correlation of modes 1, 3, 5 of substructures 4 and 5: {words}."
-    likeness = Finding(text, bool(values.min() >= ALIKE))
+        panels.append(Panel(f"Mode {order}", across, MODE, both))
+    likeness = _correlation("of modes 1, 3, 5 of substructures 4 and 5", alike[[0, 2, 4]])
     return paper_figure(6, panels, likeness, _sign_changes(fourth, fifth))
 
 
@@ -263,20 +250,13 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
     kept = last.bases[-1].displacement_modes[rubs, :3]
     root = np.sqrt(exact.space_weights)[:, None]
     sorted_ = np.linalg.qr(kept * root)[0] / root
-    panels = tuple(
-        Panel(title, PLACE, MODE, tuple(_beside_svd(exact, modes)))
-        for title, modes in (
-            ("PGD modes, orthonormalised in order", sorted_),
-            ("PGD modes as the iteration keeps them", kept),
-        )
-    )
-    return paper_figure(
-        8,
-        panels,
-        _correlation(exact, sorted_, "orthonormalised in order"),
-        _correlation(exact, kept, "as the iteration keeps them"),
-        last=last.number,
-    )
+    panels, findings = [], []
+    both = {"orthonormalised in order": sorted_, "as the iteration keeps them": kept}
+    for how, modes in both.items():
+        panels.append(Panel(f"PGD modes, {how}", PLACE, MODE, tuple(_beside_svd(exact, modes))))
+        words = f"of PGD with SVD modes 1, 2, 3, {how}"
+        findings.append(_correlation(words, exact.correlations(modes)))
+    return paper_figure(8, panels, *findings, last=last.number)
 
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
@@ -291,11 +271,8 @@ def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
     return curves
 
 
-def _correlation(exact: Decomposition, modes: Array, words: str) -> Finding:
-    """Correlation of modes, shape (n_points, n), with the SVD modes of the same order."""
-    values = np.abs(exact.correlations(modes))
+def _correlation(words: str, signed: Array) -> Finding:
+    """Correlation of modes of the same order, shape (n,)."""
+    values = np.abs(signed)
     shown = ", ".join(f"{value:.3f}" for value in values)
-    return Finding(
-        f"Correlation of PGD with SVD modes 1, 2, 3, {words}: {shown}.",
-        bool(values.min() >= ALIKE),
-    )
+    return Finding(f"Correlation {words}: {shown}.", bool(values.min() >= ALIKE))

@@ -18,11 +18,6 @@ LOADED = "right x"
 """The side at which rods are pulled."""
 
 
-def on_rods(settings: Settings) -> bool:
-    """Whether points rub on rods; in the plane most substructures do not rub."""
-    return settings.kind != "plane"
-
-
 def can_be_clipped(settings: Settings) -> bool:
     """Whether friction bounds are known, and what is pulled drives all slip: on rods.
 
@@ -78,8 +73,11 @@ def _svd_modes(field: str, words: str) -> Quantity:
         parts = decompositions(run.problem, values, is_force=field == "force")
         return max(part.modes_for(at) for part in parts)
 
+    def applies(settings: Settings) -> bool:
+        return settings.kind != "plane"  # where most substructures do not rub
+
     title = f"Singular vectors of the {words} for an error of"
-    return Quantity(f"svd_modes_{field}", title, "", of, parameter=WITHIN, applies=on_rods)
+    return Quantity(f"svd_modes_{field}", title, "", of, parameter=WITHIN, applies=applies)
 
 
 svd_modes_displacement = _svd_modes("displacement", "displacement")
