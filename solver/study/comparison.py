@@ -4,13 +4,15 @@ Meshes differ, and with them nodal forces: so friction is brought as a force per
 rods, and per area, Pa, of bodies in the plane: the traction along the interface, on the body above.
 
 Our field is linear between its points and between its instants; so it has a value w(x, t) at every
-row of the table, which has v. With the norm |.| over all rows, each of which counts alike,
+row of the table, which has v. With d = w - v,
 
-    distance = |w - v| / |v|.
+    distance = |d| / |v|,    |d|^2 = sum over instants of their weight times the mean of d^2 there.
 
-Rows may lie anywhere, in any order. What only one of both covers is left out: rows beside the body
-or the run, or where our force is an arbitrary share of what a support holds. Where v vanishes
-everywhere, |w| stands in its place.
+The mean is over the points of that instant, each of which counts as half of the distance to its
+neighbours does; an instant has the trapezoidal weight of the table's own instants. So rows may lie
+anywhere, in any order, and a place that is sampled densely counts no more for that. What only one
+of both covers is left out: rows beside the body or the run, or where our force is an arbitrary
+share of what a support holds. Where v vanishes everywhere, |w| stands in its place.
 """
 
 from __future__ import annotations
@@ -21,7 +23,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.linalg import norm
 from scipy.ndimage import map_coordinates
 
 from solver.arrays import Array, Flags
@@ -149,6 +150,8 @@ class Comparison:
         counts &= _interpolated(unknown.astype(float), at) == 0.0
         self.counted, self._at = int(counts.sum()), at[:, counts]
         self._values = results.values[counts]
+        if self.counted >= FEWEST:
+            self._weights = weights_of(x[counts], t[counts])
 
     def of(self, fields: Fields) -> float:
         """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
@@ -156,8 +159,8 @@ class Comparison:
             return float("nan")
         field = fields.contact_force[self._places] / self._sizes
         own = _interpolated(field[self._order], self._at)
-        size = norm(self._values) or norm(own) or 1.0
-        return float(norm(own - self._values) / size)
+        size = self._norm(self._values) or self._norm(own) or 1.0
+        return self._norm(own - self._values) / size
 
     def figures(self, fields: Fields) -> dict[str, Any]:
         """What is compared, the distance, and numbers of rows, by the names of scripts."""
@@ -168,6 +171,24 @@ class Comparison:
             "rows": len(self.results.times),
             "rows_compared": self.counted,
         }
+
+    def _norm(self, values: Array) -> float:
+        return float(np.sqrt(self._weights @ values**2))
+
+
+def weights_of(positions: Array, times: Array) -> Array:
+    """What every row counts, as above, shape (n_rows,)."""
+    order = np.lexsort((positions, times))
+    instants, number = np.unique(times[order], return_inverse=True)
+    own = _halves(positions[order], np.diff(number) == 0)
+    lengths = np.bincount(number, own, len(instants))
+    # All points of an instant may be one.
+    own[lengths[number] == 0.0] = 1.0
+    lengths = np.bincount(number, own, len(instants))
+    over_time = _halves(instants) if len(instants) > 1 else np.ones(len(instants))
+    weights = np.empty(len(times))
+    weights[order] = over_time[number] * own / lengths[number]
+    return weights
 
 
 def _covers(grid: Array, places: Array) -> Flags:
@@ -180,3 +201,8 @@ def _covers(grid: Array, places: Array) -> Flags:
 def _interpolated(field: Array, at: Array) -> Array:
     """Field, shape (n_points, n_instants), at fractional numbers of both, shape (2, n)."""
     return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
+
+
+def _halves(places: Array, joined: Flags | bool = True) -> Array:
+    """Half of the distances to the neighbours, of places that rise where they are joined."""
+    return np.convolve(np.diff(places) * joined, [0.5, 0.5])
