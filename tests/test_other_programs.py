@@ -116,7 +116,7 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
         ("", "it has no points"),
         (ROWS, "name its columns in the first line"),
         ("x,friction force\n0.1,1\n", "no column t"),
-        ("x,t\n0.1,1\n", "names no column friction force"),
+        ("x,t\n0.1,1\n", "neither friction force nor displacement"),
         (
             "x,t,friction force [N]\n" + ROWS,
             r"says N: give it in N/m, kN/m, N/mm; divide nodal forces",

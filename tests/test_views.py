@@ -24,7 +24,7 @@ from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.settings import Settings
-from solver.study.comparison import OtherResults
+from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults
 
 VIEWS = [kind for card in CARDS for kind in card]
 NEEDS = frozenset(need for kind in VIEWS for need in kind.needs)
@@ -237,9 +237,12 @@ def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
 def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -> None:
     frame = frames_of("bar")[1]
     x, t = (grid.ravel() for grid in np.meshgrid([0.0, 0.5, 1.0], [0.0, 0.7, 1.0]))
-    theirs = OtherResults(x, t, 1000.0 * t, "theirs.csv", "bar", "")
+    theirs = OtherResults(FRICTION, x, t, 1000.0 * t, "theirs.csv", "bar", "")
     view = view_of(ContactForce, replace(frame, extras={"beside": {"brought": theirs}}))
     assert np.allclose(view.sources["beside"].data["y"], 0.7)
+    moved = {"brought": replace(theirs, quantity=DISPLACEMENT)}
+    view = view_of(HysteresisLoop, replace(frame, extras={"beside": moved}))
+    assert len(view.sources["beside"].data["x"]) == 3
 
 
 def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> None:

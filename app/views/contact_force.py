@@ -8,7 +8,7 @@ from app.frame import Floats, Frame, InterfaceFields, Selection
 from app.views.axis import extent
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
 from app.views.view import View, hover, joined
-from solver.study.comparison import OtherResults
+from solver.study.comparison import FRICTION, OtherResults
 
 ROOM, MOST = 1.15, 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
@@ -98,7 +98,7 @@ class ContactForce(View):
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its nearest instant, and name it."""
         results = (frame.extras.get("beside") or {}).get("brought")
-        if not isinstance(results, OtherResults):
+        if not isinstance(results, OtherResults) or results.quantity != FRICTION:
             self.draw("beside", [], [])
             return
         near = results.times[np.abs(results.times - time).argmin()]

@@ -25,7 +25,9 @@ from app.views.colors import (
 )
 from app.views.view import ExtraView, View, hover
 from app.worker.geometry import thinned
+from solver.arrays import Array
 from solver.laws import FrictionLaw
+from solver.study import comparison
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.cycles import cycles_in
 
@@ -62,8 +64,7 @@ class HysteresisLoop(View):
         exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
         reference = nothing if run.reference_loop is None else run.reference_loop
         brought = (frame.extras.get("beside") or {}).get("brought")
-        is_loop = isinstance(brought, MeasuredLoop)
-        beside = (brought.displacement, brought.force) if is_loop else nothing
+        beside = _beside(brought, frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
             curves = frame.loop[row], exact[row], reference[row], beside[row]
             axis.hold(frame.stage, *curves, [0.0], margin=0.08)
@@ -72,8 +73,23 @@ class HysteresisLoop(View):
         self.draw("reference", *reference)
         self.draw("exact", *exact)
         self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
-        self.draw("beside", *beside, brought.source if is_loop else "")
+        self.draw("beside", *beside, brought.source if brought else "")
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
+
+
+def _beside(
+    brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
+) -> tuple[Array, Array]:
+    """A measured loop; or another program's displacement of the end, under the run's load."""
+    if isinstance(brought, MeasuredLoop):
+        return brought.displacement, brought.force
+    if brought is None or brought.quantity != comparison.DISPLACEMENT:
+        return np.zeros(0), np.zeros(0)
+    x, t, instants = brought.positions, brought.times, frame.run.instants
+    end = x[np.abs(x - frame.run.geometry.description.length).argmin()]
+    rows = np.flatnonzero((x == end) & (t <= instants[-1]))
+    rows = rows[np.argsort(t[rows])]
+    return brought.values[rows], np.interp(t[rows], instants, frame.loop[1])
 
 
 class CyclePlot(ExtraView):

@@ -34,16 +34,14 @@ from solver.reference.distance import Fields, determinate_forces
 from solver.settings import Settings
 from solver.tables import Table, read_table
 
-FRICTION = "friction force"
-COLUMNS = {"x": "position", "t": "time", FRICTION: FRICTION}
-"""What a table has to have, by the names that it is asked for with."""
+FRICTION, DISPLACEMENT = "friction force", "displacement"
 FEWEST = 4
 """Rows from which on a distance says anything."""
 MOST = 20_000
 """Rows at most, which take a fifth of a second to read: a page's server does nothing else then."""
 EDGE = 1e-6
 """Share of the body's length by which a point may lie beyond it: of rounded numbers."""
-CAN = "CSV whose head names x, t, and friction force"
+CAN = "CSV whose head names x, t, and friction force or displacement"
 PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
 """Unit of friction, by what there is to see of a scene."""
 
@@ -52,10 +50,11 @@ PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
 class OtherResults:
     """Results of another program for a scene, in SI, and what was understood of the file.
 
-    Positions, m, times, s, and values are of every row, shape (n_rows,): friction force on the body
-    above, N/m of rods and Pa of bodies in the plane.
+    The quantity is `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane, or
+    `DISPLACEMENT`, m. Positions, m, times, s, and values are of every row, shape (n_rows,).
     """
 
+    quantity: str
     positions: Array
     times: Array
     values: Array
@@ -67,26 +66,31 @@ class OtherResults:
 def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
     """Read results of another program for a scene, of a table, bytes or text.
 
-    Its head names the columns x (m), t (s), and friction force, with units if they are others;
-    further columns are passed over, and rows may have any order.
+    Its head names the columns x (m), t (s), and friction force or displacement, with units if they
+    are others; further columns are passed over, and rows may have any order.
 
     Raises
     ------
     SettingError
         For a table that is too large, or without these columns; for what is no finite number,
-        another unit, points outside of the body, or fewer than `FEWEST` rows during the run.
+        another unit, points outside of the body, or fewer than `FEWEST` rows during the run; for a
+        displacement of other scenes than a single rod.
     """
     refuse = partial(SettingError, "the results", source, CAN)
     table = read_table(data, refuse)
-    columns, units = _columns(table), ("m", "s", PER[settings.kind])
-    if size_in(columns[2].unit, "N") is not None:
+    kind = settings.kind
+    quantity, columns = _columns(table)
+    if quantity == DISPLACEMENT and kind != "rod":
+        raise refuse("displacements are compared along a single rod: give the friction force here")
+    units = "m", "s", PER[kind] if quantity == FRICTION else "m"
+    if quantity == FRICTION and size_in(columns[2].unit, "N") is not None:
         nodal = "divide nodal forces by what a node stands for"
         columns[2].size(units[2], lambda remedy: refuse(f"{remedy}; {nodal}"))
     pairs = zip(columns, units, strict=True)
-    (x, t, values), message = in_si(table, dict(zip(COLUMNS, pairs, strict=True)))
+    (x, t, values), message = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
     _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
     x = np.clip(x, 0.0, settings.length)
-    return OtherResults(x, t, values, source, settings.scene, message)
+    return OtherResults(quantity, x, t, values, source, settings.scene, message)
 
 
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
@@ -97,17 +101,20 @@ def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Ar
     return table.read(columns, list(used), units)
 
 
-def _columns(table: Table) -> list[TableColumn]:
-    """Columns of x, t and the friction force."""
+def _columns(table: Table) -> tuple[str, list[TableColumn]]:
+    """The quantity that is named, and the columns of x, t, and of it."""
     if not any(column.quantities[0] for column in table.columns):
         raise table.refuse("name its columns in the first line, as in x,t,friction force")
-    columns = []
-    for name, kind in COLUMNS.items():
-        column = table.find(table.columns, {kind})
-        if column is None:
-            raise table.refuse(f"its head names no column {name}: add it")
-        columns.append(column)
-    return columns
+    x, t = (table.find(table.columns, {kind}) for kind in ("position", "time"))
+    if x is None or t is None:
+        raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
+    fields = {kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)}
+    named = [(kind, column) for kind, column in fields.items() if column]
+    if len(named) != 1:
+        which = "both friction force and" if named else "neither friction force nor"
+        raise table.refuse(f"its head names {which} displacement: give one of them")
+    quantity, column = named[0]
+    return quantity, [x, t, column]
 
 
 def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refuse: Refuse) -> None:
@@ -134,20 +141,24 @@ class Comparison:
 
     def __init__(self, results: OtherResults, problem: Problem, interface: str = "") -> None:
         names = list(problem.rubbing)
-        self.results = results
+        self.results, self._problem = results, problem
         self.interface = interface if interface in names else names[0]
-        x, t, law = results.positions, results.times, problem.rubbing[self.interface]
-        self._places = problem.contact_places[self.interface][-1]
-        self._sizes = law.by_point(law.weights)[:, None]
-        self._order = np.argsort(law.positions, kind="stable")
-        grids = law.positions[self._order], problem.instants
+        x, t, positions = results.positions, results.times, problem.positions
+        self._places, self._sizes = None, np.ones((1, 1))
+        if results.quantity == FRICTION:
+            law = problem.rubbing[self.interface]
+            self._places = problem.contact_places[self.interface][-1]
+            self._sizes, positions = law.by_point(law.weights)[:, None], law.positions
+        self._order = np.argsort(positions, kind="stable")
+        grids = positions[self._order], problem.instants
         # Rows as fractional numbers of points and instants
         at = np.array(
             [np.interp(r, g, np.arange(len(g))) for r, g in zip((x, t), grids, strict=True)]
         )
-        unknown = ~determinate_forces(problem)[self._places][self._order]
         counts = _covers(grids[0], x) & _covers(grids[1], t)
-        counts &= _interpolated(unknown.astype(float), at) == 0.0
+        if self._places is not None:
+            unknown = ~determinate_forces(problem)[self._places][self._order]
+            counts &= _interpolated(unknown.astype(float), at) == 0.0
         self.counted, self._at = int(counts.sum()), at[:, counts]
         self._values = results.values[counts]
         if self.counted >= FEWEST:
@@ -157,7 +168,10 @@ class Comparison:
         """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
         if self.counted < FEWEST:
             return float("nan")
-        field = fields.contact_force[self._places] / self._sizes
+        if self._places is None:
+            field = self._problem.at_rest(fields.displacement)
+        else:
+            field = fields.contact_force[self._places] / self._sizes
         own = _interpolated(field[self._order], self._at)
         size = self._norm(self._values) or self._norm(own) or 1.0
         return self._norm(own - self._values) / size
@@ -165,8 +179,8 @@ class Comparison:
     def figures(self, fields: Fields) -> dict[str, Any]:
         """What is compared, the distance, and numbers of rows, by the names of scripts."""
         return {
-            "quantity": FRICTION,
-            "interface": self.interface,
+            "quantity": self.results.quantity,
+            "interface": None if self._places is None else self.interface,
             "distance": self.of(fields),
             "rows": len(self.results.times),
             "rows_compared": self.counted,
