@@ -38,6 +38,7 @@ from solver.study.mesh import (
     size_of,
     three_of,
     value_on,
+    which_to_refine,
 )
 from solver.study.quantities import reading
 
@@ -87,7 +88,9 @@ def _mesh(chosen: argparse.Namespace) -> int:
     elements, instants = refinements
     print(f"Elements: {answer(elements, asked.unit)}")
     print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
-    return 0 if elements.is_told and instants.is_told else 1
+    if which := which_to_refine(elements, instants):
+        print(which)
+    return 0 if which else 1
 
 
 def _compare(chosen: argparse.Namespace) -> int:

@@ -70,7 +70,22 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     found = Refinement((values[0], values[1], values[2]), 1)
     assert abs(found.limit - CYCLE) <= found.margin < 0.01 * CYCLE
     assert lines[5].startswith(f"Elements: Its error goes with the power {found.order:.2f}")
-    assert lines[6].startswith("Instants: ")
+    assert lines[7].startswith("Refine elements first")
+
+
+@pytest.mark.parametrize(
+    ("scene", "asked", "refined"),
+    [
+        ("bar elements=40 instants=11 load=ramp", "first_slip_time@0.5", "instants"),
+        ("bar elements=10 instants=41 load=cycle", "dissipation@1", "elements"),
+    ],
+)
+def test_it_is_said_which_to_refine(
+    scene: str, asked: str, refined: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name, *changes = scene.split()
+    assert main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
+    assert f"Refine {refined} first" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("asked", ["seconds", "peak_pressure", "nonsense"])

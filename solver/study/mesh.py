@@ -129,8 +129,7 @@ def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
     limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
-    share = f"{100.0 * refinement.deviation:.2g} %" if refinement.deviation < 1.0 else "all of it"
-    own = f"This run is within {share} of that." if refinement.limit else ""
+    own = f"This run is within {_share(refinement)} of that." if refinement.limit else ""
     order = refinement.order
     if order is None:
         told = f"It follows no power of {size}: {limit} is all that is known."
@@ -147,3 +146,18 @@ def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
             f"becomes {limit}."
         )
     return f"{told} {own}".rstrip()
+
+
+def which_to_refine(elements: Refinement, instants: Refinement) -> str:
+    """What both leave of the error, in a sentence; empty where one of them tells nothing."""
+    if not (elements.is_told and instants.is_told):
+        return ""
+    if elements.deviation == instants.deviation == 0.0:
+        return "Neither more elements nor more instants change it."
+    left = f"elements leave up to {_share(elements)}, instants up to {_share(instants)}"
+    more = "elements" if elements.deviation >= instants.deviation else "instants"
+    return f"Refine {more} first: {left}."
+
+
+def _share(refinement: Refinement) -> str:
+    return f"{100.0 * refinement.deviation:.2g} %" if refinement.deviation < 1.0 else "all of it"
