@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +13,7 @@ from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
-from solver.latin.response import Responses, response_of
+from solver.latin.response import response_of
 from solver.reduction.basis import SharedBasis
 
 if TYPE_CHECKING:
@@ -22,16 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Full:
-    """A linear stage with a value for every point and instant.
-
-    Runs with one k may share the factors of substructures, `responses`.
-    """
-
-    responses: Responses | None = field(default=None, repr=False)
+    """A linear stage with a value for every point and instant."""
 
     def group(self, problem: Problem, numbers: list[int], k: Array) -> Group:
         """Group of identical substructures with the same k, shape (n_rows,)."""
-        return Group(problem, numbers, k, self.responses)
+        return Group(problem, numbers, k)
 
 
 class LinearStage:
@@ -107,16 +102,12 @@ class Group:
 
     state: Array
 
-    def __init__(
-        self, problem: Problem, numbers: list[int], k: Array, responses: Responses | None
-    ) -> None:
+    def __init__(self, problem: Problem, numbers: list[int], k: Array) -> None:
         self.numbers, parts = numbers, [problem.substructures[number] for number in numbers]
         self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
-        self.response = response_of(
-            parts[0].elasticity, self.k, {} if responses is None else responses
-        )
+        self.response = response_of(parts[0].elasticity, self.k)
         self.body: Array | None = None
         if any(part.body_force is not None for part in parts):
             self.body = self.field()

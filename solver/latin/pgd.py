@@ -8,7 +8,7 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
-from solver.latin.response import Responses
 from solver.reduction.basis import SeparatedBasis, SharedBasis, nearest_mode
 from solver.refusal import check_range
 
@@ -44,15 +43,12 @@ class PGD:
         Equal substructures use the same modes if these miss at most this share of each one's field;
         0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
         (solver/study/README.md, 8).
-    responses
-        As of `Full`.
     """
 
     modes: int = 10
     tolerance: float = 1e-7
     pairs: int = 2
     sharing: float = 1e-5
-    responses: Responses | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("modes", "pairs"):
@@ -71,7 +67,7 @@ class PGDGroup(Group):
     shared: list[SharedBasis]
 
     def __init__(self, problem: Problem, numbers: list[int], k: Array, pgd: PGD) -> None:
-        super().__init__(problem, numbers, k, pgd.responses)
+        super().__init__(problem, numbers, k)
         self._pgd, self._weights = pgd, problem.time_weights
         self._place = {number: place for place, number in enumerate(numbers)}
         self.iterations = 0

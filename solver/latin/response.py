@@ -82,21 +82,14 @@ class DenseResponse(Response):
         return full
 
 
-Responses = dict[tuple[int, bytes], Response]
-"""Those that are known, by the identity of the elasticity, which each holds, and by k."""
-
-
-def response_of(elasticity: Elasticity, k: Array, known: Responses) -> Response:
-    """Condense or factor an elasticity with a k, unless that is done."""
-    key = id(elasticity), k.tobytes()
-    if key not in known:
-        stiffness = elasticity.stiffness
-        is_dense = isinstance(stiffness, np.ndarray) or bool(
-            stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
-        )
-        kind = DenseResponse if is_dense or len(k) <= DENSE_UP_TO else Response
-        known[key] = kind(elasticity, k)
-    return known[key]
+def response_of(elasticity: Elasticity, k: Array) -> Response:
+    """Condense or factor an elasticity with a k."""
+    stiffness = elasticity.stiffness
+    is_dense = isinstance(stiffness, np.ndarray) or bool(
+        stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
+    )
+    kind = DenseResponse if is_dense or len(k) <= DENSE_UP_TO else Response
+    return kind(elasticity, k)
 
 
 def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:

@@ -36,7 +36,7 @@ eleven iterations to know, and a field that goes on as before needs one."""
 class Slab:
     """A slab of time, ready to be solved: its instants in the whole, what to solve, and from where.
 
-    Slabs of one interval share the method, with k and the factors of it.
+    Slabs of one interval share the method, with its k.
     """
 
     instants: slice
@@ -81,7 +81,6 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
     method = replace(
         latin,
         direction=_OfWhole(k=latin.direction.of(problem)),
-        linear=replace(latin.linear, responses={}),
         start=start,
         stop=stop,
     )
