@@ -55,12 +55,6 @@ class WireLayer:
         """Axial stiffness E A of one wire, N."""
         return self.young * self.area
 
-    @property
-    def own_bending(self) -> float:
-        """Bending stiffness E I cos(alpha) of all wires, each about its own axis, N m^2."""
-        own = self.young * np.pi * self.diameter**4 / 64.0
-        return float(self.wires * own * np.cos(self.lay))
-
 
 @dataclass(frozen=True)
 class CrossSection:
@@ -155,8 +149,11 @@ class CrossSection:
 
     @cached_property
     def slipping_bending(self) -> float:
-        """Bending stiffness of wires that all slip, each about its own axis, N m^2."""
-        return self.core.own_bending + sum(layer.own_bending for layer in self.layers)
+        """Bending stiffness of wires that all slip, E I cos(alpha) each about its own axis, N m^2."""
+        return sum(
+            float(one.wires * one.young * np.pi * one.diameter**4 / 64.0 * np.cos(one.lay))
+            for one in (self.core, *self.layers)
+        )
 
     @cached_property
     def stuck_bending(self) -> float:

@@ -112,10 +112,8 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
             middle, reach = moment + stack.height * x, stack.height * most
             beyond = np.maximum(middle - reach, stack.length * y - middle - reach)
         checks.append((beyond > slack * stack.length, TIPS))
-    if not held_x and (most.any() or not held_y):
+    if not held_x:
         checks.append((pushed > most + slack, "friction cannot hold it"))
-    elif not held_x:
-        checks.append((np.abs(x) > slack, "there is no friction, and no side holds it"))
     losses = [
         Loss(reason, float(stack.instants[np.argmax(lost)]))
         for lost, reason in checks
