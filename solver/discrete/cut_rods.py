@@ -22,22 +22,15 @@ from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfe
 if TYPE_CHECKING:
     from solver.discrete.rods import End, Rods
 
-MACRO_DEGREE = 1
+DEGREES = 2
 """Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
 them both sides balance each other but slowly: 1 % of the friction force then takes more than 200
-iterations instead of 40 (measured by default, with Anderson acceleration and automatic k). 3 saves
+iterations instead of 40 (measured by default, with Anderson acceleration and automatic k). 4 save
 up to half of the iterations with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires
 gain nothing."""
 NO_ROW = -1
 SIDES = {"left": "support", "right": "load"}
 """Interfaces of the ends, by their side."""
-
-
-def rod_stiffness(element_stiffness: Array) -> sparse.csr_array:
-    """Stiffness of linear elements in a row, (n + 1, n + 1), of ES/h of each of them, (n,)."""
-    beside = np.append(element_stiffness, 0.0), np.insert(element_stiffness, 0, 0.0)
-    bands = [-element_stiffness, np.add(*beside), -element_stiffness]
-    return sparse.csr_array(sparse.diags_array(bands, offsets=[-1, 0, 1]))
 
 
 def _pieces_of(rods: Rods) -> tuple[list[int], int]:
@@ -186,7 +179,10 @@ class CutRods:
         at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
         direction = np.full(len(trace), at_ends)
         direction[: len(trace) - ends] = at_ends * element / part
-        matrix = rod_stiffness(stiffness * (rods.elements / length))
+        springs_of = stiffness * (rods.elements / length)
+        at_nodes = np.append(springs_of, 0.0) + np.insert(springs_of, 0, 0.0)
+        bands = [-springs_of, at_nodes, -springs_of]
+        matrix = sparse.csr_array(sparse.diags_array(bands, offsets=[-1, 0, 1]))
         for node, end in springs.items():
             matrix[node, node] += end.spring / (units.force / units.displacement)
         return Elasticity(matrix, trace, direction)
@@ -226,7 +222,9 @@ class CutRods:
         piece, nodes = self._piece[self._rubs], self._nodes[self._rubs]
         if self._lower:
             above, below = self._sides[[self._lower + rod - 1, rod - 1], self._rubs]
-            component, macro = Component(above, below), _macro(np.bincount(piece).tolist())
+            component, on_pieces = Component(above, below), np.bincount(piece).tolist()
+            bases = [np.vander(np.linspace(-1.0, 1.0, n), min(DEGREES, n)) for n in on_pieces]
+            macro = sparse.csr_array(block_diag(*bases))
         weights = rods.length * (self._shares[self._rubs] / rods.elements)
         # Where one of both is broken there are two points.
         points = nodes - nodes[0] + self._beyond[max(rod - 1, 0) : rod + 1].max(axis=0)[piece]
@@ -252,9 +250,3 @@ def _seen(rods: Rods, end: End, node: int) -> Array:
     assert end.displacement is not None
     settled = 0.0 if rods.settlement is None else rods.settlement[node]
     return np.asarray(end.displacement - settled)
-
-
-def _macro(counts: list[int]) -> sparse.csr_array:
-    """Macro basis of a contact between rods: polynomials on every piece, of so many pairs."""
-    bases = [np.vander(np.linspace(-1.0, 1.0, n), min(MACRO_DEGREE + 1, n)) for n in counts]
-    return sparse.csr_array(block_diag(*bases))

@@ -93,9 +93,8 @@ def _crept(iterate: Iterate) -> NDArray[np.int8]:
 def _profile(problem: Problem, status: NDArray[np.int8]) -> Array:
     """The automatic k, smaller where points slip, shape (n_rows,)."""
     share = np.count_nonzero(status, axis=1) / status.shape[1]
-    k, first = automatic(problem), 0
-    for law in problem.rubbing.values():
+    k = automatic(problem)
+    for name, law in problem.rubbing.items():
         for rows in law.tangent.sides:
-            k[rows] *= SLIDING ** share[first + law.points]
-        first += len(law.positions)
+            k[rows] *= SLIDING ** share[problem.contact_points[name]][law.points]
     return read_only(k)
