@@ -8,8 +8,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
@@ -68,16 +66,13 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     coarse = solution.problem
     displacement = solution.displacement / coarse.scales.displacement
     force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
-    bodies, fine_bodies = _bodies(coarse), _bodies(fine)
-    inside = _interpolated(_apart(fine, fine_bodies), _apart(coarse, bodies), displacement)
+    inside = _interpolated(_apart(fine), _apart(coarse), displacement)
     moved = inside[fine.row_dofs]
     carried, rests = np.zeros_like(moved), np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
         density = law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
-        spread = _interpolated(
-            _points_apart(fine, target, fine_bodies), _points_apart(coarse, law, bodies), density
-        )
+        spread = _interpolated(_points_apart(fine, target), _points_apart(coarse, law), density)
         shared = spread[target.points] * target.weights[:, None]
         for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
             carried[rows], rests[rows] = sign * shared, False
@@ -87,22 +82,18 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
 
 
 def _bodies(problem: Problem) -> Indices:
-    """Number of the body that every degree of freedom belongs to, from 0 on."""
-    parts, n_dofs = problem.substructures, problem.n_dofs
-    dofs = np.concatenate([part.dofs for part in parts])
-    number = n_dofs + np.repeat(np.arange(len(parts)), [len(part.dofs) for part in parts])
-    links = sparse.csr_array((np.ones(len(dofs)), (dofs, number)), shape=(n_dofs + len(parts),) * 2)
-    return np.asarray(connected_components(links, directed=False)[1][:n_dofs], dtype=np.intp)
+    """Number of the body of every degree of freedom, from 0 on: positions ascend along each."""
+    return np.cumsum(np.diff(problem.positions, prepend=-1.0) <= 0.0)
 
 
-def _apart(problem: Problem, bodies: Indices) -> Array:
+def _apart(problem: Problem) -> Array:
     """Positions, with bodies laid end to end so that none touches the next."""
-    return np.asarray(problem.positions + 2.0 * problem.scales.displacement * bodies)
+    return np.asarray(problem.positions + 2.0 * problem.scales.displacement * _bodies(problem))
 
 
-def _points_apart(problem: Problem, law: Contact, bodies: Indices) -> Array:
+def _points_apart(problem: Problem, law: Contact) -> Array:
     """Positions of an interface's points, those of other bodies apart."""
-    numbers = np.zeros(len(law.positions), dtype=np.intp)
+    numbers, bodies = np.zeros(len(law.positions), dtype=np.intp), _bodies(problem)
     numbers[law.points] = sum(bodies[problem.row_dofs[rows]] for rows in law.tangent.sides)
     return law.positions + 2.0 * problem.scales.displacement * numbers
 
