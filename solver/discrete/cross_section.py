@@ -149,7 +149,7 @@ class CrossSection:
 
     @cached_property
     def slipping_bending(self) -> float:
-        """Bending stiffness of wires that all slip, E I cos(alpha) each about its own axis, N m^2."""
+        """Bending stiffness E I cos(alpha) of wires that slip, each about its own axis, N m^2."""
         return sum(
             float(one.wires * one.young * np.pi * one.diameter**4 / 64.0 * np.cos(one.lay))
             for one in (self.core, *self.layers)

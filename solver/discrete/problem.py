@@ -191,11 +191,6 @@ class Problem:
         return any(law.opens for law in self.rubbing.values())
 
     @cached_property
-    def has_cuts(self) -> bool:
-        """Whether any two substructures meet, glued or in contact."""
-        return bool(self.cuts) or any(law.macro is not None for law in self.rubbing.values())
-
-    @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces whose macro forces are in equilibrium, and their load.
 

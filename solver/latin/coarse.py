@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -33,7 +32,7 @@ class CoarseProblem:
     def __init__(self, problem: Problem, groups: Sequence[Group], blocks: Blocks) -> None:
         basis, load = problem.macro
         self._blocks = blocks
-        self._members = []
+        self._members: list[_Member] = []
         seen: list[sparse.csr_array] = []
         systems: list[Array] = []
         constant = load.astype(float)
@@ -49,51 +48,48 @@ class CoarseProblem:
                 held = group.k[rows, None, None] * group.body[rows]
                 held = local.T @ held.reshape(len(rows), -1, order="F")
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
-            self._members.append(_Member(group, rows, local, np.asfortranarray(forces)))
+            size = local.shape[1] * group.rows.shape[1]
+            forces = np.asfortranarray(forces)
+            self._members.append(_Member(group, as_slice(rows), local, forces, size))
         self._spread = sparse.csr_array(sparse.hstack(seen))
         whole = sparse.block_diag(list(map(sparse.coo_array, systems)), format="csr")
         system = self._spread @ whole @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
-        ends = accumulate((member.size for member in self._members), initial=0)
-        self._places = [slice(first, last) for first, last in pairwise(ends)]
 
     def add_multiplier(self) -> None:
         """Add W~ to the targets of all groups."""
 
         def work(instants: slice) -> None:
-            forces = [member.macro_forces(instants) for member in self._members]
-            multiplier = self._solve(np.concatenate(forces), instants)
-            for member, place in zip(self._members, self._places, strict=True):
-                member.add(multiplier[place], instants)
+            targets = [
+                member.group.target[:, :, instants].reshape(len(member.group.k), -1, order="F")
+                for member in self._members
+            ]
+            forces = [
+                np.matmul(member.forces, target).reshape(member.size, -1, order="F")
+                for member, target in zip(self._members, targets, strict=True)
+            ]
+            multiplier, first = self._solve(np.concatenate(forces), instants), 0
+            for member, target in zip(self._members, targets, strict=True):
+                part = multiplier[first : first + member.size]
+                change = np.empty((len(member.local), target.shape[1]), order="F")
+                np.matmul(member.local, part.reshape(len(member.forces), -1, order="F"), out=change)
+                target[member.rows] += change
+                first += member.size
 
         self._blocks.each(work)
 
 
-class _Member:
-    """A group, and the part of the macro basis that its substructures see, as `_local_basis`."""
+class _Member(NamedTuple):
+    """A group, and the part of the macro basis that its substructures see, as `_local_basis`.
 
-    def __init__(self, group: Group, rows: Indices, local: Array, forces: Array) -> None:
-        self._group, self._local, self._forces = group, local, forces
-        self.size = local.shape[1] * group.rows.shape[1]
-        self._rows = as_slice(rows)
+    With what makes macro forces of a target, and the number of these forces at an instant.
+    """
 
-    def macro_forces(self, instants: slice) -> Array:
-        """Macro forces of the target at some instants, shape (size, n_some)."""
-        target = self._columns(instants)
-        forces: Array = np.matmul(self._forces, target)
-        return forces.reshape(self.size, -1, order="F")
-
-    def add(self, multiplier: Array, instants: slice) -> None:
-        """Add a multiplier, shape (size, n_some), to the target at some instants."""
-        target = self._columns(instants)
-        part = multiplier.reshape(self._local.shape[1], -1, order="F")
-        change = np.empty((len(self._local), target.shape[1]), order="F")
-        np.matmul(self._local, part, out=change)
-        target[self._rows] += change
-
-    def _columns(self, instants: slice) -> Array:
-        target = self._group.target
-        return target[:, :, instants].reshape(len(target), -1, order="F")
+    group: Group
+    rows: slice | Indices
+    local: Array
+    forces: Array
+    size: int
 
 
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:

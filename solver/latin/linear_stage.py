@@ -45,7 +45,8 @@ class LinearStage:
         self.is_full = isinstance(form, Full)
         self._blocks = blocks if self.is_full else Blocks(1, problem.n_instants)
         self._coarse = None
-        if multiscale and problem.has_cuts:
+        meets = problem.cuts or any(law.macro is not None for law in problem.rubbing.values())
+        if multiscale and meets:
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
         self._shape = (problem.n_rows, problem.n_instants)
 
