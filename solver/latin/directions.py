@@ -53,7 +53,7 @@ class SearchDirection(ABC):
         return read_only(self.scale * self.rule(problem))
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """Progress of a run that goes on from a checkpoint, if from any: k, and how it changes."""
+        """Progress of a run from a checkpoint without any, or from none: k, and how it changes."""
         return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
@@ -90,16 +90,12 @@ class Auto(SearchDirection):
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
         """Progress at the start; k stays in a run from the fields of another, which are near."""
-        if start is not None and start.course is not None:
-            return start.course
         laws = problem.rubbing.values()
         may_stick = start is None and any(law.opens and not law.is_on_support for law in laws)
         return UpdateProgress("first" if may_stick else "returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """Progress, which ends in the third iteration: k stays if anything slips."""
-        if progress.phase != "first":
-            return progress
         problem = iterate.problem
         if progress.count + 1 < LOOK:
             return replace(progress, count=progress.count + 1)
@@ -109,7 +105,7 @@ class Auto(SearchDirection):
             return UpdateProgress("returned", progress.k)
         k = read_only(self.scale * automatic(problem, sticks=True))
         zero = np.zeros_like(iterate.outgoing)
-        return UpdateProgress("updated", k, fields=(zero, zero))
+        return UpdateProgress("returned", k, fields=(zero, zero))
 
 
 def automatic(problem: Problem, *, sticks: bool = False) -> Array:

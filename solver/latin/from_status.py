@@ -55,8 +55,7 @@ class FromStatus:
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
         """As `SearchDirection.begin`."""
-        progress = start.course if start else None
-        return progress or UpdateProgress("first", self.of(problem))
+        return UpdateProgress("first", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """Progress by what sticks and slips in the local stage, or by what an update has made."""

@@ -23,8 +23,8 @@ class UpdateProgress:
     Attributes
     ----------
     phase
-        Whether k is that of the start and may change ("first"), another ("updated"), or that of the
-        start for good ("returned").
+        Whether k is that of the start and may change ("first"), another on trial ("updated"), or
+        stays as it is ("returned").
     count
         First: iterations on end with hardly a change of status. Updated: iterations since the last
         trial.

@@ -67,7 +67,8 @@ class Iteration:
 
     def __init__(self, problem: Problem, latin: Latin, start: Checkpoint | None = None) -> None:
         self._problem, self._latin = problem, latin
-        self._course = latin.direction.begin(problem, start)
+        course = start.course if start else None
+        self._course = course or latin.direction.begin(problem, start)
         self.k = self._course.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         try:
