@@ -121,7 +121,11 @@ class CutRods:
         if self._lower:
             # On the rod before it, and below the one behind it.
             sides = self._sides[[self._lower + rod - 1] * (rod > 0) + [rod] * (rod < self._lower)]
-        strain = rods.free_strain
+        strain = rods.strain
+        if rods.settlement is not None:
+            # Seen from a support that moves by s, a rod is as if it shrank by ds/dx.
+            moved = np.diff(rods.settlement, axis=0) * (rods.elements / rods.length)
+            strain = -moved if strain is None else strain - moved
         needed = None if strain is None else strain * stiffness[:, None]
         inner = self._inner_force(rods, needed)
         held = {0: rods.left, rods.elements: rods.right}

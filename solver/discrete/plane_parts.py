@@ -33,11 +33,6 @@ class Part:
     rows: Mapping[Hashable, Indices]
     force: Array | None
 
-    @property
-    def dofs(self) -> Indices:
-        """What is kept, among the degrees of freedom of all nodes."""
-        return dofs_of(self.nodes.ravel())[self.condensed.kept]
-
 
 class Inside:
     """What lies inside condensed substructures, found when somebody looks.
@@ -60,7 +55,8 @@ class Inside:
     def __init__(
         self, parts: Sequence[Part], positions: Array, scales: Scales, n_instants: int
     ) -> None:
-        length, kept = scales.displacement, [part.dofs for part in parts]
+        length = scales.displacement
+        kept = [dofs_of(part.nodes.ravel())[part.condensed.kept] for part in parts]
         skeleton = np.unique(np.concatenate(kept))
         self._parts, self._length, self._young = parts, length, scales.force / length
         self._size = len(skeleton), n_instants

@@ -186,18 +186,6 @@ class Rods:
         return held and self.right.force is not None and all(each is None for each in moved)
 
     @property
-    def free_strain(self) -> Array | None:
-        """Strain of rods that no force strains, as seen from their support; or None.
-
-        A support that moves by s strains what sticks to it by ds/dx: seen from it, that is as if
-        the rod shrank. So both are e_0 - ds/dx, shape (n_elements, n_instants).
-        """
-        if self.settlement is None:
-            return self.strain
-        moved = np.diff(self.settlement, axis=0) * (self.elements / self.length)
-        return -moved if self.strain is None else self.strain - moved
-
-    @property
     def rubbing_sides(self) -> int:
         """Neighbours of the broken rod."""
         return 0 if self.broken is None else 1 + (1 < self.broken[0] < self.wires)

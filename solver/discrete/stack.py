@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -222,8 +222,10 @@ class Stack:
             )
         bent, rests = self.sides["right"].y, self.support is not None
         if not rests and not bent.prescribed and not np.any(bent.mean):
-            rotation, moment = end_rotation(problem), constant(self._moment()).of
-            return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, moment)
+            size = self.longest * self.height**2
+            moment = np.broadcast_to(-size / 6.0 * self.sides["right"].x.slope, self.instants.shape)
+            rotation, force = end_rotation(problem), constant(moment).of
+            return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, force)
         side, component, across, up = "right", 1, "Deflection of the end", "Transverse force"
         if rests:
             driven = (name for name in DRIVEN if not all(one.is_zero for one in self.sides[name]))
@@ -238,11 +240,6 @@ class Stack:
             whole = self.size[0] if rests else self.longest * self.height
             force = constant(np.broadcast_to(given.mean * whole, self.instants.shape)).of
         return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
-
-    def _moment(self) -> Array:
-        """Moment of the traction on the right end, counter-clockwise, (n_instants,), N m."""
-        size = self.longest * self.height**2
-        return np.broadcast_to(-size / 6.0 * self.sides["right"].x.slope, self.instants.shape)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""
@@ -262,11 +259,25 @@ class Stack:
             if name == "bottom" and self.support is not None:
                 continue
             for component, given in enumerate(side):
-                act = _given(given, name, component)
-                yield replace(act, places=self._open(name, act.places))
+                yield self._given(given, name, component)
         size = np.hypot(*self.weight)
         towards = self.weight / np.where(size > 0.0, size, 1.0)
         yield Act("body", "W", on_side("body", [0.5]), towards, size, "N")
+
+    def _given(self, given: Given, side: str, component: int) -> Act:
+        """What is given along a side: evenly in the middle, unevenly at both ends."""
+        towards, along = ((1.0, 0.0), (0.0, 1.0))[component], "xy"[component]
+        unit = "m" if given.prescribed else "Pa"
+        is_normal = OUTWARD[side][component] != 0.0
+        symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
+        shares, values = [0.7 if is_normal else 0.15], given.mean
+        if np.any(given.slope):
+            shares = [0.0, 1.0]
+            values = np.stack([given.mean - given.slope, given.mean + given.slope])
+        elif is_normal and not given.prescribed:
+            shares = [0.15, 0.5, 0.85]
+        places = self._open(side, on_side(side, shares))
+        return Act(f"{side} {along}", symbol, places, towards, values, unit)
 
     def _open(self, side: str, places: Array) -> Array:
         """Places on a side of all bodies, brought to those bodies that are there."""
@@ -290,21 +301,6 @@ class Stack:
                 yield Hold("rollers", name)
         if self.spring is not None:
             yield Hold("spring", "right")
-
-
-def _given(given: Given, side: str, component: int) -> Act:
-    """What is given along a side: evenly in the middle, unevenly at both ends."""
-    towards, along = ((1.0, 0.0), (0.0, 1.0))[component], "xy"[component]
-    unit = "m" if given.prescribed else "Pa"
-    is_normal = OUTWARD[side][component] != 0.0
-    symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
-    shares, values = [0.7 if is_normal else 0.15], given.mean
-    if np.any(given.slope):
-        shares = [0.0, 1.0]
-        values = np.stack([given.mean - given.slope, given.mean + given.slope])
-    elif is_normal and not given.prescribed:
-        shares = [0.15, 0.5, 0.85]
-    return Act(f"{side} {along}", symbol, on_side(side, shares), towards, values, unit)
 
 
 def _shear_force(fields: LoopFields) -> Array:
