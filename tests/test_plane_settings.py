@@ -67,7 +67,7 @@ def test_only_what_a_side_uses_applies():
         ({**PRESSED, "top_normal_slope": 3.1}, "tips over"),
         ({**PRESSED, "top_normal_slope": -3.1}, "tips over"),
         ({**DRAGGED, "body_force_x": 4e6, "friction": 0.1}, "tips over"),
-        ({"top": "pushed", "friction": 0.0, "top_tangential_traction": 1e6}, "no friction"),
+        ({"top": "pushed", "friction": 0.0, "top_tangential_traction": 1e6}, "friction cannot"),
         ({"top": "free", "body_force_x": 1.0, "body_force_y": -2.0}, "friction cannot hold"),
     ],
 )

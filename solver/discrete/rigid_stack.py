@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,20 +24,6 @@ SETTLED = 1e-9
 FREE = 1e-9
 """Stiffness, as a share of the largest, of a motion that is free; and share of the load that says
 that a free motion is pushed."""
-TIPS = "it tips over an end of its base"
-
-
-@dataclass(frozen=True)
-class Loss:
-    """Why no equilibrium exists, and from which instant on, s."""
-
-    reason: str
-    instant: float
-
-    @property
-    def remedy(self) -> str:
-        """What helps beside less load and more pressure."""
-        return "take a longer or lower body" if self.reason == TIPS else "raise friction"
 
 
 def wrench(stack: Stack) -> tuple[Array, Array, Array]:
@@ -83,8 +69,10 @@ def is_upright(stack: Stack) -> bool:
     return sides["top"].y.prescribed or any(sides[name].x.prescribed for name in ("left", "right"))
 
 
-def loss_of_equilibrium(stack: Stack) -> Loss | None:
-    """Why a body on a support cannot rest under its loads, or None if nothing forbids it.
+def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
+    """From when on, s, and why a body on a support cannot rest under its loads.
+
+    None if nothing forbids it.
 
     Nothing but the support can hold what no side holds: it presses and does not pull, friction
     carries no more than its law allows, and the pressure's resultant acts on the base. A spring
@@ -111,15 +99,13 @@ def loss_of_equilibrium(stack: Stack) -> Loss | None:
             # The top is dragged with any force that friction can answer, which may hold it upright.
             middle, reach = moment + stack.height * x, stack.height * most
             beyond = np.maximum(middle - reach, stack.length * y - middle - reach)
-        checks.append((beyond > slack * stack.length, TIPS))
+        checks.append((beyond > slack * stack.length, "it tips over an end of its base"))
     if not held_x:
         checks.append((pushed > most + slack, "friction cannot hold it"))
     losses = [
-        Loss(reason, float(stack.instants[np.argmax(lost)]))
-        for lost, reason in checks
-        if lost.any()
+        (float(stack.instants[np.argmax(lost)]), reason) for lost, reason in checks if lost.any()
     ]
-    return min(losses, key=lambda loss: loss.instant, default=None)
+    return min(losses, key=itemgetter(0), default=None)
 
 
 def _without_slip(stack: Stack, pressing: Array) -> Array:

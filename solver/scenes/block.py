@@ -248,8 +248,9 @@ class BlockSettings(SideSettings):
             raise self.refusal(
                 "top",
                 "sides and loads that leave the body in equilibrium",
-                f"nothing but contact holds it, and from {plain(loss.instant)} s on {loss.reason}: "
-                f"lower that load, press more, {loss.remedy}, or hold a side",
+                f"nothing but contact holds it, and from {plain(loss[0])} s on {loss[1]}: "
+                "lower that load, press more, raise friction where it slides, take a longer or "
+                "lower body where it tips, or hold a side",
             )
 
     def structure(self) -> Stack:

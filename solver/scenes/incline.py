@@ -91,11 +91,12 @@ class InclineSettings(PlaneSettings):
         loss = loss_of_equilibrium(self.structure())
         if loss is None:
             return
-        angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
+        instant, reason = loss
+        angle = float(np.interp(instant, self.times(), self.path("slope_load")))
         raise self.refusal(
             self.size_or_table("slope_load"),
             "slopes on which the block stays in equilibrium",
-            f"from {plain(loss.instant)} s on, at {angle:.4g}°, {loss.reason}: "
+            f"from {plain(instant)} s on, at {angle:.4g}°, {reason}: "
             "lower the slope, or take a longer base or a lower block",
         )
 
