@@ -47,9 +47,13 @@ class UpdateProgress:
 class Checkpoint:
     """From where an iteration can go on: exactly, but for an acceleration, which begins anew.
 
-    After so many iterations and seconds: W + F/k of the linear stage, (n_rows, n_instants), scaled,
-    and the bases that hold it, if any do; how far the update of k has come, None where the fields
-    are those of another run.
+    Attributes
+    ----------
+    outgoing, bases
+        W + F/k of the linear stage, shape (n_rows, n_instants), scaled, and the bases that hold it,
+        if any do.
+    course
+        How far the update of k has come; None where the fields are those of another run.
     """
 
     number: int
