@@ -22,10 +22,7 @@ from app.views.view import View
 log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
-AHEAD = 2
-"""Pictures that may be on their way: the server makes one while the browser paints another."""
-PAINTED = "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
-"""Says what is on the screen once it is: tasks follow what is painted in a frame of the browser."""
+PAINTED = "requestAnimationFrame(() => requestAnimationFrame(() => { pulse.painted = pulse.sent }))"
 SHORTEST = 0.02
 """Seconds of a pause between pictures that is kept."""
 LASTS = 1.0
@@ -63,7 +60,7 @@ class Pulse(DataModel):
 
 
 class Display:
-    """Paints the views in sight, as fast as the browser says that pictures are painted.
+    """Paints the views in sight: the next picture follows once the browser has painted the last.
 
     `views` are those in sight; `also` is called with each picture, inside its hold: for what is
     not a view, as the status line.
@@ -88,7 +85,7 @@ class Display:
 
     def catch_up(self) -> None:
         """Ask again whether the last picture is on the screen, once its answer counts as lost."""
-        if not self._on_their_way or not self._is_lost:
+        if self.pulse.painted == self.pulse.sent or self._is_waiting():
             return
         if self._is_due:
             self._paint()
@@ -96,18 +93,14 @@ class Display:
             with pn.io.hold():
                 self._count()
 
-    @property
-    def _on_their_way(self) -> int:
-        return self.pulse.sent - self.pulse.painted
-
-    @property
-    def _is_lost(self) -> bool:
-        return time.monotonic() > self._sent_at + LOST
+    def _is_waiting(self) -> bool:
+        is_sent = self.pulse.painted < self.pulse.sent
+        return is_sent and time.monotonic() < self._sent_at + LOST
 
     def _update(self) -> None:
-        """Paint what there is, now or once another picture is on the screen."""
+        """Paint what there is, now or once the last picture is on the screen."""
         self._is_due = True
-        if self._on_their_way < AHEAD or self._is_lost:
+        if not self._is_waiting():
             self._paint()
 
     def _paint(self) -> None:
@@ -124,9 +117,11 @@ class Display:
                     # The other views, and the page, outlive it.
                     log.exception("The view %s failed.", view.name)
             self._also()
+            is_seen = self.pulse.painted == self.pulse.sent
             self._count()
         self._took = time.thread_time() - began
-        if self._on_their_way < AHEAD:
+        if is_seen:
+            # The next frame is made while the browser paints this one.
             state.send(Ready())
 
     def _count(self) -> None:
