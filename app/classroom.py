@@ -20,7 +20,7 @@ from panel.io.state import set_curdoc
 
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
-from app.server import HOW_TO_OPEN, address_for_others
+from app.server import address_for_others, how_to_open
 from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
 from app.widgets import button, dialog
@@ -321,7 +321,7 @@ class ClassDialog:
             svg = segno.make(link, error="m").svg_inline(scale=6, light="#fff", omitsize=True)
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
-            below = HOW_TO_OPEN
+            below = how_to_open()
         return [pn.pane.HTML(large + below), button("End the class", self._leave)]
 
     def _begin(self) -> None:

@@ -7,7 +7,7 @@ import os
 import time
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
 from tornado.httpserver import HTTPServer
@@ -28,12 +28,6 @@ LONGEST = 16_000
 """Characters of an address; what is longer is refused (414)."""
 RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
-HOW_TO_OPEN = (
-    "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start the "
-    "server with <code>BOKEH_ALLOW_WS_ORIGIN=NAME:5006</code>, and open "
-    "<b>http://NAME:5006/app</b>: NAME is what others call this machine, 5006 is its port."
-)
-"""What whoever serves a page as localhost has to do that others reach it (HTML)."""
 QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
 
@@ -70,11 +64,25 @@ def most_pages() -> int:
 
 
 def address_for_others() -> str:
-    """Address of this page without its query; "" where it has a name that each machine is by."""
+    """Address of this page without its query; "" where that is localhost."""
+    here = _address()
+    host = here.hostname or "localhost"
+    return "" if host in ("localhost", "::1") or host.startswith("127.") else here.geturl()
+
+
+def how_to_open() -> str:
+    """What whoever serves a page as localhost has to do that others reach it (HTML)."""
+    name = f"NAME:{_address().port or 80}"
+    return (
+        "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start "
+        f"the server with <code>BOKEH_ALLOW_WS_ORIGIN={name}</code>, and open "
+        f"<b>http://{name}/app</b>: NAME is what others call this machine."
+    )
+
+
+def _address() -> SplitResult:
     location = pn.state.location
-    address = location.href.partition("?")[0] if location is not None else ""
-    host = urlsplit(address).hostname or "localhost"
-    return "" if host in ("localhost", "::1") or host.startswith("127.") else address
+    return urlsplit(location.href.partition("?")[0] if location is not None else "")
 
 
 def configure() -> None:

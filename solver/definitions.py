@@ -114,7 +114,7 @@ def is_logarithmic(definition: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class Group:
+class SettingGroup:
     """Heading under which settings stand, which makes their definitions.
 
     All have help; what else they take are entries of `About`, and a `title` where a widget does not
@@ -177,8 +177,8 @@ class Group:
         return {"doc": doc, "label": title, "constant": True, "metadata": metadata}
 
 
-CONTACT, LOAD, BODY = Group("Contact"), Group("Load"), Group("Body")
-METHOD, DECOMPOSITION = Group("Method"), Group("Decomposition")
+CONTACT, LOAD, BODY = SettingGroup("Contact"), SettingGroup("Load"), SettingGroup("Body")
+METHOD, DECOMPOSITION = SettingGroup("Method"), SettingGroup("Decomposition")
 
 
 def redefined(

@@ -11,14 +11,14 @@ import param
 from solver.definitions import (
     DECOMPOSITION,
     METHOD,
-    Group,
     SettingError,
+    SettingGroup,
     about,
     checked_value,
     unknown,
 )
 
-STOP = Group("Stop")
+STOP = SettingGroup("Stop")
 
 
 def _on_modes(settings: MethodSettings) -> bool:

@@ -192,7 +192,7 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
         return [pmui.Typography("There is no run yet.")]
     page = partial(offline_page, frame, views, state.selection, state.ghost)
     files = {
-        "The run as one page, to save plots from as SVG (.html)": (".html", page),
+        "The run as one page, plots as SVG (.html)": (".html", page),
         "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
     }
     tables = {"All iterations": partial(history_table, frame)}

@@ -14,7 +14,7 @@ from app.frame import Selection
 from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from solver.definitions import Group, checked_value, parse, title_of
+from solver.definitions import SettingGroup, checked_value, parse, title_of
 from solver.files import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -31,8 +31,8 @@ Place = dict[str, Any]
 the address. Beside that the `instant` as a share of the interval, and the `iteration` at which the
 run waits."""
 _CHECKED: dict[str, Any] = {
-    "instant": Group("").quantity(0.0, (0.0, 1.0), (0.0, 1.0), ""),
-    "iteration": Group("").count(0, (0, 100_000), (0, 100_000), ""),
+    "instant": SettingGroup("").quantity(0.0, (0.0, 1.0), (0.0, 1.0), ""),
+    "iteration": SettingGroup("").count(0, (0, 100_000), (0, 100_000), ""),
     **{name: PageState.param[name] for name in ("tab", "pace", "view")},
 }
 """Definitions of what may be refused beside settings, scene, lesson, case and plots."""

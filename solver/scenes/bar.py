@@ -10,7 +10,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import ANY, LOAD, POSITIVE, CurveParameter, Group
+from solver.definitions import ANY, LOAD, POSITIVE, CurveParameter, SettingGroup
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
@@ -36,7 +36,7 @@ DONE = {
 """Words for what is done along the bar, by the setting of its path."""
 SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
-BAR, ENDS = Group("Bar"), Group("Ends")
+BAR, ENDS = SettingGroup("Bar"), SettingGroup("Ends")
 KINDS = ("held", "spring", "pulled", "free")
 HOLDING = ("held", "spring")
 PATHS = {

@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, CONTACT, Group, Parameter, Rows, redefined
+from solver.definitions import BODY, CONTACT, Parameter, Rows, SettingGroup, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Given, Side, Spring, Stack, Support
@@ -23,7 +23,7 @@ from solver.scenes.exact import exact_on_spring, exact_parabola
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Icon
 
-BODY_FORCE = Group("Body force")
+BODY_FORCE = SettingGroup("Body force")
 LOADED_SIDES = ("left", "right", "top")
 COMPONENTS = ("normal", "tangential")
 PRESCRIBED: dict[str, tuple[bool, bool]] = {
@@ -37,6 +37,8 @@ PRESCRIBED: dict[str, tuple[bool, bool]] = {
 }
 """Whether the normal and the tangential displacement are prescribed; a traction is, otherwise."""
 AT_REST = ("free", "roller", "clamped")
+MEANS = (("traction", "Pa", 1e15, 2e8), ("displacement", "m", 1e12, 1e-4))
+"""What is given along a side: its unit, its largest size, and where its slider ends."""
 
 
 def _is_given(side: str, component: str, prescribed: bool | None = None) -> Callable[..., bool]:
@@ -55,28 +57,22 @@ def _settings_of(side: str, component: str) -> dict[str, Parameter]:
     along = "x" if side == "top" else "y"
     towards = "outward" if component == "normal" else f"along {along}"
     axis = along if component == "tangential" else "yx"["xy".index(along)]
-    name, group = f"{side}_{component}", Group(side.capitalize())
+    name, group = f"{side}_{component}", SettingGroup(side.capitalize())
     title, given = f"{group.name} {component}", _is_given(side, component)
-    size = {"path": f"{name}_load", "places": (f"{side} {axis}",)}
-    return {
-        f"{name}_traction": group.quantity(
+    means = {
+        f"{name}_{kind}": group.quantity(
             0.0,
-            (-1e15, 1e15),
-            (-2e8, 2e8),
-            f"Mean {component} traction on the {side} side, positive {towards}.",
-            unit="Pa",
-            applies=_is_given(side, component, False),
-            **size,
-        ),
-        f"{name}_displacement": group.quantity(
-            0.0,
-            (-1e12, 1e12),
-            (-1e-4, 1e-4),
-            f"Mean {component} displacement of the {side} side, positive {towards}.",
-            unit="m",
-            applies=_is_given(side, component, True),
-            **size,
-        ),
+            (-most, most),
+            (-end, end),
+            f"Mean {component} {kind} of the {side} side, positive {towards}.",
+            unit=unit,
+            applies=_is_given(side, component, kind == "displacement"),
+            path=f"{name}_load",
+            places=(f"{side} {axis}",),
+        )
+        for kind, unit, most, end in MEANS
+    }
+    return means | {
         f"{name}_slope": group.quantity(
             0.0,
             (-1e6, 1e6),
@@ -116,7 +112,7 @@ class SideSettings(PlaneSettings):
 
 
 for _side in LOADED_SIDES:
-    _kind = Group(_side.capitalize()).choice(
+    _kind = SettingGroup(_side.capitalize()).choice(
         "free",
         PRESCRIBED,
         "What is given. free: nothing. roller: no normal displacement. clamped: no displacement. "

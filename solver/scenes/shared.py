@@ -11,12 +11,12 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CONTACT, LOAD, POSITIVE, CurveParameter, Group, Rows
+from solver.definitions import CONTACT, LOAD, POSITIVE, CurveParameter, Rows, SettingGroup
 from solver.loads import PRESETS, PRESSURES, Preset, interpolate
 from solver.profiles import means, shares_of
 from solver.settings import Settings
 
-STRAND = Group("Strand")
+STRAND = SettingGroup("Strand")
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
     "rising": ((0.0, 0.2), (1.0, 1.8)),
@@ -57,7 +57,7 @@ def profile(
     body: str,
     presets: Mapping[str, Rows] = PROFILES,
     doc: str = "",
-    group: Group = CONTACT,
+    group: SettingGroup = CONTACT,
     **others: Any,
 ) -> CurveParameter:
     """Define a factor on something along a body; its default is the first preset.
@@ -119,7 +119,7 @@ def sized_path(
     path_doc: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
     bounds: Sequence[tuple[float, float]] = (),
-    group: Group = LOAD,
+    group: SettingGroup = LOAD,
     **record: Any,
 ) -> tuple[param.Number[float], CurveParameter]:
     """Define the largest value that presets of a path over time reach, and the path.
@@ -195,14 +195,14 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
 
 
 def size(
-    default: float, slider: tuple[float, float], title: str, doc: str, group: Group
+    default: float, slider: tuple[float, float], title: str, doc: str, group: SettingGroup
 ) -> param.Number[float]:
     """Define a length of a body."""
     return group.quantity(default, (1e-6, 1e4), slider, doc, title=title, unit="m")
 
 
 def young(
-    group: Group, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
+    group: SettingGroup, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
 ) -> param.Number[float]:
     """Define Young's modulus, that of steel by default."""
     return group.quantity(
@@ -215,7 +215,7 @@ def young(
     )
 
 
-def section(doc: str, group: Group) -> param.Number[float]:
+def section(doc: str, group: SettingGroup) -> param.Number[float]:
     """Define the area of the cross section of a rod, that of Table 1 by default."""
     return group.quantity(
         3.14e-6,

@@ -123,7 +123,9 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
         panels.append(Panel(f"t = {instant:g} s", *axes, curves))
     early, root = moments[0], np.sqrt(lengths)
     return paper_figure(
-        *(4, panels, _balance(force[..., early])),
+        4,
+        panels,
+        _balance(force[..., early]),
         _distance("the displacement", moved[..., early] * root),
         _distance("the friction force", force[..., early] / root),
         early=EARLY,
