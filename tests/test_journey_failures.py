@@ -116,6 +116,11 @@ def test_what_a_foolish_address_has_is_said_on_its_page(visit: Visit) -> None:
     expect(page.locator(".status")).to_contain_text("cannot be −1")
     expect(page.locator(".status")).to_contain_text("moon: there is no such setting")
     is_solved(page)
+    # Bokeh's figures would not follow what moves them.
+    place = page.locator(".scene").bounding_box()
+    change_peak(page, "1000")
+    expect(page.locator(".status")).not_to_contain_text("From the address: ")
+    assert page.locator(".scene").bounding_box() == place
 
 
 @pytest.mark.parametrize(
