@@ -20,7 +20,7 @@ from solver.refusal import RefusedError
 
 NICENESS, NICEST = 5, 19
 """Of a worker that is alone, so that pages stay alive (at 10 its first picture waits 0.1 s), and
-beside ten others or more: thirty at 5 would leave the server a fifth of a processor."""
+beside fourteen others: thirty at 5 would leave the server a fifth of a processor."""
 UNSEEN = 30.0
 """Seconds without a picture on the screen after which a run waits: nobody sees it."""
 HEARTBEAT = 2.0
