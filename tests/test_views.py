@@ -8,6 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from bokeh.core.serialization import Serializer
+from bokeh.document import Document
 
 from app.frame import Frame, Selection
 from app.live import Card
@@ -128,9 +130,8 @@ def test_the_shaded_error_is_there_on_the_way_and_vanishes_at_the_answer(case: s
     sizes = []
     for frame in (last, answer):
         data = view_of(ContactForce, frame).sources["friction"].data
-        sizes.append(
-            np.abs(data["latin"] - data["reference"]).max() / np.abs(data["reference"]).max()
-        )
+        latin, reference = np.array(data["latin"]), np.array(data["reference"])
+        sizes.append(np.abs(latin - reference).max() / np.abs(reference).max())
     assert sizes[0] > 0.02
     assert sizes[1] < 1e-3
 
@@ -177,6 +178,25 @@ def test_the_map_is_the_status_and_is_not_sent_again_when_the_instant_changes() 
     assert view.sources["now"].data["y"] == pytest.approx(
         frame.run.instants[[frame.run.column(0.3)]]
     )
+
+
+def test_of_curves_only_what_is_new_is_sent_and_not_each_by_itself() -> None:
+    frame = frames_of("bar")[0]
+    count = frame.run.settings.n_substructures
+
+    def of(second: float) -> Frame:
+        return replace(frame, extras={"spectra": count * [np.array([1.0, second])]})
+
+    view = view_of(Spectra, of(0.1))
+    document, sent = Document(), []
+    document.add_root(view.figure)
+    document.on_change(lambda event: sent.append(event) if hasattr(event, "cols") else None)
+    shown(view, of(0.2))
+    (event,) = sent
+    assert event.cols == ["ys"]
+    serializer = Serializer()
+    serializer.encode(event.data)
+    assert not serializer.buffers
 
 
 def test_the_ghosts_boundary_lies_where_its_status_changes() -> None:

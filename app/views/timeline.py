@@ -54,9 +54,9 @@ class Timeline(View):
         if run.number != self._number:
             self._number = run.number
             self._show_paths(run)
-        column, area = [run.column(selection.phase)], self.sources["area"].data
-        self.fill("instant", x=area["x"][column])
-        self.fill("now", x=area["x"][column], y=area["y2"][column])
+        column, area = run.column(selection.phase), self.sources["area"].data
+        self.fill("instant", x=[area["x"][column]])
+        self.fill("now", x=[area["x"][column]], y=[area["y2"][column]])
 
     def _show_paths(self, run: Run) -> None:
         unit = unit_for(float(run.instants[-1]), "s")

@@ -39,6 +39,8 @@ from app.views.colors import CUT
 from solver.settings import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
+SHORT = 200
+"""Numbers of a curve up to which it is sent as a list, which then takes less time than an array."""
 TEXT, WORDS = "12px", "14px"
 """Sizes of what is written in plots, and of what belongs to arrows."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
@@ -215,8 +217,12 @@ class View:
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
         """Fill a source; the legend has it, by a title, if there is anything in it."""
         target = self.sources[name]
+        columns = {column: _sent(values) for column, values in columns.items()}
+        new = [column for column in columns if not _equal(target.data[column], columns[column])]
         # What is the same is not sent again.
-        if not all(_equal(target.data[column], new) for column, new in columns.items()):
+        if len(new) == 1 < len(columns):
+            target.data[new[0]] = columns[new[0]]
+        elif new:
             target.data = columns
         self.show(name, any(map(len, columns.values())) and (title or True))
 
@@ -283,12 +289,20 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
     return properties
 
 
+def _sent(values: Any) -> Any:
+    """Values with short curves as lists: an array is sent by itself, in two messages."""
+    if isinstance(values, list):
+        return [_sent(each) for each in values]
+    is_short = isinstance(values, np.ndarray) and values.ndim == 1 and len(values) <= SHORT
+    return values.tolist() if is_short else values
+
+
 def _equal(old: Any, new: Any) -> bool:
     if isinstance(new, np.ndarray):
         return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
     if isinstance(new, list):
         return len(old) == len(new) and all(map(_equal, old, new))
-    return bool(old == new)
+    return bool(old == new or (old != old and new != new))
 
 
 def joined(curves: Iterable[ArrayLike]) -> Floats:
