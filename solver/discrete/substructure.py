@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -29,6 +30,15 @@ class Elasticity:
     stiffness: sparse.csr_array | Array
     trace: Indices
     direction: Array
+
+    @cached_property
+    def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:
+        """Degrees of freedom at the boundary, place of every boundary row in them, their stiffness.
+
+        Shapes (n,), (n_boundary,) and (n, n_dofs); the degrees of freedom ascend.
+        """
+        own, place = np.unique(self.trace, return_inverse=True)
+        return own, place, self.stiffness[own]
 
 
 @dataclass(frozen=True)

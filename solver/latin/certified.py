@@ -89,8 +89,8 @@ def balance_of_rows(problem: Problem, displacement: Array) -> tuple[sparse.csr_a
     """What sums the rows of every boundary point, (n, n_rows), and the force that it needs."""
     rows, places, needed, size = [], [], [], 0
     for part in problem.substructures:
-        points, place = np.unique(part.elasticity.trace, return_inverse=True)
-        force = np.asarray(part.elasticity.stiffness[points] @ displacement[part.dofs])
+        points, place, stiffness = part.elasticity.boundary
+        force = np.asarray(stiffness @ displacement[part.dofs])
         if part.body_force is not None:
             force = force - part.body_force[points]
         needed.append(force)

@@ -101,22 +101,21 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     """
     counts = np.diff(basis.indptr)[rows]
     carrying = np.flatnonzero(counts.any(axis=1))
+    counts, n_members = counts[carrying], rows.shape[1]
     stacked = sparse.csr_array(basis[rows[carrying].ravel(order="F")])
-    whole = sparse.csr_array(stacked.T)
-    if counts.max() == 1:
-        return carrying, np.eye(len(carrying)), whole
-    chosen: list[Indices] = []
-    for first in range(0, stacked.shape[0], len(carrying)):
-        seen = sparse.csr_array(stacked[first : first + len(carrying)])
-        columns = seen.indices[np.sort(np.unique(seen.indices, return_index=True)[1])]
-        shown = seen[:, columns].toarray()
-        if first == 0:
-            local = shown
-        elif not np.array_equal(shown, local):
-            return carrying, np.eye(len(carrying)), whole
-        chosen.append(columns)
-    sums = sparse.eye_array(basis.shape[1], format="csc")[:, np.concatenate(chosen)]
-    return carrying, local, sparse.csr_array(sums)
+    alone = carrying, np.eye(len(carrying)), sparse.csr_array(stacked.T)
+    if counts.max() == 1 or np.any(counts != counts[:, :1]):
+        return alone
+    indices, values = (of.reshape(n_members, -1) for of in (stacked.indices, stacked.data))
+    _, first, place = np.unique(indices[0], return_index=True, return_inverse=True)
+    # In the order in which rows meet them: that is what members share, if anything.
+    columns, place = indices[:, np.sort(first)], np.argsort(np.argsort(first))[place]
+    if np.any(columns[:, place] != indices) or np.any(values != values[0]):
+        return alone
+    local = np.zeros((len(carrying), len(first)))
+    local[np.repeat(np.arange(len(carrying)), counts[:, 0]), place] = values[0]
+    entries = np.ones(columns.size), (columns.ravel(), np.arange(columns.size))
+    return carrying, local, sparse.csr_array(entries, shape=(basis.shape[1], columns.size))
 
 
 def _solver(
