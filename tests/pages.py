@@ -143,5 +143,7 @@ def drag(page: Page, place: Locator, start: float, end: float, height: float = 0
 
 def close_dialog(page: Page) -> None:
     """Close what has opened over the page."""
+    # Where its content is new, the focus is on the page until MUI looks after it, some 50 ms later.
+    expect(page.locator(".MuiDialog-root:focus-within")).not_to_have_count(0)
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(0)
