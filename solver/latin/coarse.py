@@ -103,15 +103,15 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     carrying = np.flatnonzero(counts.any(axis=1))
     counts, n_members = counts[carrying], rows.shape[1]
     stacked = sparse.csr_array(basis[rows[carrying].ravel(order="F")])
-    alone = carrying, np.eye(len(carrying)), sparse.csr_array(stacked.T)
-    if counts.max() == 1 or np.any(counts != counts[:, :1]):
-        return alone
-    indices, values = (of.reshape(n_members, -1) for of in (stacked.indices, stacked.data))
-    _, first, place = np.unique(indices[0], return_index=True, return_inverse=True)
-    # In the order in which rows meet them: that is what members share, if anything.
-    columns, place = indices[:, np.sort(first)], np.argsort(np.argsort(first))[place]
-    if np.any(columns[:, place] != indices) or np.any(values != values[0]):
-        return alone
+    is_alike = counts.max() > 1 and bool(np.all(counts == counts[:, :1]))
+    if is_alike:
+        indices, values = (of.reshape(n_members, -1) for of in (stacked.indices, stacked.data))
+        _, first, place = np.unique(indices[0], return_index=True, return_inverse=True)
+        # In the order in which rows meet them: that is what members share, if anything.
+        columns, place = indices[:, np.sort(first)], np.argsort(np.argsort(first))[place]
+        is_alike = np.array_equal(columns[:, place], indices) and bool(np.all(values == values[0]))
+    if not is_alike:
+        return carrying, np.eye(len(carrying)), sparse.csr_array(stacked.T)
     local = np.zeros((len(carrying), len(first)))
     local[np.repeat(np.arange(len(carrying)), counts[:, 0]), place] = values[0]
     entries = np.ones(columns.size), (columns.ravel(), np.arange(columns.size))
