@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved, status
+from pages import ANSWER, Visit, button, close_dialog, field, figure, figures, is_solved, status
 from playwright.sync_api import Page, expect
 
 QUESTION = "Is a small indicator a small error?"
@@ -42,6 +42,11 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(visit: Vis
     expect(status(page)).to_contain_text("75 % wrong")
     expect(button(page, "Handout")).to_be_visible()
     expect(page.get_by_text("{value:")).to_have_count(0)
+    # Bokeh's figures would not follow what moves them: longer numbers take no line more.
+    before, place = figures(page).inner_text(), page.locator(".figures").bounding_box()
+    figure(page, 1).click(position={"x": 40, "y": 20})
+    expect(figures(page)).not_to_have_text(before)
+    assert page.locator(".figures").bounding_box() == place
     button(page, "Explore freely").click()
     expect(page.get_by_role("heading", name=QUESTION)).to_have_count(0)
     expect(field(page, "Friction coefficient")).to_be_visible()
