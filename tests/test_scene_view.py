@@ -14,6 +14,7 @@ from app.views.picture import bands
 from app.views.rope import WireSection
 from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
 from app.views.timeline import Timeline, paths_of
+from app.views.view import TEXT
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.scenes import CATALOGUE
@@ -71,16 +72,31 @@ def test_everything_lies_inside_the_figure_at_every_instant(frame: Frame) -> Non
                 assert np.all((known > -3.0) & (known < end + 3.0)), name
 
 
+def test_words_beside_a_body_have_room_on_a_projector() -> None:
+    frame = frame_of(small("bar"))
+    view = shown(frame, 0.25)
+    view.magnify("22px")
+    view.update(frame, Selection(0.25), None)
+    words = view.sources["words"].data
+    (x,) = (x for x, text in zip(words["x"], words["text"], strict=True) if text[0] == "F")
+    end = view.picture.page(view.picture.nodes)[:, 0].max()  # type: ignore[union-attr]
+    assert x > end
+
+
 def test_bodies_in_the_plane_have_equal_axes(frame: Frame) -> None:
     layout = shown(frame).picture.layout  # type: ignore[union-attr]
     if frame.run.geometry.description.height is not None:
         assert layout.scale[0] == layout.scale[1]
 
 
-def test_words_are_whole(frame: Frame) -> None:
-    words = shown(frame).sources["words"].data
+@pytest.mark.parametrize("size", [TEXT, "22px"], ids=["page", "projector"])
+def test_words_are_whole(frame: Frame, size: str) -> None:
+    view = shown(frame)
+    view.magnify(size)
+    view.update(frame, Selection(0.3), None)
+    words = view.sources["words"].data
     for x, text, align in zip(words["x"], words["text"], words["text_align"], strict=True):
-        width = 7.0 * len(text)
+        width = 0.5 * float(view.words.removesuffix("px")) * len(text)
         left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * width
         assert left >= -1.0
         assert left + width <= WIDTH

@@ -19,8 +19,8 @@ BAND = 7.0
 """Thickness of what rubs, px."""
 FOOT, COLUMN = 18.0, 150.0
 """Height of the line of keys below the bodies, or width of their column, px."""
-LETTER = 7.8
-"""Width of a letter of a word, about, px."""
+LETTER = 0.56
+"""Width of a letter of a word, about, as a share of the size of its type."""
 LONG = 5.0
 """Length over height of bodies that are long, at least."""
 WALL = 54.0
@@ -38,17 +38,24 @@ class Layout:
     metre, along x and y, which differ for rods alone; `origin` is the middle of their foot, px. An
     arrow is `arrow` px long at its largest value; the largest displacement takes `motion` px at
     most, along x and y. Keys stand below the bodies in `key_rows`, or at their left if there are
-    none.
+    none. A `letter` of what belongs to arrows is so many pixels wide.
     """
 
     def __init__(
-        self, geometry: Geometry, is_bare: bool, width: float, height: float, key_rows: int
+        self,
+        geometry: Geometry,
+        is_bare: bool,
+        type_size: float,
+        width: float,
+        height: float,
+        key_rows: int,
     ) -> None:
         self.is_bare, self.width, self.height, self.key_rows = is_bare, width, height, key_rows
+        self.letter = LETTER * type_size
         described, top = geometry.description, float(geometry.nodes[:, 1].max())
         description = replace(described, acts=()) if is_bare else described
         arrow = min(max(0.19 * height, 18.0), 38.0)
-        left, right, below, above = _margins(description, arrow)
+        left, right, below, above = _margins(description, arrow, self.letter)
         left, below = left + (0.0 if key_rows else COLUMN), below + FOOT * key_rows
         room = np.maximum([width - left - right, height - below - above], 24.0)
         low, high = _extent(description.length, top, description.tilt)
@@ -102,10 +109,12 @@ def is_opposite(act: Act, other: Act) -> bool:
 
 
 @lru_cache(maxsize=16)
-def layout_of(geometry: Geometry, is_bare: bool, width: float, height: float) -> Layout:
+def layout_of(
+    geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
+) -> Layout:
     """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
-    below = Layout(geometry, is_bare, width, height, 2 if width < NARROW else 1)
-    beside = Layout(geometry, is_bare, width, height, 0)
+    below = Layout(geometry, is_bare, type_size, width, height, 2 if width < NARROW else 1)
+    beside = Layout(geometry, is_bare, type_size, width, height, 0)
     return beside if beside.scale[0] > below.scale[0] else below
 
 
@@ -118,7 +127,9 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
     return all_corners.min(axis=0), all_corners.max(axis=0)
 
 
-def _margins(description: Description, arrow: float) -> tuple[float, float, float, float]:
+def _margins(
+    description: Description, arrow: float, letter: float
+) -> tuple[float, float, float, float]:
     """Pixels on the left, on the right, below and above, for what holds and what acts."""
     room = {"left": 10.0, "right": 10.0, "bottom": 6.0, "top": 8.0}
     for hold in description.holds:
@@ -129,7 +140,7 @@ def _margins(description: Description, arrow: float) -> tuple[float, float, floa
     for act in description.acts:
         side = act.where.partition(" ")[0]
         if side in ("left", "right"):
-            room[side] = max(room[side], 20.0 + LETTER * (len(act.symbol) + len(act.unit) + 9))
+            room[side] = max(room[side], 20.0 + letter * (len(act.symbol) + len(act.unit) + 9))
         elif side in ("top", "bottom"):
             held = beside(description, side)
             room[side] = max(room[side], held + 11.0 if is_aside(act) else arrow + 10.0)

@@ -12,7 +12,7 @@ from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
 from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text_of
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
-from app.views.layout import BAND, IMAGE, LETTER, Layout, is_opposite, turned
+from app.views.layout import BAND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
 
 MECHANISM = 0.12
@@ -203,7 +203,7 @@ class Picture:
             aligns.append("left")
             colors.append(FORCE)
         x, y = np.reshape(places, (-1, 2)).T
-        widths = np.array([LETTER * len(text) + 4.0 for text in texts])
+        widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
         left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[align] for align in aligns]
         return {
             "x": np.clip(x, left, np.maximum(layout.width - widths + left, left)),

@@ -79,7 +79,8 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        layout = layout_of(run.geometry, self.is_bare, *self._size.values())
+        type_size = float(self.words.removesuffix("px"))
+        layout = layout_of(run.geometry, self.is_bare, type_size, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:

@@ -105,13 +105,18 @@ class View:
         for model in (made, *made.legend):
             model.styles = {**model.styles, "font-size": size}
         for words in made.select(models.Text):
-            words.text_font_size = WORDS if size == TEXT else size
+            words.text_font_size = self.words
         for model in (*made.axis, *made.select(Title), *made.select(ColorBar)):
             names = [name for name in model.properties() if name.endswith("text_font_size")]
             sizes = dict.fromkeys(names, size)
             model.update(tags=[sizes] if size != TEXT else [], **sizes)
             if not model.js_property_callbacks:
                 model.js_on_change(names[0], keep)
+
+    @property
+    def words(self) -> str:
+        """Size of the type of what belongs to arrows, as CSS has it."""
+        return WORDS if self._type == TEXT else self._type
 
     def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
