@@ -89,17 +89,19 @@ def test_bodies_in_the_plane_have_equal_axes(frame: Frame) -> None:
         assert layout.scale[0] == layout.scale[1]
 
 
-@pytest.mark.parametrize("size", [TEXT, "22px"], ids=["page", "projector"])
-def test_words_are_whole(frame: Frame, size: str) -> None:
+@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
+@pytest.mark.parametrize("size", [TEXT, "36px"], ids=["page", "projector"])
+def test_words_are_whole(frame: Frame, size: str, width: float) -> None:
     view = shown(frame)
     view.magnify(size)
+    view.figure.trigger("inner_width", WIDTH, width)
     view.update(frame, Selection(0.3), None)
     words = view.sources["words"].data
     for x, text, align in zip(words["x"], words["text"], words["text_align"], strict=True):
-        width = 0.5 * float(view.words.removesuffix("px")) * len(text)
-        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * width
+        length = 0.5 * float(view.words.removesuffix("px")) * len(text)
+        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
         assert left >= -1.0
-        assert left + width <= WIDTH
+        assert left + length <= width
 
 
 def test_an_instant_sends_only_what_moves(frame: Frame) -> None:

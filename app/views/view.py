@@ -303,6 +303,7 @@ def _sent(values: Any) -> Any:
 
 
 def _equal(old: Any, new: Any) -> bool:
+    """Whether values are the same, as is NaN and NaN."""
     if isinstance(new, np.ndarray):
         return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
     if isinstance(new, list):
