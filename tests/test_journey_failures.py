@@ -24,10 +24,6 @@ FOOLISH = (
 )
 QUIET = 1.0
 """Seconds without a message after which none is on its way."""
-BLOWS = {
-    signal.SIGKILL: "process ended; the run was started anew",
-    signal.SIGSTOP: "no sign of life for some seconds; the run was started anew",
-}
 SPEAK = """async (address) => {
   const [, token] = (await (await fetch(address)).text()).match(/"token":\\s*"([^"]+)"/)
   const socket = new WebSocket(address.replace("http", "ws") + "/ws", ["bokeh", token])
@@ -88,18 +84,28 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
     chrome: Chrome, server: Server
 ) -> None:
     before = server.processes()
-    with visits(server, chrome) as visit:
+
+    def strike(visit: Visit, blow: signal.Signals) -> tuple[Page, int]:
+        """A page, and its worker, which has taken a blow."""
+        known = server.processes()
         page = visit(f"?{ENDLESS}")
-        for blow, message in BLOWS.items():
-            expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
-            worker = newest_worker(server, before)
-            os.kill(worker, blow)
-            expect(page.locator(".status")).to_contain_text(message)
-            painted(page, 3)
-            wait_for(lambda pid=worker: not is_alive(pid))
-        worker = newest_worker(server, before)
-    wait_for(lambda: not is_alive(worker))
-    wait_for(lambda: set(server.processes()) <= set(before))
+        expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+        worker = newest_worker(server, known)
+        os.kill(worker, blow)
+        return page, worker
+
+    def goes_on(page: Page, worker: int, words: str) -> None:
+        expect(page.locator(".status")).to_contain_text(f"{words}; the run was started anew")
+        painted(page, 3)
+        wait_for(lambda: not is_alive(worker))
+
+    with visits(server, chrome) as visit:
+        stopped = strike(visit, signal.SIGSTOP)
+        # Both waits at once: for the sign of life, and for the end of a page that is closed.
+        with visits(server, chrome) as visit_too:
+            goes_on(*strike(visit_too, signal.SIGKILL), "process ended")
+        goes_on(*stopped, "no sign of life for some seconds")
+        wait_for(lambda: len(set(server.processes()) - set(before)) == 1)
 
 
 @pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))
