@@ -237,9 +237,12 @@ def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
 
 def checked_value(definition: Parameter, name: str, value: object) -> Any:
     """Value of a setting in its own type; a wrong type, or one out of range, is refused."""
-    refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(definition, CurveParameter):
         return _checked_curve(definition, name, value)
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError(name, value, allowed(definition), remedy)
+
     if isinstance(definition, param.Boolean):
         if not isinstance(value, bool):
             raise refuse("write true or false")
@@ -261,11 +264,11 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
 
 
 def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:
+    if isinstance(value, str) and value in definition.presets:
+        return value
     refuse = partial(SettingError, name, value, allowed(definition))
     if isinstance(value, str):
-        if value not in definition.presets:
-            raise refuse("choose a preset, or give a table of points")
-        return value
+        raise refuse("choose a preset, or give a table of points")
     if not isinstance(value, list | tuple) or not value:
         raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
     rows, size = [], len(definition.columns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from functools import cache
 from itertools import pairwise
 
@@ -47,10 +47,12 @@ class Blocks:
 
 @cache
 def _libraries() -> ThreadpoolController:
-    return ThreadpoolController()
+    return ThreadpoolController().select(user_api="blas")
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
     """Have BLAS work on one thread meanwhile: products of few rows take longer on several."""
-    limit: AbstractContextManager[object] = _libraries().limit(limits=1, user_api="blas")
+    if all(library.num_threads == 1 for library in _libraries().lib_controllers):
+        return nullcontext()
+    limit: AbstractContextManager[object] = _libraries().limit(limits=1)
     return limit

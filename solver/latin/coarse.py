@@ -52,7 +52,7 @@ class CoarseProblem:
             forces = np.asfortranarray(forces)
             self._members.append(_Member(group, as_slice(rows), local, forces, size))
         self._spread = sparse.csr_array(sparse.hstack(seen))
-        whole = sparse.block_diag(list(map(sparse.coo_array, systems)), format="csr")
+        whole = sparse.csr_array(sparse.block_diag(systems))
         system = self._spread @ whole @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
 
