@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import panel as pn
-from bokeh.core.properties import Int, String
+from bokeh.core.properties import Bool, Int, String
 from bokeh.events import DocumentReady
 from bokeh.model import DataModel
 from bokeh.models import CustomJS
@@ -35,7 +35,7 @@ if (browser.copied) {
 }
 """
 LISTEN = """
-const measure = () => { browser.height = innerHeight }
+const measure = () => { browser.setv({height: innerHeight, is_narrow: innerWidth < 900}) }
 measure()
 addEventListener("resize", measure)
 // One may come back to the same address again, and to that which says nothing.
@@ -146,11 +146,12 @@ class Display:
 class Browser(DataModel):
     """The window and what is done there.
 
-    The height in pixels; the last key and a count of them; the address that one has gone back, or
-    on, to; and the link that is to be copied.
+    The height in pixels, and whether it is narrow; the last key and a count of them; the address
+    that one has gone back, or on, to; and the link that is to be copied.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
+    is_narrow: bool = Bool(default=False)  # type: ignore[assignment]
     pressed: str = String(default="")  # type: ignore[assignment]
     count: int = Int(default=0)  # type: ignore[assignment]
     search: str = String(default="")  # type: ignore[assignment]
@@ -161,9 +162,10 @@ class Browser(DataModel):
     ) -> None:
         """Have keys do something, by their names in the browser, wherever nothing else takes them.
 
-        The state has the height of the window.
+        The state has the size of the window.
         """
-        self.on_change("height", lambda name, old, new: state.param.update(height=new))
+        for size in ("height", "is_narrow"):
+            self.on_change(size, lambda name, old, new: state.param.update(**{name: new}))
         self.on_change("count", lambda name, old, new: actions[self.pressed]())
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))

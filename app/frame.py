@@ -118,6 +118,12 @@ class Run:
     is_idle: bool = False
     """Whether nothing acts, so that nothing moves."""
 
+    def interface(self, name: str) -> str:
+        """The interface of a name; without one the first, of wires the last: outside slips most."""
+        if name in self.interfaces:
+            return name
+        return list(self.interfaces)[-1 if self.settings.kind == "helices" else 0]
+
     def known(self, quantity: str) -> list[ExactCurve]:
         """Closed forms of one quantity."""
         return [curve for curve in self.exact if curve.of == quantity]
@@ -199,4 +205,4 @@ class Selection:
 
     def interface_of(self, run: Run) -> str:
         """The selected interface of a run, or its default one."""
-        return self.interface if self.interface in run.interfaces else next(iter(run.interfaces))
+        return run.interface(self.interface)

@@ -13,6 +13,7 @@ from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.transport import Transport
 from app.views.catalogue import CARDS
+from app.views.layout import is_high
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
@@ -51,7 +52,8 @@ class Live:
         )
         self._is_open = False
         look = {"styles": {"flex-wrap": "wrap", "justify-content": "space-between"}}
-        below = wrapped(self._sentence, self._figures, sizing_mode="stretch_width", **look)
+        look |= {"css_classes": ["words"], "sizing_mode": "stretch_width"}
+        below = wrapped(self._sentence, self._figures, **look)
         self.view = column("live", self._above, below)
         state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
@@ -98,7 +100,14 @@ class Live:
             size, self._timeline.height = f"{LARGE * state.height:.0f}px", int(HIGH * state.height)
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
-        self.view.css_classes = ["live", state.view]
+        self._shape()
+
+    def _shape(self) -> None:
+        """Have the plots stand beside a picture that is high, where nothing else does."""
+        state, frame = self.state, self.state.frame
+        is_alone = not (state.lesson or state.case)
+        shape = ["high"] * (is_alone and frame is not None and is_high(frame.run.geometry))
+        self.view.css_classes = ["live", state.view, *shape]
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -122,6 +131,7 @@ class Live:
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = frame.run.sentence
+            self._shape()
 
 
 class Card:

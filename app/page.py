@@ -73,6 +73,7 @@ class Page:
             sidebar_width=320,
             header=[self._header()],
             main=[self._main],
+            sidebar_open=not state.is_narrow,
             busy_indicator=None,
             # As `theme` in the address has it.
             dark_theme=pn.config.theme == "dark",
@@ -85,6 +86,7 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
+        state.param.watch(lambda event: self._show_controls(), "is_narrow")
         state.param.watch(lambda event: state.view == "present" and self._dress(), "height")
         self._turn(state.tab)
         self._guide.show()
@@ -178,12 +180,14 @@ class Page:
         A lesson has those that it speaks of; the view for a projector shows a run alone.
         """
         self._place()
-        is_bare = self.state.view != "page"
         self._live.arrange(self._guide.kinds)
-        self.template.param.update(
-            sx=BARE if is_bare else COMPACT,
-            sidebar_open=not (is_bare or self._guide.view.visible),
-        )
+        self.template.sx = COMPACT if self.state.view == "page" else BARE
+        self._show_controls()
+
+    def _show_controls(self) -> None:
+        """Have the controls at the side, where they do not lie over all else."""
+        is_alone = self.state.view == "page" and not self._guide.view.visible
+        self.template.sidebar_open = is_alone and not self.state.is_narrow
 
 
 def open_page() -> pmui.Page:
@@ -193,13 +197,12 @@ def open_page() -> pmui.Page:
         return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
     location = pn.state.location
     place, refusal = read(location.search if location is not None else "")
-    state = PageState(place["settings"], refusal=refusal)
+    # As long as the browser has not told how wide its window is.
+    is_phone = "Mobi" in pn.state.headers.get("User-Agent", "")
+    state = PageState(place["settings"], refusal=refusal, is_narrow=is_phone)
     iteration = place.pop("iteration", 0)
     show(state, place)
     page = Page(state, iteration)
-    if "Mobi" in pn.state.headers.get("User-Agent", ""):
-        # There the controls would lie over all else.
-        page.template.sidebar_open = False
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)
     return page.template

@@ -117,6 +117,7 @@ class PageState(param.Parameterized):
     question = param.String(doc="What the tab What if asks, as `Question` writes it.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
     height = param.Integer(default=720, doc="Of the browser's window, pixels.")
+    is_narrow = param.Boolean(doc="Whether the window has no room for controls beside the run.")
     plots = param.List(default=[], doc="Names of the views on top of their cards.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(

@@ -19,10 +19,13 @@ from pages import (
     slider,
     status,
 )  # fmt: skip
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 from processes import wait_for
 
 from solver.scenes import CATALOGUE
+
+HIGH = {"block", "fault", "incline"}
+"""Scenes whose bodies are not long."""
 
 
 def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_answer_at_once(
@@ -70,6 +73,12 @@ def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_a
     assert "peak=" in page.url
 
 
+def has_plots_beside(page: Page) -> bool:
+    """Whether plots stand beside the picture, and not below it."""
+    scene, plot = (figure(page, number).bounding_box() for number in (0, 2))
+    return bool(scene and plot and scene["x"] + scene["width"] <= plot["x"])
+
+
 def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(visit: Visit) -> None:
     page, told = visit("?pace=fastest"), [""]
     sentence = page.locator(".sentence div").first
@@ -78,6 +87,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(visit: Visit
         expect(sentence).not_to_have_text(told[-1])
         is_solved(page)
         told.append(sentence.inner_text())
+        wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
     assert len(set(told)) == 1 + len(CATALOGUE)
 
 

@@ -104,6 +104,30 @@ def test_words_are_whole(frame: Frame, size: str, width: float) -> None:
         assert left + length <= width
 
 
+@pytest.mark.parametrize("scene", ["block", "fault", "incline"])
+def test_words_leave_handles_free_in_a_picture_beside_plots(scene: str) -> None:
+    frame = frame_of(small(scene))
+    view = shown(frame)
+    view.figure.trigger("inner_width", WIDTH, 270.0)
+    view.figure.trigger("inner_height", HEIGHT, 420.0)
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        words = view.sources["words"].data
+        marks = {axis: np.asarray(view.sources["marks"].data[axis]) for axis in "xy"}
+        for x, y, text, align in zip(
+            words["x"], words["y"], words["text"], words["text_align"], strict=True
+        ):
+            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * 6.0 * len(text)
+            is_across = (marks["x"] > left - 5.0) & (marks["x"] < left + 6.0 * len(text) + 5.0)
+            assert not np.any(is_across & (np.abs(marks["y"] - y) < 12.0)), (phase, text)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_what_is_seen_first_of_a_scene_slips(scene: str) -> None:
+    frame = frame_of(default_settings(scene), ends=True)
+    assert frame.contact[Selection().interface_of(frame.run)].status.any()
+
+
 def test_an_instant_sends_only_what_moves(frame: Frame) -> None:
     view = shown(frame, 0.5)
     before = {name: source.data for name, source in view.sources.items()}

@@ -15,6 +15,10 @@ from solver.discrete.structure import OUTWARD, Act, on_side
 
 LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn, or cannot be dragged."""
+LONGEST = 1.6
+"""Length at most, over that of the largest value when arrows were scaled."""
+WORD = 12
+"""Letters of a value, about."""
 HEAD = 9.0
 BOW = 0.22
 """Height of the bow of an arrow that bends, over its length."""
@@ -43,7 +47,7 @@ class Arrows:
         away, aside = np.array(act.away), is_aside(act)
         side = act.where.partition(" ")[0]
         now = np.broadcast_to(act.values.T[column], len(places))
-        share = np.clip(now / peak, -1.6, 1.6)
+        share = np.clip(now / peak, -LONGEST, LONGEST)
         is_shown = np.abs(share) >= LEAST
         room = beside(layout.description, side) if aside else 0.0
         self.base = base = places[is_shown] + room * away
@@ -116,16 +120,30 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         is_left = float(np.mean(act.places[:, 0])) < 0.45
         place = places[0 if is_left else -1]
         ends = np.append(arrows.lines[:, :, 0], place[0])
-        x = ends.min() - 10.0 if is_left else ends.max() + 10.0
         above = beside(layout.description, side) if aside else 0.75 * layout.arrow
+        if not _has_room(act, layout, is_left):
+            middle = 0.5 * (ends.min() + ends.max())
+            above = above + 16.0 if aside else LONGEST * layout.arrow + 14.0
+            return np.array([middle, place[1] + above * up]), "center"
+        x = ends.min() - 10.0 if is_left else ends.max() + 10.0
         return np.array([x, place[1] + above * up]), "right" if is_left else "left"
     if side == "body":
         length, height = layout.size * layout.scale
         if length < 0.5 * layout.width:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         return np.array([0.0, 0.5 * height + 14.0]), "center"
-    shift = [22.0 * away, -16.0] if aside else [9.0 * away, 15.0]
+    # Clear of an arrow that stands across the end of the bodies.
+    across = [a for a in layout.description.acts if a.where.startswith(side) and is_aside(a)]
+    shift = [22.0 * away, -16.0] if aside else [(22.0 if across else 9.0) * away, 15.0]
     return places[-1] + shift, "left" if side == "right" else "right"
+
+
+def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
+    """Whether the words of what acts on the top have room beside its longest arrows."""
+    across = layout.local(act.places * layout.size)[:, 0] + layout.origin[0]
+    room = across.min() if is_left else layout.width - across.max()
+    reach = LONGEST * layout.arrow if is_aside(act) else 0.0
+    return bool(room - reach > layout.letter * (len(act.symbol) + WORD))
 
 
 def text_of(act: Act, column: int) -> str:

@@ -23,6 +23,8 @@ LETTER = 0.56
 """Width of a letter of a word, about, as a share of the size of its type."""
 LONG = 5.0
 """Length over height of bodies that are long, at least."""
+HIGH = 3.0
+"""Width over height of bodies that are high, at most."""
 WALL = 54.0
 """Pixels from a body to the wall that its spring is fixed to."""
 DEEPEST, IMAGE = 18.0, 26.0
@@ -90,6 +92,14 @@ class Layout:
         if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
         return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
+
+
+def is_high(geometry: Geometry) -> bool:
+    """Whether a picture of the bodies has more room beside plots than above them."""
+    described, top = geometry.description, float(geometry.nodes[:, 1].max())
+    low, high = _extent(described.length, top, described.tilt)
+    width, height = high - low
+    return described.height is not None and bool(width <= HIGH * height)
 
 
 def turned(points: Array, angle: float) -> Array:

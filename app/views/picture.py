@@ -197,7 +197,7 @@ class Picture:
                 aligns.append(align)
                 colors.append(color_of(act))
         if self._described.tilt is not None:
-            corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, 4.0])
+            corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, -14.0])
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
             places.append(corner + layout.origin)
             aligns.append("left")

@@ -119,7 +119,7 @@ class Sampler:
         size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
         if size <= MOST_VALUES:
             return tuple(self.rows)
-        return (needs.interface if needs.interface in self.rows else next(iter(self.rows)),)
+        return (self.run.interface(needs.interface),)
 
     def _interface(self, name: str) -> FrictionInterface:
         law, rows = self.problem.rubbing[name], self.rows[name]
