@@ -7,6 +7,7 @@ machine; `python tests/benchmarks/whole_cost.py` sets estimates of runs beside w
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -97,12 +98,12 @@ class Costs:
         """
         return self.step <= max(max(WORTH * iterations, AFFORDABLE) * self.iteration, least)
 
-    def are_small(self, iterations: float) -> bool:
-        """Whether a step, also one with some wrong statuses, is soon worth a trial."""
-        if self.is_at_rest and self.step <= (SAVED + iterations) * self.iteration:
-            return True
+    @cached_property
+    def small_from(self) -> float:
+        """The iteration from which a step, also one with some wrong statuses, is worth a trial."""
         step = self.condensing + SYSTEMS * self.n_instants * self.system
-        return step <= TRIED * iterations * self.iteration
+        number = step / (TRIED * self.iteration)
+        return min(number, self.step / self.iteration - SAVED) if self.is_at_rest else number
 
     def systems(self, iterations: float) -> int:
         """The number of linear systems that a step may solve after so many iterations.

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import math
 import time
+from typing import NamedTuple
 
+import numpy as np
+
+from solver.arrays import ROUNDING, Array, Flags
+from solver.discrete.problem import Problem
 from solver.latin.cost import WAIT, Costs, costs_of
+from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
-from solver.latin.progress import ForceChanges
 from solver.latin.status import JUMPS, Status, collapses
 from solver.latin.status_step import Certificate, states_of, status_step
 from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import LEAST_SHARE, VANISHING
 from solver.reference.incremental import Incremental, incremental_solver
 from solver.reference.solution import Interrupted
 
@@ -27,6 +33,20 @@ LAST = 10.0
 AGAIN = 2.0
 """Ratio of the iterations at which a failed status step is tried again, and its cost asked anew: a
 rough number, and dear beside a small iteration."""
+LOOK_BACK = 0.7
+"""A change of the contact force is that since the iterate at this share of the iterations."""
+SAFETY = 4.0
+"""On what is left, if the changes go on to fall by the slower of their last two ratios, which a
+power of the iterations has as well as a power of a number: of 20 iterates of bars and strands one
+had a larger error, by five times (measured)."""
+SLOWEST = 0.97
+"""Ratio at most: that of a force that converges as the iterations to the power of -0.085."""
+FEW = 10
+"""Iterations up to which changes foretell nothing: a nested start makes them small at once."""
+SPACING = 1.1
+"""Ratio of the iterations whose contact forces are kept to look back at."""
+RARELY = 2.0
+"""Ratio of the iterations at which it is asked anew which forces count as none."""
 
 
 class ErrorEstimate:
@@ -63,7 +83,7 @@ class ErrorEstimate:
             is_near = self._changes.last.whole <= SETTLED or number >= LONG
             is_near |= number == 1 and iterate.indicator <= SOLVED
             is_due = number >= self._next_trial
-            if is_due and (is_near or self._costs_of(iterate).are_small(number)):
+            if is_due and (is_near or number >= self._costs_of(iterate).small_from):
                 self.try_step(iterate, least=WAIT if ends_soon else 0.0)
         if self.certificate is None:
             return worst
@@ -128,3 +148,74 @@ class ErrorEstimate:
         if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
             self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
         return self._costs[1]
+
+
+class Change(NamedTuple):
+    """Relative change of friction or of pressure, whichever is larger, and of both as one field."""
+
+    worst: float = math.nan
+    whole: float = math.nan
+
+
+class _Past(NamedTuple):
+    """Forces on the rows that rub, (n_instants, n_rows), and how they had changed by then."""
+
+    number: int
+    force: Array
+    change: Change
+
+
+class ForceChanges:
+    """How the contact force changes along a run; `last` since the iterate looked back at."""
+
+    def __init__(self) -> None:
+        self._past: list[_Past] = []
+        self._least, self._least_next = 0.0, 0.0
+        self.last = Change()
+
+    def left(self, iterate: Iterate) -> Change:
+        """The relative error that is left, if changes go on to fall as they did, or NaN."""
+        number, (rows, _) = iterate.number, iterate.problem.rubbing_rows
+        outgoing, incoming = iterate.outgoing.T[:, rows], iterate.incoming.T[:, rows]
+        force = np.ascontiguousarray(outgoing - incoming)
+        force *= 0.5 * iterate.k[rows]
+        before = self._at(LOOK_BACK * number)
+        self.last = Change()
+        if before is not None:
+            self.last = _change(iterate.problem, force - before.force, force, self._least)
+        earlier = before and self._at(LOOK_BACK * before.number)
+        if not self._past or number >= SPACING * self._past[-1].number:
+            oldest = earlier.number if earlier else 0
+            self._past = [entry for entry in self._past if entry.number >= oldest]
+            self._past.append(_Past(number, force, self.last))
+            if number >= self._least_next:
+                around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
+                blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
+                self._least, self._least_next = max(around, blurred), RARELY * number
+        if before is None or earlier is None or number <= FEW:
+            return Change(*(0.0 if last == 0.0 else math.nan for last in self.last))
+        return Change(*map(_left, self.last, before.change, earlier.change))
+
+    def _at(self, number: float) -> _Past | None:
+        """What was last kept up to a number of iterations."""
+        return next((entry for entry in reversed(self._past) if entry.number <= number), None)
+
+
+def _left(last: float, before: float, earlier: float) -> float:
+    """What is left of a force, of which these are the last three changes."""
+    fall = max(ratio(last, before), ratio(before, earlier))
+    fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
+    return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
+
+
+def _change(problem: Problem, change: Array, force: Array, least: float) -> Change:
+    """A change relative to what `solver.reference.distance` divides an error by."""
+    _, normal = problem.rubbing_rows
+    changes, squares = (np.einsum("ij,ij->j", field, field) for field in (change, force))
+
+    def share(kind: Flags | slice, least: float) -> float:
+        size = max(math.sqrt(float(squares[kind].sum())), least)
+        return math.sqrt(float(changes[kind].sum())) / size if size > 0.0 else 0.0
+
+    hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
+    return Change(max(share(normal, hidden), share(~normal, hidden)), share(slice(None), least))

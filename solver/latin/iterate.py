@@ -119,18 +119,13 @@ class Iterate:
     @property
     def checkpoint(self) -> Checkpoint:
         """What is needed to go on from here."""
-        new = self.new_course
-        if new is not None:
+        new = self.course
+        if new is not None and new.k is not self.k:
             displacement, force = new.fields
             outgoing = read_only(displacement + force / new.k[:, None])
             return Checkpoint(self.number, self.seconds, outgoing, course=new)
         bases = self.bases if self.residual is None else ()
         return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
-
-    @property
-    def new_course(self) -> UpdateProgress | None:
-        """Where the next iteration has another k, its course."""
-        return None if self.course is None or self.course.k is self.k else self.course
 
     @property
     def boundary_displacement(self) -> Array:

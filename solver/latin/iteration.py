@@ -53,7 +53,7 @@ def iterations(
         iterate = iteration.snapshot(number, seconds)
         yield iterate
         began = time.perf_counter()
-        if iterate.new_course is not None:
+        if iteration.has_new_k:
             with one_blas_thread():
                 iteration = Iteration(problem, latin, iterate.checkpoint)
 
@@ -115,6 +115,11 @@ class Iteration:
         """Choose the k of the next iteration, which is made anew where that is another."""
         if self._course.phase != "returned":
             self._course = self._latin.direction.follow(self.snapshot(), self._course)
+
+    @property
+    def has_new_k(self) -> bool:
+        """Whether the next iteration has another k, and is to be made anew."""
+        return self._course.k is not self.k
 
     def snapshot(self, number: int = 0, seconds: float = 0.0) -> Iterate:
         """The iterate of this number, after so many seconds."""

@@ -14,7 +14,6 @@ from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
 from solver.latin.iterate import Iterate
 from solver.latin.pgd import PGD
-from solver.latin.progress import NextCheck, StallCheck
 from solver.latin.status import (
     BELOW,
     EXPECTED,
@@ -40,6 +39,14 @@ LEAST_VIOLATION, LARGEST_VIOLATION = 1e-12, 1e-2
 tolerance on eta, a ratio of squares: by default the friction force is then within 0.1 % (block,
 layers) to 2 % (40 wires) of the reference; with 100 times as much it was up to 20 % off (measured).
 """
+SHARE = 8
+"""What may be low enough is computed again at the latest after this part of the iterations."""
+WINDOW = 200
+"""Iterations without a lower indicator after which a run is called stalled."""
+FACTOR = 0.99
+"""A lower indicator is one below this part of the lowest so far."""
+SELDOM = 16
+"""Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
 
 
 @dataclass(frozen=True)
@@ -192,3 +199,43 @@ class StopState:
             return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
         return iterate.behaviour <= enough or self.estimate.is_proven_within(enough, iterate)
+
+
+class NextCheck:
+    """The next iteration at which a number that falls is worth computing.
+
+    Half way to where its last two values, over what is low enough, would have it fall to 1; while
+    it does not fall, after half of the longest wait. So it is missed by little, and only if it
+    falls suddenly.
+    """
+
+    def __init__(self) -> None:
+        self.next, self._last = 0, (0, math.nan)
+
+    def update(self, iteration: int, value: float) -> None:
+        """Take in a value."""
+        (before, last), left = self._last, 0.0
+        self._last = iteration, value
+        if 1.0 < value < last and iteration > before:
+            left = 0.5 * math.log(value) / math.log(last / value) * (iteration - before)
+        least = 0 if value <= 1.0 else iteration // (2 * SHARE)
+        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)
+
+
+class StallCheck:
+    """Whether the LATIN indicator has stalled, and the lowest so far."""
+
+    def __init__(self) -> None:
+        self.indicator, self._number, self._k = math.inf, 0, np.zeros(0)
+
+    def has_stalled(self, iterate: Iterate) -> bool:
+        """Whether it has stopped falling."""
+        number = iterate.number
+        if iterate.k is not self._k:
+            # It is measured by k: to look for the lowest begins anew.
+            self.indicator, self._number, self._k = math.inf, number, iterate.k
+        if number % SELDOM and number - self._number < WINDOW:
+            return False
+        if iterate.indicator < FACTOR * self.indicator:
+            self.indicator, self._number = iterate.indicator, number
+        return number - self._number >= WINDOW

@@ -181,7 +181,7 @@ def _run(
                 iteration.linear_stage()
                 iteration.choose_direction()
                 iterate = iteration.snapshot(number)
-                if iterate.new_course is not None:
+                if iteration.has_new_k:
                     iteration = Iteration(slab.problem, slab.latin, iterate.checkpoint)
             assert iterate is not None
             slab = next_slab(problem, slab, iterate, length)
