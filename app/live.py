@@ -34,7 +34,7 @@ class Live:
     """The live run on the page: its transport, its display, and its views."""
 
     def __init__(self, state: PageState, document: Any) -> None:
-        self.state = state
+        self.state, self._document = state, document
         self._status = _words("status", margin=(4, 6), styles={"flex": "1 1 240px"})
         self._sentence, self._figures = _words("sentence"), _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
@@ -100,14 +100,18 @@ class Live:
             size, self._timeline.height = f"{LARGE * state.height:.0f}px", int(HIGH * state.height)
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
-        self._shape()
+        self._reshape()
 
-    def _shape(self) -> None:
-        """Have the plots stand beside a picture that is high, where nothing else does."""
+    @property
+    def _shape(self) -> list[str]:
+        """CSS classes: plots stand beside a picture that is high, where nothing else does."""
         state, frame = self.state, self.state.frame
         is_alone = not (state.lesson or state.case)
         shape = ["high"] * (is_alone and frame is not None and is_high(frame.run.geometry))
-        self.view.css_classes = ["live", state.view, *shape]
+        return ["live", state.view, *shape]
+
+    def _reshape(self) -> None:
+        self.view.css_classes = self._shape
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -131,7 +135,9 @@ class Live:
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = frame.run.sentence
-            self._shape()
+            if self._shape != self.view.css_classes:
+                # Beside data that are new the browser would paint what it has made of the old.
+                self._document.add_next_tick_callback(self._reshape)
 
 
 class Card:

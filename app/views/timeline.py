@@ -62,7 +62,8 @@ class Timeline(View):
         unit = unit_for(float(run.instants[-1]), "s")
         times = run.instants / np.float32(unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
-        self.figure.x_range.update(start=ends[0], end=ends[1], bounds=ends)
+        # The bounds first: the browser moves ends that are outside.
+        self.figure.x_range.update(bounds=ends, start=ends[0], end=ends[1])
         titles, values = zip(*paths_of(run)[: len(PATHS)], strict=True)
         ups = [np.float32(each / (np.abs(each).max(initial=0.0) or 1.0)) for each in values]
         # The first is on top.
