@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from numbers import Real
 from typing import Any, TypeGuard
 
 
@@ -31,7 +32,7 @@ def plain(value: float) -> str:
 
 def is_number(value: object) -> TypeGuard[float]:
     """Whether it is a number, and no truth value."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:

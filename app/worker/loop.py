@@ -23,6 +23,8 @@ NICENESS, NICEST = 5, 19
 beside fourteen others: thirty at 5 would leave the server a fifth of a processor."""
 UNSEEN = 30.0
 """Seconds without a picture on the screen after which a run waits: nobody sees it."""
+LONG, LARGE = 60.0, 2e9
+"""Seconds and bytes of a run from which it waits to be agreed to."""
 HEARTBEAT = 2.0
 """Seconds between two signs of life."""
 
@@ -101,8 +103,9 @@ class WorkerLoop:
         self._send(messages.Began(start.number))
         self._number, self._runner = start.number, None
         runner = Runner(start, self._references, self._is_superseded)
-        if runner.cost.is_to_be_agreed and not start.is_agreed:
-            self._send(messages.Costly(start.number, str(runner.cost)))
+        cost = runner.cost
+        if (cost.seconds > LONG or cost.memory > LARGE) and not start.is_agreed:
+            self._send(messages.Costly(start.number, str(cost)))
         else:
             self._runner = runner
 

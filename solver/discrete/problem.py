@@ -197,7 +197,7 @@ class Problem:
         P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README, 2).
         """
         parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
-        bases = sparse.block_diag([part.basis for part in parts])
+        bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])
         rows = np.concatenate([part.rows for part in parts])[bases.coords[0]]
         loads = [
             np.zeros((part.basis.shape[1], self.n_instants)) if part.load is None else part.load
@@ -205,7 +205,6 @@ class Problem:
         ]
         shape = self.n_rows, bases.shape[1]
         basis = sparse.csr_array((bases.data, (rows, bases.coords[1])), shape)
-        basis.eliminate_zeros()
         return basis, np.concatenate(loads)
 
     @cached_property

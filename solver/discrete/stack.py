@@ -16,6 +16,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import problem_of
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
+from solver.refusal import RefusedError, check_range
 
 SIDES = "left", "right", "top", "bottom"
 DRIVEN = "top", "left", "right"
@@ -151,6 +152,10 @@ class Stack:
 
     def __post_init__(self) -> None:
         """Leave free what is not given."""
+        for name in ("length", "height", "young", "duration"):
+            check_range(self, name, 0.0, np.inf, above=True)
+        for name in set(self.sides) - set(SIDES):
+            raise RefusedError("Stack.sides", name, ", ".join(SIDES), "correct the name")
         free = Given(False, np.zeros_like(self.instants))
         others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
         object.__setattr__(self, "sides", {**self.sides, **others})

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager, nullcontext
-from functools import cache
+from contextlib import ExitStack
 from itertools import pairwise
+from threading import Lock
 
 import scipy.linalg  # noqa: F401  # brings its own BLAS, which is looked for below
 from threadpoolctl import ThreadpoolController
@@ -45,14 +45,25 @@ class Blocks:
             pass
 
 
-@cache
-def _libraries() -> ThreadpoolController:
-    return ThreadpoolController().select(user_api="blas")
+class OneBlasThread:
+    """BLAS on one thread while anybody is inside: products of few rows take longer on several."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside = Lock(), 0
+        self._libraries = ThreadpoolController().select(user_api="blas")
+        self._limits = ExitStack()
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._inside and any(b.num_threads > 1 for b in self._libraries.lib_controllers):
+                self._limits.enter_context(self._libraries.limit(limits=1))
+            self._inside += 1
+
+    def __exit__(self, *_raised: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                self._limits.close()
 
 
-def one_blas_thread() -> AbstractContextManager[object]:
-    """Have BLAS work on one thread meanwhile: products of few rows take longer on several."""
-    if all(library.num_threads == 1 for library in _libraries().lib_controllers):
-        return nullcontext()
-    limit: AbstractContextManager[object] = _libraries().limit(limits=1)
-    return limit
+one_blas_thread = OneBlasThread()

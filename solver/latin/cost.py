@@ -67,8 +67,6 @@ NUMBER = 8
 """Bytes."""
 LONG, LARGE = 20.0, 1e9
 """Seconds and bytes from which a run says before it begins what it will take."""
-VERY_LONG, VERY_LARGE = 60.0, 2e9
-"""Those from which a page asks before."""
 
 
 @dataclass(frozen=True)
@@ -159,11 +157,6 @@ class RunCost:
     def is_large(self) -> bool:
         """Whether one would like to know before."""
         return self.seconds > LONG or self.memory > LARGE
-
-    @property
-    def is_to_be_agreed(self) -> bool:
-        """Whether one would like to be asked before."""
-        return self.seconds > VERY_LONG or self.memory > VERY_LARGE
 
     def __str__(self) -> str:
         return f"{_duration(self.seconds)} and {self.memory / 1e9:.1g} GB"

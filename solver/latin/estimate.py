@@ -31,8 +31,8 @@ contact force that dies out changes by much of itself for ever."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
 AGAIN = 2.0
-"""Ratio of the iterations at which a failed status step is tried again, and its cost asked anew: a
-rough number, and dear beside a small iteration."""
+"""Ratio of the iterations at which a failed status step is tried again, its cost is estimated anew,
+and which forces count as none: rough numbers, and dear beside a small iteration."""
 LOOK_BACK = 0.7
 """A change of the contact force is that since the iterate at this share of the iterations."""
 SAFETY = 4.0
@@ -45,8 +45,6 @@ FEW = 10
 """Iterations up to which changes foretell nothing: a nested start makes them small at once."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
-RARELY = 2.0
-"""Ratio of the iterations at which it is asked anew which forces count as none."""
 
 
 class ErrorEstimate:
@@ -191,7 +189,7 @@ class ForceChanges:
             if number >= self._least_next:
                 around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
                 blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
-                self._least, self._least_next = max(around, blurred), RARELY * number
+                self._least, self._least_next = max(around, blurred), AGAIN * number
         if before is None or earlier is None or number <= FEW:
             return Change(*(0.0 if last == 0.0 else math.nan for last in self.last))
         return Change(*map(_left, self.last, before.change, earlier.change))

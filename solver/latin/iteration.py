@@ -42,10 +42,10 @@ def iterations(
     Snapshots, one per iteration; their seconds stand still while the consumer has one.
     """
     began, seconds = time.perf_counter(), start.seconds if start else 0.0
-    with one_blas_thread():
+    with one_blas_thread:
         iteration = Iteration(problem, latin, start)
     for number in count(start.number + 1 if start else 1):
-        with one_blas_thread():
+        with one_blas_thread:
             iteration.local_stage()
             iteration.linear_stage()
             iteration.choose_direction()
@@ -54,7 +54,7 @@ def iterations(
         yield iterate
         began = time.perf_counter()
         if iteration.has_new_k:
-            with one_blas_thread():
+            with one_blas_thread:
                 iteration = Iteration(problem, latin, iterate.checkpoint)
 
 

@@ -99,7 +99,7 @@ def judged(
     """
     rules = StopState(latin, spent)
     for iterate in iterations(problem, latin, start):
-        with one_blas_thread():
+        with one_blas_thread:
             verdict = rules.judge(iterate)
         yield iterate, verdict
         if verdict.finished is not None:
@@ -132,14 +132,15 @@ def solve(
     """
     records: list[Record] = []
     last = None
-    for iterate, verdict in judged(problem, latin, start, spent):
-        status = verdict.status
-        if status is not None and status.ending is Ending.DIVERGED:
-            return Solution(last or iterate, records, status)
-        records.append(record(iterate, verdict, distance, watch=watch))
-        last = iterate
-        if status is None and cancelled():
-            status = CANCELLED
-        if status is not None:
-            return Solution(iterate, records, status)
+    with one_blas_thread:
+        for iterate, verdict in judged(problem, latin, start, spent):
+            status = verdict.status
+            if status is not None and status.ending is Ending.DIVERGED:
+                return Solution(last or iterate, records, status)
+            records.append(record(iterate, verdict, distance, watch=watch))
+            last = iterate
+            if status is None and cancelled():
+                status = CANCELLED
+            if status is not None:
+                return Solution(iterate, records, status)
     raise AssertionError("the iteration has no end of its own")

@@ -85,7 +85,7 @@ def status_step(
         return solution, None
     distance = distance_to(solution, problem)
     residual = solution.unbalanced * np.sqrt(len(solution.contact_force)) / distance.force_size
-    if residual > (BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED):
+    if abs(residual) > (BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED):
         return solution, None
     return solution, Certificate(solution, distance, float(residual))
 

@@ -205,8 +205,7 @@ class NextCheck:
     """The next iteration at which a number that falls is worth computing.
 
     Half way to where its last two values, over what is low enough, would have it fall to 1; while
-    it does not fall, after half of the longest wait. So it is missed by little, and only if it
-    falls suddenly.
+    it does not fall, after half of the longest wait: it is missed by little.
     """
 
     def __init__(self) -> None:
