@@ -126,7 +126,7 @@ class Page:
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
-            self.state.param.tab, label="", size="small", margin=(0, 8), **looks("in-header")
+            self.state.param.tab, label="", size="small", margin=(7, 8, 0, 8), **looks("in-header")
         )
         space, look = pn.layout.HSpacer(), {"margin": 0, **looks("in-header")}
         buttons = [
@@ -173,6 +173,7 @@ class Page:
         for place, objects in views:
             if list(place) != objects:
                 place[:] = objects
+        self._main.css_classes = ["main"] + ["with-line"] * line.visible
 
     def _dress(self) -> None:
         """Have the plots that belong here, and the controls where there is room for them.

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.units import Unit, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
-from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside
+from app.views.layout import BAND, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, on_side
@@ -123,8 +123,8 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         above = beside(layout.description, side) if aside else 0.75 * layout.arrow
         if not _has_room(act, layout, is_left):
             middle = 0.5 * (ends.min() + ends.max())
-            above = above + 16.0 if aside else LONGEST * layout.arrow + 14.0
-            return np.array([middle, place[1] + above * up]), "center"
+            top = up * max(up * arrows.lines[:, :, 1].ravel(), default=up * place[1] + above)
+            return np.array([middle, top + up * (6.0 + layout.letter)]), "center"
         x = ends.min() - 10.0 if is_left else ends.max() + 10.0
         return np.array([x, place[1] + above * up]), "right" if is_left else "left"
     if side == "body":
@@ -204,7 +204,7 @@ def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> A
         return np.asarray(edge - [0.0, max(below, BAND + 1.0)])
     if gap is not None:
         # It is magnified as displacements are.
-        depth = np.minimum(gap * factor * layout.scale[1], DEEPEST)
+        depth = np.minimum(gap * factor * layout.scale[1], layout.deepest)
         edge = np.stack([np.linspace(*edge[:, 0], len(depth)), -depth], axis=1)
     beyond = np.array([[-3.0 * BEYOND, 0.0], [3.0 * BEYOND, 0.0]]) + edge[[0, -1]]
     return np.concatenate([beyond[:1], edge, beyond[1:]]) - [0.0, 0.5 * BAND + 1.5]

@@ -77,7 +77,7 @@ class Convergence(ErrorPlot):
         column = "error_force" if len(error["x"]) else "estimated_error"
         self._plot("ghost", past, "iteration", column, self.ghost_name)
         ghosts = self.sources["ghost"].data
-        self.y.hold(run.number, [LEAST, MOST], error["y"], ghosts["y"])
+        self.y.hold(run.number, [LEAST, MOST], error["y"])
         end = max(float(newest.iteration), *map(float, ghosts["x"][-1:]), SHORTEST)
         self.x.hold(run.number, [0.0, rounded_up(end)])
         is_back = frame is not newest and not frame.is_answer

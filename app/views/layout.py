@@ -28,7 +28,7 @@ HIGH = 3.0
 WALL = 54.0
 """Pixels from a body to the wall that its spring is fixed to."""
 DEEPEST, IMAGE = 18.0, 26.0
-"""Pixels that a gap is deep at most, and of the image below the bodies."""
+"""Pixels that a gap is deep at most in a low figure, and of the image below the bodies."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
 
@@ -57,7 +57,8 @@ class Layout:
         described, top = geometry.description, float(geometry.nodes[:, 1].max())
         description = replace(described, acts=()) if is_bare else described
         arrow = min(max(0.19 * height, 18.0), 38.0)
-        left, right, below, above = _margins(description, arrow, self.letter)
+        self.deepest = max(DEEPEST, 0.1 * height)
+        left, right, below, above = _margins(description, arrow, self.letter, self.deepest)
         left, below = left + (0.0 if key_rows else COLUMN), below + FOOT * key_rows
         room = np.maximum([width - left - right, height - below - above], 24.0)
         low, high = _extent(description.length, top, description.tilt)
@@ -138,14 +139,14 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
 
 
 def _margins(
-    description: Description, arrow: float, letter: float
+    description: Description, arrow: float, letter: float, deepest: float
 ) -> tuple[float, float, float, float]:
     """Pixels on the left, on the right, below and above, for what holds and what acts."""
     room = {"left": 10.0, "right": 10.0, "bottom": 6.0, "top": 8.0}
     for hold in description.holds:
         size = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}.get(hold.kind, 18.0)
         if hold.gap is not None and np.any(hold.gap > 0.0):
-            size += DEEPEST
+            size += deepest
         room[hold.side] = max(room[hold.side], size)
     for act in description.acts:
         side = act.where.partition(" ")[0]

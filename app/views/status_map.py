@@ -10,7 +10,7 @@ from bokeh.models import LinearColorMapper
 
 from app.frame import Floats, Frame, Selection
 from app.views.axis import edges
-from app.views.colors import CUT, ERROR, EXACT, KEYS, STATUS
+from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
 from app.views.view import View, hover, joined
 
 
@@ -29,7 +29,7 @@ class StatusMap(View):
         image = self.add("status", "Image", "image x y dw dh", color_mapper=colors)
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.6, line_width=1)
         self.add("front", color=EXACT, width=3)
-        self.add("ghost", "Segment", "x0 y0 x1 y1", color="#000000", width=1)
+        self.add("ghost", "Segment", "x0 y0 x1 y1", color=GHOST, width=1.5)
         self.add("now", "HSpan", "y", color=ERROR, line_width=2)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.legend(*KEYS, "ghost", front="closed form")

@@ -45,10 +45,10 @@ TEXT, WORDS = "12px", "14px"
 """Sizes of what is written in plots, and of what belongs to arrows."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Keeps sizes that are not the theme's, as the browser sets these when it draws a figure."""
-ABOVE = {"margin-left": "-44px", "top": "-3px"}
+ABOVE = {"margin-left": "-60px", "top": "-3px"}
 """Has a legend begin at the left end of the figure."""
 CLOSE = """
-.bk-grid { gap: 6px 8px !important; }
+.bk-grid { gap: 6px 5px !important; }
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
@@ -328,7 +328,7 @@ def legend(made: figure, items: Sequence[Any], place: str = "above") -> Legend:
         margin=2,
         label_height=12,
         glyph_height=12,
-        glyph_width=18,
+        glyph_width=12,
         background_fill_alpha=0.0,
         styles={"font-size": TEXT} | (ABOVE if place == "above" else {}),
         stylesheets=[CLOSE],
