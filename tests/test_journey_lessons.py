@@ -19,6 +19,10 @@ def lead(page: Page) -> str:
     assert match
     expect(page.get_by_role("dialog")).to_contain_text(match[1])
     close_dialog(page)
+    # Its line takes nothing from the time line, the last thing in the window.
+    box = figure(page, 1).bounding_box()
+    assert box is not None
+    assert box["y"] + box["height"] <= 720.0
     return match[1]
 
 

@@ -26,6 +26,11 @@ from solver.scenes import CATALOGUE
 
 HIGH = {"block", "fault", "incline"}
 """Scenes whose bodies are not long."""
+WHOLE = """() => Bokeh.documents.every((document) => [...document.all_models].every((model) => {
+  const range = model.x_range
+  return !range?.bounds?.length || (range.start == range.bounds[0] && range.end == range.bounds[1])
+}))"""
+"""Whether the time line has the whole interval."""
 
 
 def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_answer_at_once(
@@ -88,6 +93,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(visit: Visit
         is_solved(page)
         told.append(sentence.inner_text())
         wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
+        page.wait_for_function(WHOLE)
     assert len(set(told)) == 1 + len(CATALOGUE)
 
 

@@ -30,7 +30,7 @@ from solver.latin import (
     response,
     solve,
 )
-from solver.latin.blocks import Blocks
+from solver.latin.blocks import Blocks, one_blas_thread
 from solver.latin.iteration import Iteration
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
@@ -171,6 +171,11 @@ def test_blas_has_one_thread_while_an_iteration_lasts(monkeypatch: pytest.Monkey
     with threadpool_limits(2, user_api="blas"):
         for _ in islice(iterations(discretise(settings), method_of(settings)), 2):
             assert threads() == {2}
+        with one_blas_thread:
+            with one_blas_thread:
+                pass
+            assert threads() == {1}
+        assert threads() == {2}
     assert seen == [{1}, {1}]
 
 

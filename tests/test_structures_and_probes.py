@@ -14,8 +14,9 @@ from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.bricks import Brick
 from solver.discrete.plane import von_mises
 from solver.discrete.probes import reaction, side_mean
-from solver.latin import Iterate, iterations
+from solver.latin import PGD, Iterate, iterations
 from solver.reference.solution import fingerprint
+from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -118,6 +119,20 @@ def test_a_side_that_is_not_named_is_free() -> None:
     assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
     assert {act.where for act in BODY.described().acts} == {"top x", "top y"}
     assert [hold.kind for hold in BODY.described().holds] == ["support"]
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [("sides", {"sides": {"Top": BODY.sides["top"]}}), ("young", {"young": -210e9})],
+    ids=["a side that there is not", "a stiffness below zero"],
+)
+def test_bodies_that_cannot_be_are_refused(name: str, change: dict[str, Any]) -> None:
+    with pytest.raises(RefusedError, match=f"Stack.{name}"):
+        replace(BODY, **change)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    assert PGD(modes=np.arange(5, 9)[0]) == PGD(modes=5)
 
 
 def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
