@@ -24,7 +24,7 @@ def measured() -> str:
 
 
 def test_a_case_is_opened_by_its_picture_and_meets_its_number(visit: Visit) -> None:
-    page = visit()
+    page = visit(f"?{ANSWER}")
     is_solved(page)
     button(page, "Cases").click()
     page.get_by_role("button", name="Bolted lap joint").click()

@@ -64,8 +64,6 @@ def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_a
     expect(status(page)).to_contain_text("answer:")
     button(page, "Watch").click()
     expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
-    is_solved(page)
-    expect(status(page)).to_contain_text("search:")
 
     before = figures(page).inner_text()
     drag(page, slider(page, "Peak load"), 0.5, 2.5)
@@ -162,7 +160,7 @@ def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) 
 
 
 def test_a_scene_plays_its_load_cycle_until_somebody_does_something(visit: Visit) -> None:
-    page = visit()
+    page = visit("?pace=fastest")
     is_solved(page)
     expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
     figure(page, 1).click()
