@@ -51,9 +51,13 @@ class Live:
             self.transport.play_button, sizing_mode="stretch_width", height=LOW, margin=0
         )
         self._is_open = False
-        look = {"styles": {"flex-wrap": "wrap", "justify-content": "space-between"}}
-        look |= {"css_classes": ["words"], "sizing_mode": "stretch_width"}
-        below = wrapped(self._sentence, self._figures, **look)
+        below = wrapped(
+            self._sentence,
+            self._figures,
+            css_classes=["words"],
+            sizing_mode="stretch_width",
+            styles={"flex-wrap": "wrap", "justify-content": "space-between"},
+        )
         self.view = column("live", self._above, below)
         state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])

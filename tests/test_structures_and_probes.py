@@ -122,13 +122,17 @@ def test_a_side_that_is_not_named_is_free() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "change"),
-    [("sides", {"sides": {"Top": BODY.sides["top"]}}), ("young", {"young": -210e9})],
-    ids=["a side that there is not", "a stiffness below zero"],
+    ("name", "part", "change"),
+    [
+        ("Stack.sides", BODY, {"sides": {"Top": BODY.sides["top"]}}),
+        ("Stack.young", BODY, {"young": -210e9}),
+        ("Rods.stiffness", CATALOGUE["bar"].checked({}).structure(), {"stiffness": 0.0}),
+        ("Rods.length", CATALOGUE["bar"].checked({}).structure(), {"length": np.nan}),
+    ],
 )
-def test_bodies_that_cannot_be_are_refused(name: str, change: dict[str, Any]) -> None:
-    with pytest.raises(RefusedError, match=f"Stack.{name}"):
-        replace(BODY, **change)
+def test_bodies_that_cannot_be_are_refused(name: str, part: Any, change: dict[str, Any]) -> None:
+    with pytest.raises(RefusedError, match=name):
+        replace(part, **change)
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

@@ -90,6 +90,7 @@ class Sampler:
         self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
     ) -> Frame:
         """What is shown of an iterate, with the extras that views need."""
+        needs = replace(needs, interface=self.run.interface(needs.interface))
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, made_loop=self.loop)
         kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
@@ -119,7 +120,7 @@ class Sampler:
         size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
         if size <= MOST_VALUES:
             return tuple(self.rows)
-        return (self.run.interface(needs.interface),)
+        return (needs.interface,)
 
     def _interface(self, name: str) -> FrictionInterface:
         law, rows = self.problem.rubbing[name], self.rows[name]

@@ -161,7 +161,7 @@ class DrawnRope:
         """Axial force in the selected wire, as in rods, and what it would be if nothing slipped."""
         rope, columns = self._rope, self._columns
         names = [wire.name for wire in rope.wires]
-        number = names.index(needs.interface) if needs.interface in names else len(names) - 1
+        number = names.index(needs.interface)
         wire, places = rope.wires[number], thinned(rope.elements, MOST_POINTS)
         stuck = wire.tension[columns] + wire.stuck_force(columns)
         force = wire_forces(rope, iterate.displacement, columns)[number]

@@ -107,7 +107,8 @@ class Rods:
     Raises
     ------
     RefusedError
-        For a field of another shape, a bound below zero, or a settlement under several rods.
+        For a number that is not above zero, a field of another shape, a bound below zero, or a
+        settlement under several rods.
     """
 
     length: float
@@ -130,6 +131,8 @@ class Rods:
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
+        for name in ("length", "stiffness", "duration"):
+            check_range(self, name, 0.0, np.inf, above=True)
         nodes, instants = self.elements + 1, len(self.instants)
         shapes: dict[str, list[tuple[int, ...]]] = {
             "bound": [(nodes,), (nodes, instants)],

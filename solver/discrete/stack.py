@@ -127,6 +127,11 @@ class Stack:
     tilt
         Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
         `body_force` has turned the other way already. None where it does not.
+
+    Raises
+    ------
+    RefusedError
+        For a number that is not above zero, or a side that there is not.
     """
 
     length: float

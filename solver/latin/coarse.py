@@ -52,7 +52,8 @@ class CoarseProblem:
             forces = np.asfortranarray(forces)
             self._members.append(_Member(group, as_slice(rows), local, forces, size))
         self._spread = sparse.csr_array(sparse.hstack(seen))
-        system = self._spread @ _diagonal(systems) @ self._spread.T
+        whole = sparse.block_diag(list(map(sparse.coo_array, systems)), format="csr")
+        system = self._spread @ whole @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
 
     def add_multiplier(self) -> None:
@@ -115,16 +116,6 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     local[np.repeat(np.arange(len(carrying)), counts[:, 0]), place] = values[0]
     entries = np.ones(columns.size), (columns.ravel(), np.arange(columns.size))
     return carrying, local, sparse.csr_array(entries, shape=(basis.shape[1], columns.size))
-
-
-def _diagonal(blocks: Sequence[Array]) -> sparse.csr_array:
-    """Square blocks along a diagonal; `sparse.block_diag` takes five times as long (measured)."""
-    sizes = np.array([len(block) for block in blocks])
-    ends = np.cumsum(sizes)
-    columns = [np.tile(np.arange(e - n, e), n) for n, e in zip(sizes, ends, strict=True)]
-    pointers = np.append(0, np.cumsum(np.repeat(sizes, sizes)))
-    values = np.concatenate(blocks, axis=None)
-    return sparse.csr_array((values, np.concatenate(columns), pointers))
 
 
 def _solver(

@@ -85,7 +85,8 @@ def status_step(
         return solution, None
     distance = distance_to(solution, problem)
     residual = solution.unbalanced * np.sqrt(len(solution.contact_force)) / distance.force_size
-    if abs(residual) > (BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED):
+    most_residual = BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED
+    if not 0.0 <= residual <= most_residual:
         return solution, None
     return solution, Certificate(solution, distance, float(residual))
 
