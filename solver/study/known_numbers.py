@@ -113,8 +113,8 @@ def pressed_parabola(answer: Answer) -> Iterator[Number]:
     lengths, places = _places(answer, force)
     exact = _half_plane(answer, float(force.sum()))
     yield "largest pressure", "Pa", exact.peak, (force / lengths).max()
-    second = force @ places**2 / force.sum()
-    yield "half-width of contact", "m", exact.half_width, 2.0 * np.sqrt(second)
+    second = float(force @ places**2 / force.sum())
+    yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
 
 
 def sheared_parabola(answer: Answer) -> Iterator[Number]:
