@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from bokeh.core.serialization import Serializer
 from bokeh.document import Document
+from bokeh.models import DataRange1d
 
 from app.frame import Frame, Selection
 from app.live import Card
@@ -108,6 +109,15 @@ def test_each_view_that_applies_shows_each_frame(kind: type[View], case: str) ->
             assert axes.start < axes.end
         if frame is not first:
             assert any(len(next(iter(s.data.values()))) for s in view.sources.values())
+
+
+def test_ranges_that_follow_data_have_some_before_a_view_is_updated() -> None:
+    # BokehJS would complain in the console.
+    views = [kind(PageState(default_settings("rope"))) for kind in VIEWS]
+    follow = [v for v in views if isinstance(v.figure.x_range, DataRange1d)]
+    assert follow
+    for view in follow:
+        assert any(np.isfinite(source.data["x"]).any() for source in view.sources.values())
 
 
 @pytest.mark.parametrize("case", ["bar", "block"])
