@@ -22,7 +22,8 @@ from app.views.view import View
 log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
-PAINTED = "requestAnimationFrame(() => requestAnimationFrame(() => { pulse.painted = pulse.sent }))"
+PAINTED = "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
+"""Says what is on the screen once it is: tasks follow what is painted in a frame of the browser."""
 SHORTEST = 0.02
 """Seconds of a pause between pictures that is kept."""
 LASTS = 1.0

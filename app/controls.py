@@ -101,8 +101,7 @@ class SettingControl:
             margin=(-10, 0, 0, 0),
             **looks("under-number"),
         )
-        slider.param.watch(lambda event: self._drag(event.new), "value")
-        slider.param.watch(lambda event: self._release(event.new), "value_throttled")
+        slider.param.watch(self._move, ["value", "value_throttled"])
         return slider
 
     def _to_slider(self, value: float) -> float:
@@ -180,17 +179,16 @@ class SettingControl:
         self.update()
         self._explain(refusal)
 
-    def _drag(self, place: float) -> None:
-        if not self._is_updating:
-            self._is_dragged = True
-            self._state.drag(self.name, self._from_slider(place))
-
-    def _release(self, place: float) -> None:
-        """Run what the slider is let go at; where that is refused, the last that held."""
+    def _move(self, *events: Any) -> None:
+        """Follow the slider; run where it is let go, by a key at once, or what held before."""
         if self._is_updating:
             return
-        self._is_dragged = False
-        self._state.release(self.name, self._from_slider(place))
+        value = self._from_slider(events[-1].new)
+        self._is_dragged = all(event.name == "value" for event in events)
+        if self._is_dragged:
+            self._state.drag(self.name, value)
+            return
+        self._state.release(self.name, value)
         self.update()
         self._explain(self._state.refusal)
 

@@ -115,6 +115,8 @@ class Run:
     body at most; None where it does not."""
     collapses_at: float = float("nan")
     """When it does, s."""
+    is_compared: bool = False
+    """Whether the reference and closed forms are there, as far as there are any."""
     is_idle: bool = False
     """Whether nothing acts, so that nothing moves."""
 

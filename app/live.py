@@ -51,13 +51,9 @@ class Live:
             self.transport.play_button, sizing_mode="stretch_width", height=LOW, margin=0
         )
         self._is_open = False
-        below = wrapped(
-            self._sentence,
-            self._figures,
-            css_classes=["words"],
-            sizing_mode="stretch_width",
-            styles={"flex-wrap": "wrap", "justify-content": "space-between"},
-        )
+        look = {"css_classes": ["words"], "sizing_mode": "stretch_width"}
+        styles = {"flex-wrap": "wrap", "justify-content": "space-between"}
+        below = wrapped(self._sentence, self._figures, styles=styles, **look)
         self.view = column("live", self._above, below)
         state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])

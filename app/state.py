@@ -192,6 +192,11 @@ class PageState(param.Parameterized):
         return newest is not None and newest.run.number == self.number and newest.status is not None
 
     @property
+    def is_fleeting(self) -> bool:
+        """Whether the frame lacks what the next one has, as the last run of the scene had it."""
+        return self.ghost is not None and not self.frame.run.is_compared
+
+    @property
     def is_asked(self) -> bool:
         """Whether a lesson's question is open: in a class until its leader goes on."""
         poll = self.poll

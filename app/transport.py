@@ -58,7 +58,7 @@ class Transport:
             self._pin,
             *self._choices(),
         )
-        shown = ["settings", "frame", "newest", "running", "is_costly", "pinned"]
+        shown = ["settings", "frame", "newest", "running", "is_costly", "pinned", "is_dragged"]
         state.param.watch(lambda *events: self._show(), shown)
         state.param.watch(self._touch, TOUCHED)
         document.add_periodic_callback(self._follow, FOLLOWS)
@@ -212,8 +212,10 @@ class Transport:
             self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
-        """Show how the run goes."""
+        """Show how the run goes, but for runs that follow the hand: each ends before it is seen."""
         state = self._state
+        if state.is_dragged:
+            return
         waiting = "warning" if state.is_costly else "replay" if state.is_over else "play_arrow"
         self._run.icon = "pause" if self._goes_on else waiting
         self._pin.color = "default" if state.pinned is None else "primary"

@@ -10,6 +10,7 @@ import pytest
 
 from app.controls import POINTS, Controls, SettingControl
 from app.files.opener import TableOpener
+from app.messages import Start
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
 from solver.definitions import CurveParameter
@@ -152,6 +153,23 @@ def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_
     assert control.field.value == f"{least:g}"
     assert "Friction coefficient μ cannot be 0" in control.field.helper_text
     assert not state.is_dragged
+
+
+def test_a_key_on_a_slider_starts_one_run_and_a_hand_that_drags_one_for_each_move() -> None:
+    state, orders = of_scene("bar"), list[object]()
+    control = SettingControl("friction", state)
+    state.send = orders.append
+    with param.edit_constant(control.slider):
+        control.slider.param.update(value=0.5, value_throttled=0.5)
+    assert [order.is_dragged for order in orders if isinstance(order, Start)] == [False]
+    for place in (0.6, 0.7):
+        control.slider.value = place
+    with param.edit_constant(control.slider):
+        control.slider.value_throttled = 0.7
+    assert [order.is_dragged for order in orders if isinstance(order, Start)][1:] == [
+        *(True, True, False),
+    ]
+    assert held(state, "friction") == 0.7
 
 
 def test_a_slider_ends_where_another_setting_has_it_end() -> None:

@@ -46,6 +46,7 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(visit: Vis
     expect(status(page)).to_contain_text("75 % wrong")
     expect(button(page, "Handout")).to_be_visible()
     expect(page.get_by_text("{value:")).to_have_count(0)
+    expect(figures(page)).to_be_visible()
     # Bokeh's figures would not follow what moves them: longer numbers take no line more.
     before, place = figures(page).inner_text(), page.locator(".figures").bounding_box()
     figure(page, 1).click(position={"x": 40, "y": 20})

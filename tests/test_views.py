@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -162,6 +163,24 @@ def test_the_axis_of_the_contact_force_stays_while_a_run_iterates() -> None:
     smaller = {n: replace(f, friction=0.1 * f.friction) for n, f in last.contact.items()}
     shown(view, replace(last, contact=smaller))
     assert (view.figure.y_range.start, view.figure.y_range.end) == ends
+
+
+def test_the_reference_moves_neither_axis_nor_legend_of_a_run_like_the_last() -> None:
+    first, last, answer = frames_of("bar")
+    view = view_of(ContactForce, answer)
+
+    def look() -> tuple[Any, ...]:
+        names = [item.label.value for item in view.figure.legend[0].items if item.visible]
+        return round(view.figure.y_range.start, 9), round(view.figure.y_range.end, 9), names
+
+    view.state.ghost = answer
+    begun = other_run(first)
+    shown(view, begun, answer)
+    assert not len(view.sources["reference"].data["x"])
+    before = look()
+    shown(view, replace(begun, run=replace(last.run, number=begun.run.number)), answer)
+    assert len(view.sources["reference"].data["x"])
+    assert look() == before
 
 
 def test_legends_name_only_what_is_drawn() -> None:

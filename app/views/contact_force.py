@@ -87,8 +87,8 @@ class ContactForce(View):
 
     def _scale(self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
-        run, key = frame.run, (*frame.stage[:2], name)
-        known, bound = run.reference.get(name, fields), run.interfaces[name].bound
+        run, key, bound = frame.run, (*frame.stage[:2], name), frame.run.interfaces[name].bound
+        known = run.reference.get(name, fields if bound is None else None)
         bounds = [] if bound is None else [bound, -bound]
         low, high = extent([*_given(known), *exact, *bounds])
         most = MOST * max(abs(low), abs(high))

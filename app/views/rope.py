@@ -40,8 +40,8 @@ class WireSection(ExtraView):
             "wires", "Circle", "x y radius line_color line_width", also="stress",
             fill_color={"field": "stress", "transform": self.colors},
         )  # fmt: skip
-        # Ranges that follow data have none without any, of which the browser would complain.
-        nothing = dict.fromkeys(("x", "y", "radius", "stress", "line_width"), [0.0])
+        # Without data BokehJS would complain of ranges that follow them.
+        nothing = {column: [0.0] for column in ("x", "y", "radius", "line_width", "stress")}
         self.fill("wires", **nothing, line_color=["white"])
         self.bar = color_bar(made, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}

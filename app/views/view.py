@@ -212,7 +212,9 @@ class View:
         return box
 
     def show(self, name: str, wanted: bool | str) -> None:
-        """Show or hide an entry of the legend, or give it another title."""
+        """Show or hide an entry of the legend, unless it comes back, or give it another title."""
+        if self.state.is_fleeting and not wanted:
+            return
         item = self._items.get(name)
         if item is not None:
             item.visible = bool(wanted)

@@ -74,7 +74,7 @@ class Sampler:
             else replace(curve, up=curve.up[:, self.columns])
             for curve in curves
         )
-        known: dict[str, Any] = {"exact": exact}
+        known: dict[str, Any] = {"exact": exact, "is_compared": True}
         if reference is not None:
             known["reference"] = self._contact(reference, self.problem.rubbing)
             known["reference_loop"] = self._loop(reference)
@@ -84,7 +84,7 @@ class Sampler:
     def collapse(self, collapse: Collapse) -> None:
         """Add the mechanism by which the structure begins to fail, and when."""
         moved = self.drawn.nodes_of(collapse.mechanism * self.problem.scales.displacement)
-        self.run = replace(self.run, mechanism=moved, collapses_at=collapse.time)
+        self.run = replace(self.run, is_compared=True, mechanism=moved, collapses_at=collapse.time)
 
     def frame(
         self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs

@@ -21,12 +21,7 @@ from app.worker.geometry import MOST_POINTS, Extras, StressField, floats, mesh_o
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.rope import Rope
-from solver.discrete.wire_forces import (
-    cut_at,
-    stress_at,
-    wire_forces,
-    wire_stresses,
-)
+from solver.discrete.wire_forces import cut_at, stress_at, wire_forces, wire_stresses
 from solver.latin import Iterate
 from solver.settings import Settings
 
