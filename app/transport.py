@@ -232,6 +232,9 @@ class Transport:
         is_newest = frame is self._state.newest
         back = 0 if is_newest else min(frame.iteration - self._last, -1)
         start = min(1 - self._last, -1)
+        # As each change is a message, it may end half-way while a run is followed.
+        if is_newest and not self._state.is_over and start <= slider.start <= start / 2:
+            start = slider.start
         slider.param.update(start=start, value=self._echoes.give(back, slider.value))
 
     @property

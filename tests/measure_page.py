@@ -1,8 +1,8 @@
 """Measure a served page in headless Chromium: `python tests/measure_page.py http://localhost:5006/app`.
 
 Prints, of a first visit and three more, seconds until the first picture is painted and the bytes
-received; from a slider's move to the picture that it changes; and by scene how many pictures a
-second are painted of a search without an end.
+received; from a slider's move, by the mouse and by a key, to the picture that it changes; and by
+scene how many pictures a second are painted of a search without an end.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import sys
 import time
 from statistics import median
 
-from playwright.sync_api import BrowserContext, Page, sync_playwright
+from playwright.sync_api import BrowserContext, Locator, Page, sync_playwright
 
 PULSE = "Bokeh.documents.find(d => d.get_model_by_name('pulse'))?.get_model_by_name('pulse')"
 PAINTED = f"(n) => window.Bokeh && Bokeh.documents.length && {PULSE}?.painted > n"
@@ -24,9 +24,9 @@ SECONDS = 5.0
 MOVES = 11
 REST = 700.0
 """Milliseconds between two moves, in which nothing is painted any more."""
-NEXT = f"""() => {{
+NEXT = f"""(event) => {{
   const pulse = {PULSE}
-  window.moved = new Promise((resolve) => addEventListener("pointermove", () => {{
+  window.moved = new Promise((resolve) => addEventListener(event, () => {{
     const began = performance.now()
     const see = () => {{
       pulse.disconnect(pulse.properties.painted.change, see)
@@ -51,8 +51,10 @@ def measure(address: str) -> None:
             page.goto(f"{address}?scene={scene}&{ANSWER}")
             page.wait_for_function(PAINTED, arg=0, timeout=60_000)
             page.wait_for_timeout(2000.0)
-            taken = slider_to_picture(page)
-            print(f"{scene}: slider to picture {median(taken):.0f} ms, {max(taken):.0f} at most")
+            for way, to_picture in (("slider", slider_to_picture), ("key", key_to_picture)):
+                taken = to_picture(page)
+                print(f"{scene}: {way} to picture {median(taken):.0f} ms, {max(taken):.0f} at most")
+                page.wait_for_timeout(2000.0)
         for scene in ("bar", "block", "layers", "rope"):
             page.goto(f"{address}?scene={scene}&{ENDLESS}")
             page.wait_for_function(PAINTED, arg=3, timeout=60_000)
@@ -76,8 +78,7 @@ def opening(context: BrowserContext, address: str) -> tuple[float, float]:
 
 def slider_to_picture(page: Page) -> list[float]:
     """Milliseconds from each move of the friction's slider to the picture of it."""
-    slider = page.get_by_role("slider", name="Friction coefficient").first
-    box = slider.locator("xpath=..").bounding_box()
+    box = _friction(page).locator("xpath=..").bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
@@ -85,12 +86,27 @@ def slider_to_picture(page: Page) -> list[float]:
     page.wait_for_timeout(REST)
     taken = []
     for move in range(MOVES):
-        page.evaluate(NEXT)
+        page.evaluate(NEXT, "pointermove")
         page.mouse.move(x + 5.0 * (move + 1), y)
         taken.append(page.evaluate("window.moved"))
         page.wait_for_timeout(REST)
     page.mouse.up()
     return taken
+
+
+def key_to_picture(page: Page) -> list[float]:
+    """Milliseconds from each key on the friction's slider to the picture of the run of it."""
+    slider, taken = _friction(page), []
+    for move in range(MOVES):
+        page.evaluate(NEXT, "keydown")
+        slider.press("ArrowLeft" if move % 2 else "ArrowRight")
+        taken.append(page.evaluate("window.moved"))
+        page.wait_for_timeout(REST)
+    return taken
+
+
+def _friction(page: Page) -> Locator:
+    return page.get_by_role("slider", name="Friction coefficient").first
 
 
 def pictures_a_second(page: Page) -> float:

@@ -96,8 +96,6 @@ class WorkerLoop:
                 runner.has_news = runner.iterate is not None
             case messages.Step() if runner is not None:
                 runner.pacing.step()
-            case _:
-                pass
 
     def _begin(self, start: Start) -> None:
         self._send(messages.Began(start.number))
