@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import panel_material_ui as pmui
 import pytest
 
 from app import transport
@@ -77,3 +79,18 @@ def test_it_plays_until_somebody_does_something(monkeypatch: pytest.MonkeyPatch)
     page.state.settings = page.state.settings.replace(friction=0.2)
     assert not page.plays()
     assert page.state.selection.phase == Selection.phase
+
+
+def test_the_range_of_iterations_moves_seldom_while_a_run_goes_on_and_is_exact_at_its_end(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    page = Watched(monkeypatch)
+    end = page.state.frame
+    slider = next(each for each in page.transport.view if isinstance(each, pmui.IntSlider))
+    starts = []
+    for number, status in ((100, None), (110, None), (190, None), (210, None), (220, end.status)):
+        frame = replace(end, iteration=number, is_answer=False, status=status)
+        page.state.param.update(newest=frame, frame=frame)
+        page.wait(0.4)
+        starts.append(slider.start)
+    assert starts == [-99, -99, -99, -209, -219]
