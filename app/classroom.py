@@ -153,8 +153,7 @@ class ClassMember(param.Parameterized):
         room = find(code)
         if room is None:
             if code:
-                text = f"There is no class {code[:20]}: ask for its code; it may have ended."
-                self.message = text
+                self.message = f"There is no class {code[:20]}: ask for it; it may have ended."
             self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.leader.state

@@ -194,7 +194,8 @@ class PageState(param.Parameterized):
     @property
     def is_fleeting(self) -> bool:
         """Whether the frame lacks what the next one has, as the last run of the scene had it."""
-        return self.ghost is not None and not self.frame.run.is_compared
+        has_last = self.ghost is not None and self.iteration is None
+        return has_last and not self.frame.run.is_compared
 
     @property
     def is_asked(self) -> bool:

@@ -212,7 +212,7 @@ class Transport:
             self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
-        """Show how the run goes, but for runs that follow the hand: each ends before it is seen."""
+        """Show how the run goes; the next move of a hand is sooner there than the button."""
         state = self._state
         if state.is_dragged:
             return

@@ -181,6 +181,10 @@ def test_the_reference_moves_neither_axis_nor_legend_of_a_run_like_the_last() ->
     shown(view, replace(begun, run=replace(last.run, number=begun.run.number)), answer)
     assert len(view.sources["reference"].data["x"])
     assert look() == before
+    # No frame follows one that was gone back to.
+    view.state.iteration = 1
+    shown(view, begun, answer)
+    assert "reference" not in look()[-1]
 
 
 def test_legends_name_only_what_is_drawn() -> None:
