@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved
@@ -30,7 +31,7 @@ def test_a_case_is_opened_by_its_picture_and_meets_its_number(visit: Visit) -> N
     page.get_by_role("button", name="Bolted lap joint").click()
     expect(page.get_by_role("heading", name="Bolted lap joint")).to_be_visible()
     expect(page.get_by_text("% off")).to_be_visible()
-    assert "case=" in page.url
+    expect(page).to_have_url(re.compile("case="))
     page.go_back()
     expect(page.get_by_role("heading", name="Bolted lap joint")).to_have_count(0)
     expect(field(page, "Peak load")).to_have_value("900")

@@ -15,6 +15,7 @@ def lead(page: Page) -> str:
     button(page, "A class").click()
     page.get_by_role("button", name="Begin a class").click()
     expect(page.locator(".class").first).to_contain_text("0 follow")
+    expect(page).to_have_url(re.compile(r"class=\w{4}"))
     match = re.search(r"class=(\w{4})", page.url)
     assert match
     expect(page.get_by_role("dialog")).to_contain_text(match[1])
@@ -38,7 +39,7 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(visit: Vis
     button(page, "Lessons").click()
     page.get_by_role("button", name=QUESTION).click()
     expect(page.get_by_role("heading", name=QUESTION)).to_be_visible()
-    assert "lesson=small-indicator" in page.url
+    expect(page).to_have_url(re.compile("lesson=small-indicator"))
     expect(button(page, "Show me")).to_be_visible()
     expect(page.get_by_role("alert")).to_have_count(0)
     button(page, "Some 75 %").click()

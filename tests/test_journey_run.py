@@ -73,7 +73,7 @@ def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_a
     expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
     is_solved(page)
     expect(status(page)).to_contain_text("search:")
-    assert "peak=" in page.url
+    expect(page).to_have_url(re.compile("peak="))
 
 
 def has_plots_beside(page: Page) -> bool:

@@ -159,11 +159,11 @@ class TableOpener:
             content, message = read()
         except RefusedError as refused:
             self._state.refusal = message = message_of(refused, self._state.settings)
-        self.message.object = self._understood.object = message
         if isinstance(content, Settings):
             self._state.adopt(content)
         elif content is not None:
             self._state.brought = content
+        self.message.object = self._understood.object = message
         return content
 
     def _forget(self) -> None:
