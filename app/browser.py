@@ -121,7 +121,7 @@ class Display:
             is_seen = self.pulse.painted == self.pulse.sent
             self._count()
         self._took = time.thread_time() - began
-        if is_seen:
+        if is_seen and not state.is_dragged:
             # The next frame is made while the browser paints this one.
             state.send(Ready())
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -167,7 +168,7 @@ class Frame:
     readings: Mapping[str, float] = field(default_factory=dict)
     """Quantities of the run that a lesson or a case names, by name."""
 
-    @property
+    @cached_property
     def nbytes(self) -> int:
         """Bytes of its arrays."""
         fields = [a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)]

@@ -45,8 +45,7 @@ class Transport:
         self._playing: Any = None
         self._is_lively = False
         self._is_touched = self._is_guided or state.selection != Selection()
-        self._moved_at = -math.inf
-        self._echoes = Echoes()
+        self._moved_at, self._echoes = -math.inf, Echoes()
         self._run = _button("pause", "Run or pause (space)", self._toggle)
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
@@ -235,7 +234,8 @@ class Transport:
         # As each change is a message, it may end half-way while a run is followed.
         if is_newest and not self._state.is_over and start <= slider.start <= start / 2:
             start = slider.start
-        slider.param.update(start=start, value=self._echoes.give(back, slider.value))
+        if (start, back) != (slider.start, slider.value):
+            slider.param.update(start=start, value=self._echoes.give(back, slider.value))
 
     @property
     def _last(self) -> int:

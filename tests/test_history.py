@@ -110,6 +110,26 @@ def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
     assert orders == [Ready(), Ready()]
 
 
+def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(answer: Frame) -> None:
+    state = PageState(answer.run.settings, is_dragged=True)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, None, lambda: None)
+    state.frame = answer
+    assert orders == []
+    display.pulse.painted = display.pulse.sent
+    assert orders == [Ready()]
+    start = Start(0, answer.run.settings, math.inf, is_dragged=True)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    while runner.rest(is_seen=False) is not None:
+        runner.advance()
+    assert not runner.frame(Needs()).run.is_compared
+    assert runner.rest(is_seen=False) is None
+    while runner.rest() is not None:
+        runner.advance()
+    assert runner.frame(Needs()).run.is_compared
+
+
 def test_a_run_is_compared_with_others_of_its_scene_alone(answer: Frame) -> None:
     state = PageState(answer.run.settings)
 

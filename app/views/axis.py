@@ -74,7 +74,7 @@ class Axis:
     def _label(self) -> None:
         text = self._unit.titled(self._title)
         if self._side == "x":
-            self._made.below[-1].text = text
+            self._made.title.text = text
         else:
             self._made.yaxis.axis_label = textwrap.fill(text, LONGEST)
 

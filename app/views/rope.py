@@ -34,7 +34,7 @@ class WireSection(ExtraView):
 
     def _make(self) -> None:
         made = self.begin(match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d())
-        made.axis.visible = made.grid.visible = False
+        made.axis.visible, made.center = False, []
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         self.add(
             "wires", "Circle", "x y radius line_color line_width", also="stress",

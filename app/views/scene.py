@@ -41,8 +41,7 @@ class Scene(View):
     is_bare = False
 
     def _make(self) -> None:
-        made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
-        made.axis.visible = False
+        made = self._made = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
         self._draw(made)
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None

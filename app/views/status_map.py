@@ -23,7 +23,7 @@ class StatusMap(View):
 
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("t", "s"))
-        made.grid.visible = False
+        made.center = []
         self.mark(KEYS)
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
         image = self.add("status", "Image", "image x y dw dh", color_mapper=colors)

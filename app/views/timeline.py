@@ -30,12 +30,10 @@ class Timeline(View):
 
     def _make(self) -> None:
         made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
-        made.yaxis.visible = False
         self._number = 0
         axis = made.xaxis
-        axis.major_label_standoff = 1
+        axis.major_label_standoff, axis.axis_line_alpha = 1, 0.4
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
-        axis.axis_line_alpha = 0.4
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
         self.add("paths", "MultiLine", "xs ys line_color line_width")
         look = {"y": LOW, "length": 0, "angle": np.pi / 2, "color": ERROR, "alpha": 0.5}

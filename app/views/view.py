@@ -45,7 +45,7 @@ TEXT, WORDS = "12px", "14px"
 """Sizes of what is written in plots, and of what belongs to arrows."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Keeps sizes that are not the theme's, as the browser sets these when it draws a figure."""
-ABOVE = {"margin-left": "-60px", "top": "-3px"}
+ABOVE = {"margin-left": "-60px", "top": "-1px"}
 """Has a legend begin at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 5px !important; }
@@ -136,6 +136,9 @@ class View:
         made = self._made = figure(
             sizing_mode="stretch_both",
             min_height=120,
+            # It stands nearer than the label of an axis, which the theme moves away.
+            title=Title(align="center", standoff=2),
+            title_location="below",
             tools=TOOLS,
             active_drag=None,
             active_scroll="wheel_zoom",
@@ -147,8 +150,6 @@ class View:
         made.outline_line_color = None
         made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
         made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
-        # A title stands nearer than the label of an axis, which the theme moves away.
-        made.add_layout(Title(align="center", standoff=2), "below")
         made.grid.grid_line_alpha = 0.3
         self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
         return made
@@ -259,13 +260,13 @@ class ExtraView(View):
         raise NotImplementedError
 
 
-def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> figure:
+def bare(least: int, across: tuple[float, float], up: tuple[float, float], **more: Any) -> figure:
     """A figure without tools, frame and grid, at least so many pixels high, with ends of axes."""
     made = figure(
-        sizing_mode="stretch_both", min_height=least, tools="", toolbar_location=None,
-        x_range=Range1d(*across), y_range=Range1d(*up), min_border=0,
+        sizing_mode="stretch_both", min_height=least, tools="", toolbar_location=None, title=None,
+        x_range=Range1d(*across), y_range=Range1d(*up), min_border=0, y_axis_type=None, **more,
     )  # fmt: skip
-    made.grid.visible = False
+    made.center = []
     made.outline_line_color = None
     made.background_fill_alpha = made.border_fill_alpha = 0.0
     return made

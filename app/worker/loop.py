@@ -63,7 +63,7 @@ class WorkerLoop:
                 self._guard(self._work, self._runner)
 
     def _work(self, runner: Runner) -> None:
-        if runner.rest() == 0.0:
+        if runner.rest(self._is_ready) == 0.0:
             runner.advance()
         if self._is_ready and runner.is_presentable:
             self._is_ready, self._shown_at = False, time.monotonic()
@@ -74,7 +74,7 @@ class WorkerLoop:
         runner = self._runner
         if runner is None or self._is_unseen:
             return None
-        return 0.0 if self._is_ready and runner.is_presentable else runner.rest()
+        return 0.0 if self._is_ready and runner.is_presentable else runner.rest(self._is_ready)
 
     @property
     def _is_unseen(self) -> bool:

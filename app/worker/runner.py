@@ -103,11 +103,10 @@ class Runner:
         """Whether there is something new to show."""
         return self.has_news and self.iterate is not None and not self.hurries
 
-    def rest(self) -> float | None:
-        """Seconds until there is something to do; None waits for an order."""
-        if self.iterate is None or self.hurries:
-            return 0.0
-        if not self._is_compared and not (self.is_dragged and self.has_news):
+    def rest(self, is_seen: bool = True) -> float | None:
+        """Seconds until there is something to do; None waits for an order, or to be seen."""
+        is_to_be_seen = self.is_dragged and (self.has_news or not is_seen)
+        if self.iterate is None or self.hurries or not (self._is_compared or is_to_be_seen):
             return 0.0
         return None if self.status is not None else self.pacing.rest()
 

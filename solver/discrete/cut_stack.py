@@ -139,12 +139,9 @@ class CutStack:
         condensed = SchurComplement(mesh.outline, np.unique(dofs))
         density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
         weights = [mesh.edge_weights(one.side)[one.first : one.last] for one in traces]
-        k = [
-            np.repeat(density * own, len(one.components))
-            for own, one in zip(weights, traces, strict=True)
-        ]
+        k = [w.repeat(len(one.components)) for w, one in zip(weights, traces, strict=True)]
         trace = np.searchsorted(condensed.kept, dofs)
-        return condensed, Elasticity(condensed.stiffness, trace, np.concatenate(k))
+        return condensed, Elasticity(condensed.stiffness, trace, density * np.concatenate(k))
 
     def _outer(self, number: int) -> Iterator[str]:
         """Sides of a substructure on which nothing is but what is given for such a side."""

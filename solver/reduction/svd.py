@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
@@ -33,7 +33,7 @@ class Decomposition:
     time_modes
         Shape (n_modes, n_instants), orthonormal in `time_weights`.
     positions, space_weights, time_weights
-        Shapes (n_points,), m, (n_points,) and (n_instants,); weights are positive.
+        Shapes (n_points,), m or mere numbers, (n_points,), (n_instants,); weights are positive.
     """
 
     values: Array
@@ -73,10 +73,7 @@ class Decomposition:
 def decompose(
     field: Array, space_weights: Array, time_weights: Array, positions: Array | None = None
 ) -> Decomposition:
-    """Decomposition of a field, (n_points, n_instants), in weighted inner products.
-
-    Without positions points are numbered.
-    """
+    """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
     space_root, time_root = np.sqrt(space_weights)[:, None], np.sqrt(time_weights)
     left, values, right = np.linalg.svd(space_root * field * time_root, full_matrices=False)
     space_modes, time_modes = left / space_root, right / time_root
@@ -91,8 +88,10 @@ def decompose(
     )
 
 
-def decompositions(problem: Problem, field: Array, *, is_force: bool) -> list[Decomposition]:
-    """Decomposition of F or W, on the rows that rub in every substructure (paper, section 3.2).
+def decompositions(
+    problem: Problem, field: Array, places: Indices | None = None, *, is_force: bool
+) -> list[Decomposition]:
+    """Decomposition of F or W on the rows that rub, of some substructures or all (paper, 3.2).
 
     Of fields of all rows, (n_rows, n_instants), scaled. Singular values of the friction force, per
     length, are in N sqrt(s/m), of the displacement in m sqrt(m s).
@@ -106,8 +105,9 @@ def decompositions(problem: Problem, field: Array, *, is_force: bool) -> list[De
     if is_force:
         whole[slides] /= lengths[slides, None]
     positions, times = problem.positions[problem.row_dofs], problem.time_weights * scales.time
-    rubbing = (part.rows[slides[part.rows]] for part in problem.substructures)
-    return [decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in rubbing]
+    rubbing = [part.rows[slides[part.rows]] for part in problem.substructures]
+    chosen = rubbing if places is None else [rubbing[place] for place in places]
+    return [decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in chosen]
 
 
 def front_decay(count: int) -> Array:
