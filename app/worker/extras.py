@@ -36,7 +36,7 @@ MOST_MODES = 5
 
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in substructures, over the largest of these."""
-    places = thinned(sampler.settings.n_substructures, MOST_SPECTRA)
+    places = thinned(len(iterate.problem.substructures), MOST_SPECTRA)
     parts = decompositions(iterate.problem, iterate.boundary_force, places, is_force=True)
     shown = [part.values[:MOST_VALUES] for part in parts]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
