@@ -195,6 +195,17 @@ def test_branches_go_one_way_and_are_as_few_as_can_be(load):
     assert all(one != other for one, other in pairwise(last))
 
 
+def test_a_substructure_decomposed_alone_is_as_it_is_among_all():
+    iterate = sample(settings_of("bar", substructures=4), 3)
+    fields, chosen = (iterate.problem, iterate.boundary_force), np.array([1, 3])
+    every = decompositions(*fields, is_force=True)
+    some = decompositions(*fields, chosen, is_force=True)
+    for place, part in zip(chosen, some, strict=True):
+        assert np.array_equal(part.values, every[place].values)
+        assert np.array_equal(part.positions, every[place].positions)
+    assert not np.array_equal(some[0].values, some[1].values)
+
+
 def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers():
     reduced = {"linear_stage": "pgd", "substructures": 1, "relaxation": 1.0}
     iterate = sample(settings_of("bar", method="paper", **reduced), 8)
