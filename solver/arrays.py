@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.linalg import LinAlgError
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import SuperLU, splu
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -20,6 +23,24 @@ RESIDUE = 1e-12
 def space_time(n_rows: int, n_instants: int) -> Array:
     """Allocate a zero field of shape (n_rows, n_instants), contiguous in space."""
     return np.zeros((n_rows, n_instants), order="F")
+
+
+def sparse_factor(matrix: sparse.csc_array, **how: Any) -> SuperLU:
+    """LU factor of a sparse matrix, (n, n), as `scipy.sparse.linalg.splu` with its arguments.
+
+    Raises
+    ------
+    LinAlgError
+        If the matrix is singular.
+    MemoryError
+        If memory is short, which SuperLU tells in several ways.
+    """
+    try:
+        return splu(matrix, **how)
+    except RuntimeError as trouble:
+        if "singular" in str(trouble):
+            raise LinAlgError(str(trouble)) from trouble
+        raise MemoryError(str(trouble)) from trouble
 
 
 def read_only(field: Array) -> Array:

@@ -14,7 +14,7 @@ from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from solver.console import add_command, announce, given, print_json, refusing, warn
+from solver.console import INTERRUPTED, add_command, announce, given, print_json, refusing, warn
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
@@ -32,8 +32,8 @@ from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, figures_of, known_reference
 from solver.study.quantities.quantity import Quantity
 
-REFUSED, OUT_OF_MEMORY, INTERRUPTED = 2, 3, 130
-"""Exit codes; the last is what shells have for a program that is ended by Ctrl-C."""
+REFUSED, OUT_OF_MEMORY = 2, 3
+"""Exit codes."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -41,11 +41,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended by Ctrl-C.
     """
+    try:
+        return _exit_code(arguments)
+    except KeyboardInterrupt:
+        warn("ended; files that are written stay")
+        return INTERRUPTED
+
+
+def _exit_code(arguments: Sequence[str] | None) -> int:
     parser = _parser()
     chosen, options = parser.parse_known_args(arguments)
     if options and not hasattr(chosen, "passed_on"):
         parser.error(f"unrecognized arguments: {' '.join(options)}")
     chosen.passed_on = options
+    if sys.stdout is None:
+        print("slipfront: nothing can be printed: standard output is closed", file=sys.stderr)
+        return REFUSED
     code = 0
     try:
         code = chosen.command(chosen)
@@ -62,15 +73,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not isinstance(trouble, BrokenPipeError):
             warn(f"nothing can be printed: {why(trouble)}")
             return REFUSED
-    except (MemoryError, RuntimeError) as trouble:
-        if isinstance(trouble, RuntimeError) and "MALLOC" not in str(trouble):  # that of SuperLU
-            raise
+    except MemoryError:
         remedy = "take a coarser mesh or fewer instants, or for `run` --no-reference"
         warn(f"this takes more memory than there is: {remedy}")
         return OUT_OF_MEMORY
-    except KeyboardInterrupt:
-        warn("ended; files that are written stay")
-        return INTERRUPTED
     return code
 
 

@@ -22,6 +22,9 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.page import NO_CHARTS, renderer
 
+INTERRUPTED = 130
+"""Exit code that shells have for a program that is ended by Ctrl-C."""
+
 
 def add_command(
     commands: Any,

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import copy
 import difflib
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from textwrap import shorten
 from typing import Any
 
 import param
@@ -24,6 +26,20 @@ POSITIVE = ANY, (0.0, 1e15)
 """Bounds of both columns of a path without values below zero."""
 FAR = 1e6
 """Numbers from here on are no limits to anybody's problem, but to the digits of a computer."""
+
+
+GONE = {
+    "interpolation": "paths are linear between their points",
+    "k_friction_scale": "k_scale is for all interfaces",
+    "k_normal_scale": "k_scale is for all interfaces",
+}
+"""Settings that files of early versions have, and why there are none any more."""
+NEAREST = 3
+"""Settings that are named, at most, where a name is unknown."""
+ALIKE = 0.5
+"""Likeness from which on another name may have been meant."""
+MEANING = 70
+"""Characters of the meaning of each."""
 
 
 class SettingError(RefusedError):
@@ -227,12 +243,37 @@ def allowed(definition: Parameter) -> str:
     return f"any number from 0 on (to {most})"
 
 
-def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
-    """Refusal of a name that no setting has; it says which may have been meant."""
-    names = list(known)
-    near = difflib.get_close_matches(name, names, n=1)
-    remedy = f"did you mean {near[0]}?" if near else "correct the name or leave it out"
-    return SettingError(name, value, ", ".join(names), f"there is no such setting, {remedy}")
+def unknown(name: str, value: object, scene: str, known: Mapping[str, Parameter]) -> SettingError:
+    """Refusal of a name that no setting of a scene has, with the nearest ones and their meaning."""
+    own = f"a setting of {scene}"
+    if name in GONE:
+        return SettingError(name, value, own, f"it is gone: {GONE[name]}; leave it out")
+    likeness = {other: _likeness(name, other, known[other]) for other in known}
+    near = [other for other in likeness if likeness[other] >= ALIKE]
+    near.sort(key=lambda other: -likeness[other])
+    remedy = "correct the name or leave it out"
+    if near:
+        told = [f"{other} ({_meaning(known[other])})" for other in near[:NEAREST]]
+        remedy = f"did you mean {', or '.join(told)}?"
+    return SettingError(name, value, own, f"there is no such setting, {remedy}")
+
+
+def _likeness(name: str, other: str, definition: Parameter) -> float:
+    """Likeness of a name to that of a setting: in spelling, in words, in words of its meaning."""
+    spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
+    words = set(name.lower().split("_"))
+    in_name = words & set(other.split("_"))
+    meaning = f"{title_of(definition)} {_meaning(definition)}".lower()
+    in_meaning = words & set(re.findall(r"\w+", meaning))
+    return spelling + (0.4 * len(in_name) + 0.5 * len(in_meaning)) / len(words)
+
+
+def _meaning(definition: Parameter) -> str:
+    """First clause of the help of a setting, or the names that it is one of."""
+    if isinstance(definition, param.Selector):
+        return f"one of {allowed(definition)}"
+    clause = re.split(r"[.:;,]", definition.doc or "", maxsplit=1)[0]
+    return shorten(clause, MEANING, placeholder="...")
 
 
 def checked_value(definition: Parameter, name: str, value: object) -> Any:

@@ -225,7 +225,7 @@ class MethodSettings(param.Parameterized):
         clean = {}
         for name, value in values.items():
             if name not in definitions:
-                raise unknown(name, value, definitions)
+                raise unknown(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)
         values = {**cls.of_method(clean.get("method", definitions["method"].default)), **clean}
         # A default that is given takes param as long as anything else.

@@ -9,7 +9,7 @@ from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
-from solver.console import add_command, given, print_files, print_tables, warn, writing
+from solver.console import INTERRUPTED, add_command, given, print_files, print_tables, warn, writing
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.executors import FORMS, opened
@@ -140,16 +140,21 @@ def _sweep(chosen: argparse.Namespace) -> int:
     warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
+        is_ended = False
         try:
             _run(plan, rows, chosen)
-        except (KeyboardInterrupt, BrokenExecutor) as end:
-            why = f"slipfront: {end}" if str(end) else "Stopped"
-            print(f"{why}; the same command goes on from here.", file=sys.stderr)
+        except KeyboardInterrupt:
+            is_ended = True
+            warn("stopped; the same command goes on from here")
+        except BrokenExecutor as end:
+            warn(f"{end}; the same command goes on from here")
         by_number = [rows[number] for number in sorted(rows)]
         write(chosen.out / TABLE, csv_of(plan, by_number))
         write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
     print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
     print_files(f"{TABLE} and {PAGE}", chosen.out)
+    if is_ended:
+        return INTERRUPTED
     return 0 if len(rows) == plan.size and all(row.holds for row in by_number) else 1
 
 

@@ -110,7 +110,7 @@ def test_the_proof_takes_a_case_of_ones_own(
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"setting": "peek = 3"}, ["peek = 3", "did you mean peak?"]),
+        ({"setting": "peek = 3"}, ["peek = 3", "did you mean peak ("]),
         ({"quantity": "luck"}, ["case: quantity", "end_displacement"]),
         ({"tolerance": "2"}, ["case: tolerance = 2", "below 1"]),
         ({"controls": '["peak"]'}, ["case: controls", "does something here"]),

@@ -136,7 +136,6 @@ def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys, monkeyp
     ("trouble", "code", "message"),
     [
         (MemoryError(), 3, "a coarser mesh"),
-        (RuntimeError("SUPERLU_MALLOC fails for buf in intCalloc()"), 3, "a coarser mesh"),
         (KeyboardInterrupt(), 130, "ended"),
     ],
 )
@@ -152,6 +151,13 @@ def test_what_ends_a_command_from_outside_takes_a_line_and_has_its_code(
     assert message in line
 
 
+def test_a_closed_output_is_told_in_a_line():
+    command = f"{sys.executable} -m solver run bar --set peak=0 >&-"
+    done = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "slipfront: nothing can be printed: standard output is closed\n"
+
+
 def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
     def fail(*given, **options):
         raise RuntimeError("of another kind")
@@ -164,7 +170,10 @@ def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["bar", "--set", "friktion=0.3"], ["friktion", "0.3", "did you mean friction?"]),
+        (
+            ["bar", "--set", "friktion=0.3"],
+            ["friktion", "0.3", "did you mean friction (Coefficient"],
+        ),
         (["bar", "--set", "peak=much"], ["peak", "much", "any number (at most 1e15 N in size)"]),
         (["bar", "--set", "elements=3"], ["substructures", "10", "1 to elements (3)"]),
         (["bar", "--set", "load=bad.csv"], ["load", "bad.csv", "line 2"]),

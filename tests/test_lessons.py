@@ -81,7 +81,7 @@ def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
         ("choices", '["this"]', ["right = 2", "at least two choices"]),
         ("right", "3", ["right = 3", "there are 2"]),
         ("scene", '"moon"', ['scene = "moon"', "bar, block"]),
-        ("settings", "{ peek = 3 }", ["settings: peek = 3", "did you mean peak?"]),
+        ("settings", "{ peek = 3 }", ["settings: peek = 3", "did you mean peak ("]),
         ("controls", '["k"]', ['controls = "k"', "k_scale"]),
         ("controls", '["seed"]', ['controls = "seed"', "does something"]),
         ("controls", '["peak", "friction", "pressure"]', ["at most 2 settings"]),

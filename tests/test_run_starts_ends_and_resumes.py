@@ -14,9 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options
+from numpy.linalg import LinAlgError
 from runs import assert_goes_on, sample, settings_of
+from scipy import sparse
 from threadpoolctl import threadpool_info, threadpool_limits
 
+from solver.arrays import sparse_factor
 from solver.latin import (
     PGD,
     Auto,
@@ -182,8 +185,22 @@ def test_blas_has_one_thread_while_an_iteration_lasts(monkeypatch: pytest.Monkey
 SMALL_BAR = {"elements": 20, "instants": 11, "substructures": 4, "search_direction": "paper"}
 
 
+def test_a_sparse_factor_tells_a_singular_matrix_from_memory_that_is_short(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with pytest.raises(LinAlgError, match="singular"):
+        sparse_factor(sparse.csc_array((3, 3)))
+
+    def short_of_memory(matrix: Any) -> Any:
+        raise RuntimeError("SUPERLU_MALLOC fails for buf in intCalloc()")
+
+    monkeypatch.setattr("solver.arrays.splu", short_of_memory)
+    with pytest.raises(MemoryError):
+        sparse_factor(sparse.eye_array(3, format="csc"))
+
+
 def singular(*arguments: Any, **options: Any) -> Any:
-    raise RuntimeError("Factor is exactly singular")
+    raise LinAlgError("Factor is exactly singular")
 
 
 @pytest.mark.parametrize("module", [response, coarse], ids=["substructure", "coarse problem"])
@@ -191,7 +208,7 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
     module: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     settings = BarSettings.checked(SMALL_BAR)
-    monkeypatch.setattr(module, "splu", singular)
+    monkeypatch.setattr(module, "sparse_factor", singular)
     with pytest.raises(RefusedError, match="k_scale"):
         next(iterations(discretise(settings), method_of(settings)))
 

@@ -11,7 +11,7 @@ from refusals import assert_names, refusal
 
 from app.files.link import query_of, read
 from app.state import default_settings
-from solver.definitions import CurveParameter, allowed
+from solver.definitions import GONE, CurveParameter, allowed
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes.bar import BarSettings
 
@@ -82,10 +82,34 @@ def test_whole_numbers_may_be_written_with_a_point_and_nothing_behind_it():
     assert type(BarSettings.checked({"elements": 100.0}).elements) is int
 
 
-def test_unknown_names_are_refused_with_the_nearest_one():
-    text = refusal(lambda: BarSettings.checked({"friktion": 0.3}))
-    assert_names(text, "friktion", "0.3", "substructures, multiscale")
-    assert "did you mean friction?" in text
+@pytest.mark.parametrize(
+    ("name", "meant", "meaning"),
+    [
+        ("friktion", "friction", "Coefficient of friction mu"),
+        ("mu", "friction", "Coefficient of friction mu"),
+        (
+            "left_displacement",
+            "support_displacement",
+            "Largest displacement of what holds the left",
+        ),
+        ("load_path", "load", "Force at the right end over time"),
+        ("k", "k_scale", "Multiplies the search direction k"),
+    ],
+)
+def test_unknown_names_are_refused_with_the_nearest_ones_and_their_meaning(name, meant, meaning):
+    text = refusal(lambda: BarSettings.checked({name: 0.3}))
+    assert_names(text, name, "0.3", "a setting of bar")
+    assert f"did you mean {meant} ({meaning}" in text
+    assert len(text) < 400
+
+
+@pytest.mark.parametrize("name", GONE)
+def test_settings_that_are_gone_are_called_gone(name):
+    text = refusal(lambda: BarSettings.checked({name: 1.0}))
+    assert f"it is gone: {GONE[name]}; leave it out" in text
+
+
+def test_names_that_are_no_settings_are_refused():
     for name in ("scene", "name", "param", "checked"):
         assert "there is no such setting" in refusal(
             lambda name=name: BarSettings.checked({name: "x"})

@@ -218,7 +218,7 @@ def test_a_range_holds_its_ends_and_what_is_between_and_a_list_each_value_once(
 
 
 FOOLISH = [
-    (["frction=0.1:0.6:3"], ["iterations"], "did you mean friction?"),
+    (["frction=0.1:0.6:3"], ["iterations"], "did you mean friction (Coefficient of friction"),
     (["friction"], ["iterations"], "name a setting and its values"),
     (["friction=0.1:0.6"], ["iterations"], "three numbers"),
     (["friction=0.1:0.6:1"], ["iterations"], "whole number from 2"),

@@ -259,3 +259,26 @@ def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
         "iterations, method=paper: elements^2.00, of 3 runs",
     ]
     assert growth(tiny(["elements=10,20,40"], ["iterations"]), rows[:3]) == []
+
+
+def seen_at_its(moment: str, folder: Path) -> bool:
+    """Whether a sweep into a folder has come to a moment of its course."""
+    table = folder / "sweep.csv"
+    if moment == "first row":
+        return table.exists() and len(table.read_text().splitlines()) > 1
+    return moment == "very beginning" or folder.exists()
+
+
+@pytest.mark.parametrize("moment", ["very beginning", "first process", "first row"])
+def test_an_interrupt_from_a_terminal_ends_a_sweep_in_a_line(moment: str, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    command = [sys.executable, "-m", "solver", "sweep", "bar", "--out", str(folder)]
+    command += ["--vary", "friction=0.1:0.6:5000", "--of", "dissipation", "--on", "processes:1"]
+    options = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}
+    with started(command, start_new_session=True, **options) as process:
+        wait_for(lambda: seen_at_its(moment, folder))
+        # A terminal sends it to all processes of the command.
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate()
+    assert process.returncode in (130, -signal.SIGINT)
+    assert len(said.decode().splitlines()) <= 1

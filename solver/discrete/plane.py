@@ -14,9 +14,8 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
-from scipy.sparse.linalg import splu
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete.substructure import tributary
 
 EDGE_MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
@@ -209,7 +208,7 @@ class SchurComplement:
             if isinstance(inner, np.ndarray):
                 self._solve = partial(cho_solve, cho_factor(inner))
             else:
-                self._solve = splu(sparse.csc_array(inner)).solve
+                self._solve = sparse_factor(sparse.csc_array(inner)).solve
             self._response = self._solve(coupling)
             own -= coupling.T @ self._response
         self.stiffness: Array = 0.5 * (own + own.T)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
-from solver.arrays import Array, Indices, as_slice
+from solver.arrays import Array, Indices, as_slice, sparse_factor
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks
 
@@ -122,7 +121,7 @@ def _solver(
     system: sparse.csc_array, spread: sparse.csr_array, constant: Array
 ) -> Callable[[Array, slice], Array]:
     """The map from macro-row forces of the targets at some instants to W~ at these rows."""
-    factor = splu(system)
+    factor = sparse_factor(system)
     if system.shape[0] > DENSE_UP_TO:
 
         def solve(forces: Array, instants: slice) -> Array:

@@ -75,7 +75,7 @@ class Iteration:
             self.linear = LinearStage(
                 problem, self.k, latin.linear, blocks, multiscale=latin.multiscale
             )
-        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
+        except LinAlgError:
             raise RefusedError(
                 "k_scale",
                 latin.direction.scale,

@@ -8,9 +8,8 @@ from functools import cached_property, partial
 import numpy as np
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
-from scipy.sparse.linalg import splu
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete.substructure import Elasticity
 
 DENSE_UP_TO = 150
@@ -102,5 +101,5 @@ def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:
     held = stiffness.copy()
     held.setdiag(held.diagonal() + springs)
     # Symmetric, so its rows are its columns.
-    solve: Callable[[Array], Array] = splu(held.T).solve
+    solve: Callable[[Array], Array] = sparse_factor(held.T).solve
     return solve

@@ -23,11 +23,12 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
+from numpy.linalg import LinAlgError
 from scipy import sparse
 from scipy.linalg import solve_triangular
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
-from solver.arrays import ROUNDING, Array, Indices
+from solver.arrays import ROUNDING, Array, Indices, sparse_factor
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, jumps, separated
 from solver.reference.glued import base_of, from_jumps, self_stresses
@@ -252,13 +253,13 @@ def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
 def factored(matrix: sparse.csc_array) -> SuperLU:
     """Factor a stiffness, (n, n); NoReferenceError where something moves that costs no force."""
     try:
-        factor = splu(
+        factor = sparse_factor(
             matrix,
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )
-    except RuntimeError as trouble:
+    except LinAlgError as trouble:
         raise NoReferenceError(_NOT_HELD) from trouble
     pivots = factor.U.diagonal()
     if np.any(pivots <= LOOSE * matrix.diagonal()[np.argsort(factor.perm_c)]):

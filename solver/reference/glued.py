@@ -15,9 +15,8 @@ import numpy as np
 from scipy import sparse
 from scipy.cluster.hierarchy import DisjointSet
 from scipy.sparse.csgraph import breadth_first_order, connected_components
-from scipy.sparse.linalg import splu
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Flags, Indices, sparse_factor
 
 NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
@@ -149,7 +148,7 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     base = np.union1d(np.flatnonzero(rigid), tree_jumps)
     others = np.setdiff1d(np.arange(size), base)
     branches = jumps[tree_jumps]
-    squares = splu(sparse.csc_array(branches @ branches.T))
+    squares = sparse_factor(sparse.csc_array(branches @ branches.T))
     paths = squares.solve((branches @ jumps[others].T).toarray())
     rows = np.concatenate([base, np.repeat(others, len(tree_jumps))])
     places = np.searchsorted(base, tree_jumps)

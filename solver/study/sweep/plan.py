@@ -176,7 +176,7 @@ def axis_of(settings: Settings, text: str) -> Varied:
     if not equals or not values:
         raise SettingError("--vary", text, FORM, "name a setting and its values")
     if name not in definitions:
-        raise unknown(name, values, definitions)
+        raise unknown(name, values, settings.scene, definitions)
     if ":" in values:
         found, logarithmic = _range(definitions[name], name, values)
     else:
