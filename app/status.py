@@ -105,12 +105,12 @@ def figures_line(frame: Frame, selection: Selection) -> str:
         hints[figure.title] = _over_time(frame, figure)
     figures["Slips"] = percent(float(slipping_shares(frame.deformed.status)[column]))
     figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
-    if _is_lost(frame):
-        figures = dict.fromkeys(figures, "–")
-        hints = dict.fromkeys(figures, LOST)
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])
+    if _is_lost(frame):
+        figures = dict.fromkeys(figures, "–")
+        hints = dict.fromkeys(figures, LOST)
     spans = (
         f'<span title="{escape(hints.get(name, ""))}">{escape(name)} <b>{value}</b></span>'
         for name, value in figures.items()

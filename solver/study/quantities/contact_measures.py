@@ -353,26 +353,34 @@ def slipped_share(run: FinishedRun) -> float:
 
 @quantity("Share of the contact that sticks at the largest load", is_share=True, when=largest_load)
 def stuck_share(run: FinishedRun, instant: int) -> float:
-    """Share of what touches that sticks at the largest load, by length; NaN if nothing does."""
+    """Share of what touches that sticks at the largest load, by length; NaN if nothing does.
+
+    Points that are held and never move are left out.
+    """
     length, every = _touching(run)
+    still = _stand_still(run)
+    length = length * ~np.concatenate([still[name] for name in _lengths(run)])
     status = every[:, instant]
     touching = length[status != OPEN].sum()
     return float(length[status == 0].sum() / touching) if touching else math.nan
 
 
 def _slipped_shares(run: FinishedRun) -> Array:
-    """Share of the points that have slipped by every instant, shape (n_instants,).
-
-    Points that are held and stand still can not slip, and are left out.
-    """
+    """Share of the points that have slipped by every instant, of those that can, (n_instants,)."""
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
-    held = run.problem.is_held
-    still = [
-        np.bincount(law.points, ~np.all([held[rows] for rows in law.tangent.sides], axis=0)) == 0
-        for law in run.problem.rubbing.values()
-    ]
-    counted = slipped[slipped[:, -1] | ~np.concatenate(still)]
+    counted = slipped[~np.concatenate(list(_stand_still(run).values()))]
     return counted.mean(axis=0) if len(counted) else np.zeros(slipped.shape[1])
+
+
+def _stand_still(run: FinishedRun) -> dict[str, NDArray[np.bool_]]:
+    """Points of each interface that are held and never move, (n_points,): they cannot slip."""
+    held = run.problem.is_held
+    still = {}
+    for name, law in run.problem.rubbing.items():
+        is_held = np.all([held[rows] for rows in law.tangent.sides], axis=0)
+        has_slipped = np.any(np.abs(run.iterate.contact(name).status) == 1, axis=1)
+        still[name] = (law.by_point(1.0 * ~is_held) == 0.0) & ~has_slipped
+    return still
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:

@@ -197,7 +197,7 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
     NaN without a broken wire, or without tension; infinite if it does so on neither side.
     """
     described = run.settings.structure().described()
-    if described.broken is None or not run.force[instant]:
+    if described.broken is None or run.force[instant] <= 0.0:
         return math.nan
     wire, place = described.broken
     axial = AxialForce(run.problem, slice(instant, instant + 1))
