@@ -20,7 +20,7 @@ ENDINGS = {
 }
 
 
-LOST = "some instants have no solution, so that the run has no figures"
+LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures that are not told."""
 
 

@@ -175,8 +175,8 @@ def _print_figures(
         of_run = [QUANTITIES[name] for name in OF_WHOLE_RUN]
     else:
         count, time_lost = run.problem.n_instants, run.problem.instants[run.lost_from]
-        lost = f"{count - run.lost_from} of {count} instants have no solution"
-        warn(f"no key figures are told: {lost}, the first at {time_lost:.4g} s")
+        lost = f"no solution is found at {count - run.lost_from} of {count} instants"
+        warn(f"no key figures are told: {lost}, from {time_lost:.4g} s on")
         figures["lost_from"] = float(time_lost)
     if as_json:
         print_json(

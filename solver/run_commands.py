@@ -120,8 +120,8 @@ def _compare(chosen: argparse.Namespace) -> int:
     figures = beside.figures(solution.iterate)
     status = solution.status
     if status.lost_from is not None:
-        lost = f"the first of them at {problem.instants[status.lost_from]:.4g} s"
-        warn(f"no distance is told: some instants have no solution, {lost}")
+        time_lost = problem.instants[status.lost_from]
+        warn(f"no distance is told: no solution is found from {time_lost:.4g} s on")
         figures |= dict.fromkeys(figures.keys() & {"distance", "distance_given"}, math.nan)
     elif isinstance(beside, LoopComparison):
         warn(*beside.drive_messages(figures["distance_given"]))

@@ -285,7 +285,7 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
             lost_from = reference.collapse.instant
             message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
         elif reference.jumps_at is not None:
-            lost_from = int(np.argmin(reference.converged))
+            # That none is found is no proof: a run may converge to one.
             message += ": friction softens until the structure jumps"
         return Known(None, message, lost_from)
     if reference.jumps_at is not None:
