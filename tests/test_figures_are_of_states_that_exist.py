@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -52,12 +53,17 @@ def ran(scene: str, **changes: Any) -> FinishedRun:
     return _made(scene, json.dumps(changes))
 
 
-def printed(capsys: pytest.CaptureFixture[str], scene: str, *options: str, **changes: Any) -> Any:
-    given = []
+def given(changes: dict[str, Any]) -> list[str]:
+    """Arguments of a command that give settings."""
+    arguments = []
     for name, value in changes.items():
         text = value if isinstance(value, str) else json.dumps(value)
-        given += ["--set", f"{name}={text}"]
-    main(["run", scene, *given, "--json", *options])
+        arguments += ["--set", f"{name}={text}"]
+    return arguments
+
+
+def printed(capsys: pytest.CaptureFixture[str], scene: str, *options: str, **changes: Any) -> Any:
+    main(["run", scene, *given(changes), "--json", *options])
     return json.loads(capsys.readouterr().out)
 
 
@@ -154,6 +160,20 @@ def test_of_a_wall_that_falls_no_state_is_told_that_does_not_exist(
     values = found["quantities"]
     assert values.pop("iterations") > 0
     assert set(values.values()) == {None}
+
+
+def test_a_wall_that_falls_has_no_distance_to_a_measured_loop(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    times = ran("wall", **FALLS).problem.instants
+    rows = [f"{time},{1e-4 * time},{1e5 * time}" for time in times]
+    file = tmp_path / "loop.csv"
+    file.write_text("\n".join(["time [s],displacement [m],force [N]", *rows]))
+    assert main(["compare", "wall", *given(FALLS), "--with", str(file), "--json"]) == 1
+    printed = capsys.readouterr()
+    found = json.loads(printed.out)
+    assert (found["distance"], found["distance_given"]) == (None, None)
+    assert "no solution" in printed.err
 
 
 def test_names_that_are_gone_are_told_by_their_new_ones() -> None:
