@@ -10,9 +10,10 @@ from typing import Any
 
 import pytest
 
-from app.frame import Selection
+from app.frame import Frame, Selection
 from app.messages import Needs
-from app.status import figures_line
+from app.state import PageState
+from app.status import figures_line, status_line
 from app.worker.sampling import Sampler
 from solver.cli import main
 from solver.definitions import SettingError
@@ -183,19 +184,29 @@ def test_names_that_are_gone_are_told_by_their_new_ones() -> None:
             reading(name)
 
 
-def shown(run: FinishedRun, phase: float) -> str:
+def shown(run: FinishedRun) -> Frame:
     sampler = Sampler(run.problem, run.settings, 1)
-    frame = sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
-    return figures_line(frame, Selection(phase=phase))
+    return sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
 
 
-def test_the_page_has_the_largest_and_the_last_value_over_that_of_the_instant() -> None:
-    line = shown(ran("bar", **LOOSENED), 0.5)
+def details(frame: Frame) -> str:
+    state = PageState(frame.run.settings)
+    state.param.update(frame=frame, newest=frame)
+    return status_line(state)
+
+
+def test_the_page_has_the_largest_and_the_last_value_beside_that_of_the_instant() -> None:
+    frame = shown(ran("bar", **LOOSENED))
+    line = figures_line(frame, Selection(phase=0.5))
     assert "End displacement <b>182 µm</b>" in line
-    assert 'title="largest 243 µm at 1 s, last 243 µm"' in line
+    told = "largest 243 µm at 1 s, last 243 µm"
+    assert f'title="{told}"' in line
+    assert f"End displacement: {told}" in details(frame)
 
 
 def test_the_page_tells_no_figures_of_a_wall_that_falls() -> None:
-    line = shown(ran("wall", **FALLS), 1.0)
+    frame = shown(ran("wall", **FALLS))
+    line = figures_line(frame, Selection(phase=1.0))
     assert line.count("<b>–</b>") == 4
     assert "no solution" in line
+    assert "largest" not in details(frame)
