@@ -75,9 +75,8 @@ def _details(frame: Frame, said: list[str]) -> str:
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
         words.append(escape(frame.status.advice))
     if not _is_lost(frame):
-        words += [
-            escape(f"{figure.title}: {_over_time(frame, figure)}") for figure in _of_loop(frame)
-        ]
+        figures = [f"{one.title}: {_over_time(frame, one)}" for one in _of_loop(frame)]
+        words.extend(map(escape, figures))
     lines = "".join(f"<div>{word}</div>" for word in [*words, *said])
     return f"<details><summary>details</summary><div>{lines}</div></details>"
 
@@ -111,10 +110,10 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     if _is_lost(frame):
         figures = dict.fromkeys(figures, "–")
         hints = dict.fromkeys(figures, LOST)
-    spans = (
-        f'<span title="{escape(hints.get(name, ""))}">{escape(name)} <b>{value}</b></span>'
-        for name, value in figures.items()
-    )
+    spans = []
+    for name, value in figures.items():
+        hint = escape(hints.get(name, ""))
+        spans.append(f'<span title="{hint}">{escape(name)} <b>{value}</b></span>')
     return "".join(spans)
 
 
@@ -130,11 +129,14 @@ def _of_loop(frame: Frame) -> list[KeyFigure]:
 
 def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
     """Unit in which a key figure is read, chosen once for the run; a share is in per cent."""
-    return unit_for(abs(figure.largest), figure.unit) if figure.unit else percent
+    if not figure.unit:
+        return percent
+    return unit_for(abs(figure.largest), figure.unit)
 
 
 def _over_time(frame: Frame, figure: KeyFigure) -> str:
     """Largest value of a key figure with its instant, and its last value."""
-    instants, told = frame.run.instants, _unit_of(figure)
+    instants = frame.run.instants
+    told = _unit_of(figure)
     when = unit_for(float(instants[-1]), "s")(float(instants[figure.instant]))
     return f"largest {told(figure.largest)} at {when}, last {told(figure.last)}"

@@ -140,7 +140,9 @@ def _run(chosen: argparse.Namespace) -> int:
     watch = chosen.reference or any(one.reads == "indicators" for one in asked)
     announce(settings, problem, reference=chosen.reference, limit=limit)
     known = _known(problem, limit) if chosen.reference else Known()
-    distance = None if known.reference is None else distance_to(known.reference, problem)
+    distance = None
+    if known.reference is not None:
+        distance = distance_to(known.reference, problem)
     if chosen.slab is None:
         solution = solve(problem, method, distance=distance, watch=watch, spent=spent)
     else:
@@ -165,8 +167,12 @@ OF_WHOLE_RUN = ("slipped_share", "dissipation")
 
 
 def _print_figures(
-    run: FinishedRun, asked: Sequence[Quantity], tables: Mapping[str, str], as_json: bool
+    run: FinishedRun,
+    asked: Sequence[Quantity],
+    tables: Mapping[str, str],
+    as_json: bool,
 ) -> None:
+    """Print what a run came to; nothing of its states where instants are lost."""
     figures = summary(run.settings, run.solution)
     of_loop: Sequence[KeyFigure] = ()
     of_run: Sequence[Quantity] = ()
@@ -174,36 +180,46 @@ def _print_figures(
         of_loop = figures_of(run)
         of_run = [QUANTITIES[name] for name in OF_WHOLE_RUN]
     else:
-        count, time_lost = run.problem.n_instants, run.problem.instants[run.lost_from]
-        lost = f"no solution is found at {count - run.lost_from} of {count} instants"
-        warn(f"no key figures are told: {lost}, from {time_lost:.4g} s on")
-        figures["lost_from"] = float(time_lost)
-    if as_json:
-        print_json(
-            {
-                **figures,
-                **{figure.name: figure.largest for figure in of_loop},
-                **{quantity.name: quantity(run) for quantity in of_run},
-                "key_figures": {figure.name: _told(run, figure) for figure in of_loop},
-                **({"quantities": {one.name: one(run) for one in asked}} if asked else {}),
-                "tables": tables,
-                "settings": run.settings.values(),
-            }
-        )
+        figures["lost_from"] = _loss(run.problem, run.lost_from)
+    if not as_json:
+        _print_lines(figures)
+        for figure in of_loop:
+            print(f"{figure.name:<20} {_in_words(run, figure)}")
+        for one in of_run:
+            number = _number(one(run), one.unit)
+            print(f"{one.name:<20} {number} ({one.title}, whole run)")
+        for one in asked:
+            print(f"{one.name:<20} {_number(one(run), one.unit)}")
         return
+    figures |= {figure.name: figure.largest for figure in of_loop}
+    figures |= {one.name: one(run) for one in of_run}
+    figures["key_figures"] = {figure.name: _told(run, figure) for figure in of_loop}
+    if asked:
+        figures["quantities"] = {one.name: one(run) for one in asked}
+    print_json({**figures, "tables": tables, "settings": run.settings.values()})
+
+
+def _print_lines(figures: Mapping[str, object]) -> None:
     for name, value in figures.items():
         for line in value if isinstance(value, list) else [value]:
             print(f"{name:<20} {f'{line:.6g}' if isinstance(line, float) else line}")
-    for figure in of_loop:
-        at = f"at {run.problem.instants[figure.instant]:.6g} s"
-        largest = _number(figure.largest, figure.unit)
-        last = _number(figure.last, figure.unit)
-        print(f"{figure.name:<20} {largest} ({figure.title}, largest, {at}; last {last})")
-    for quantity in of_run:
-        number = _number(quantity(run), quantity.unit)
-        print(f"{quantity.name:<20} {number} ({quantity.title}, whole run)")
-    for one in asked:
-        print(f"{one.name:<20} {_number(one(run), one.unit)}")
+
+
+def _loss(problem: Problem, first: int) -> float:
+    """Tell from when on there is no solution, of its first instant; that time, s."""
+    count = problem.n_instants
+    time_lost = float(problem.instants[first])
+    lost = f"no solution is found at {count - first} of {count} instants"
+    warn(f"no key figures are told: {lost}, from {time_lost:.4g} s on")
+    return time_lost
+
+
+def _in_words(run: FinishedRun, figure: KeyFigure) -> str:
+    """A key figure in words: its largest value and when that is, and its last."""
+    at = f"at {run.problem.instants[figure.instant]:.6g} s"
+    largest = _number(figure.largest, figure.unit)
+    last = _number(figure.last, figure.unit)
+    return f"{largest} ({figure.title}, largest, {at}; last {last})"
 
 
 def _told(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:

@@ -245,12 +245,16 @@ class _Hold:
         It begins between two instants, where all its friction, if it grows on as before, comes to
         mu times all that presses.
         """
-        pressing, carried = self.pressing, np.abs(self.carried)
+        pressing = self.pressing
+        carried = np.abs(self.carried)
+        step = np.diff(instants)
         begins = np.flatnonzero(self.slides[2:] & ~self.slides[1:-1]) + 2
-        before, step = begins - 1, np.diff(instants)
-        growth = (carried[before] - carried[begins - 2]) * step[before] / step[begins - 2]
+        before = begins - 1
+        pace = (carried[before] - carried[before - 1]) / step[before - 1]
+        growth = pace * step[before]
         rise = pressing[begins] - pressing[before]
-        lacks, closes = friction * pressing[before] - carried[before], growth - friction * rise
+        lacks = friction * pressing[before] - carried[before]
+        closes = growth - friction * rise
         share = np.divide(lacks, closes, np.ones_like(lacks), where=closes > 0.0)
         at_onset = pressing[before] + np.clip(share, 0.0, 1.0) * rise
         return np.concatenate([pressing[self.slides], at_onset])

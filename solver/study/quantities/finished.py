@@ -200,10 +200,11 @@ def key_figures(axes: Axes, loop: Iterable[NDArray[Any]]) -> list[KeyFigure]:
 
     A displacement has the name `displacement`, a force `force`; other numbers have others.
     """
-    return [
-        KeyFigure(DRIVES.get(title, OF_UNITS.get(unit, "")), title, unit, np.asarray(values))
-        for (title, unit), values in zip(axes, loop, strict=True)
-    ]
+    figures = []
+    for (title, unit), values in zip(axes, loop, strict=True):
+        name = DRIVES.get(title) or OF_UNITS[unit]
+        figures.append(KeyFigure(name, title, unit, np.asarray(values)))
+    return figures
 
 
 def figures_of(run: FinishedRun) -> list[KeyFigure]:
@@ -245,7 +246,9 @@ def finished_run(
     problem = discretise(settings)
     spent = time.perf_counter() - began
     known = known_reference(problem) if errors else Known()
-    distance = None if known.reference is None else distance_to(known.reference, problem)
+    distance = None
+    if known.reference is not None:
+        distance = distance_to(known.reference, problem)
     if before is not None and (near := neighbour(problem, settings, before)) is not None:
         return FinishedRun(settings, near, was_warm=True)
     solution = solve(
