@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from html import escape
 
 from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import number, percent, unit_for
 from solver.latin import Ending
-from solver.study.quantities.finished import key_figures
+from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
 
 ENDINGS = {
     Ending.CONVERGED: "✓ solved",
@@ -17,6 +18,10 @@ ENDINGS = {
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
+
+
+LOST = "no figures are told, as no solution is found at some instants"
+"""Hint over figures that are not told."""
 
 
 def status_line(state: PageState) -> str:
@@ -69,6 +74,9 @@ def _details(frame: Frame, said: list[str]) -> str:
     ]
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
         words.append(escape(frame.status.advice))
+    if not _is_lost(frame):
+        figures = [f"{one.title}: {_over_time(frame, one)}" for one in _of_loop(frame)]
+        words.extend(map(escape, figures))
     lines = "".join(f"<div>{word}</div>" for word in [*words, *said])
     return f"<details><summary>details</summary><div>{lines}</div></details>"
 
@@ -84,17 +92,51 @@ def _said(state: PageState) -> list[str]:
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:
-    """What became of the thing at the selected instant, as key figures in a line (HTML)."""
-    run, column = frame.run, frame.run.column(selection.phase)
-    axes, status = (run.across, run.up), frame.deformed.status
-    figures = {
-        figure.title: unit_for(figure.largest, figure.unit)(figure.value)
-        if figure.unit
-        else percent(figure.value)
-        for figure in key_figures(axes, frame.loop, status, frame.energy, column)
-    }
+    """What became of the thing at the selected instant, as key figures in a line (HTML).
+
+    Its largest and last values appear over each of them. Nothing is told of a run some of whose
+    instants are known to have no solution.
+    """
+    column = frame.run.column(selection.phase)
+    figures, hints = {}, {}
+    for figure in _of_loop(frame):
+        figures[figure.title] = _unit_of(figure)(figure.at(column))
+        hints[figure.title] = _over_time(frame, figure)
+    figures["Slips"] = percent(float(slipping_shares(frame.deformed.status)[column]))
+    figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])
-    spans = (f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures.items())
+    if _is_lost(frame):
+        figures = dict.fromkeys(figures, "–")
+        hints = dict.fromkeys(figures, LOST)
+    spans = []
+    for name, value in figures.items():
+        hint = escape(hints.get(name, ""))
+        spans.append(f'<span title="{hint}">{escape(name)} <b>{value}</b></span>')
     return "".join(spans)
+
+
+def _is_lost(frame: Frame) -> bool:
+    """Whether some instants of a run are known to have no solution."""
+    return frame.status is not None and frame.status.lost_from is not None
+
+
+def _of_loop(frame: Frame) -> list[KeyFigure]:
+    """Key figures of the loop of a frame."""
+    return key_figures((frame.run.across, frame.run.up), frame.loop)
+
+
+def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
+    """Unit in which a key figure is read, chosen once for the run; a share is in per cent."""
+    if not figure.unit:
+        return percent
+    return unit_for(abs(figure.largest), figure.unit)
+
+
+def _over_time(frame: Frame, figure: KeyFigure) -> str:
+    """Largest value of a key figure with its instant, and its last value."""
+    instants = frame.run.instants
+    told = _unit_of(figure)
+    when = unit_for(float(instants[-1]), "s")(float(instants[figure.instant]))
+    return f"largest {told(figure.largest)} at {when}, last {told(figure.last)}"

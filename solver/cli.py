@@ -22,14 +22,20 @@ from solver.disk import check_place, why
 from solver.files import save_result, scene_settings, summary
 from solver.latin import Ending, solve, solve_in_slabs
 from solver.reference.condensation import NoReferenceError
-from solver.reference.distance import Distance, distance_to, held_instants
+from solver.reference.distance import distance_to, held_instants
 from solver.refusal import RefusedError
 from solver.report_commands import add_reports
 from solver.run_commands import add_checks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.quantities import reading
-from solver.study.quantities.finished import FinishedRun, figures_of, known_reference
+from solver.study.quantities import QUANTITIES, reading
+from solver.study.quantities.finished import (
+    FinishedRun,
+    KeyFigure,
+    Known,
+    figures_of,
+    known_reference,
+)
 from solver.study.quantities.quantity import Quantity
 
 REFUSED, OUT_OF_MEMORY = 2, 3
@@ -139,7 +145,10 @@ def _run(chosen: argparse.Namespace) -> int:
     method = replace(method, stop=replace(method.stop, seconds=limit))
     watch = chosen.reference or any(one.reads == "indicators" for one in asked)
     announce(settings, problem, reference=chosen.reference, limit=limit)
-    distance = _distance(problem, limit) if chosen.reference else None
+    known = _known(problem, limit) if chosen.reference else Known()
+    distance = None
+    if known.reference is not None:
+        distance = distance_to(known.reference, problem)
     if chosen.slab is None:
         solution = solve(problem, method, distance=distance, watch=watch, spent=spent)
     else:
@@ -154,44 +163,95 @@ def _run(chosen: argparse.Namespace) -> int:
             "displacement is one of many there, and counts in no error"
         )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
-        run = FinishedRun(settings, solution)
+        run = FinishedRun(settings, solution, known_loss=known.lost_from)
         _print_figures(run, asked, tables, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
+OF_WHOLE_RUN = ("slipped_share", "dissipation")
+"""Quantities beside the key figures of the loop."""
+
+
 def _print_figures(
-    run: FinishedRun, asked: Sequence[Quantity], tables: Mapping[str, str], as_json: bool
+    run: FinishedRun,
+    asked: Sequence[Quantity],
+    tables: Mapping[str, str],
+    as_json: bool,
 ) -> None:
-    figures, (of_loop, time_of_load) = summary(run.settings, run.solution), figures_of(run)
-    values = {one.name: (one(run), one.unit) for one in asked}
-    if as_json:
-        more = {figure.name: figure.value for figure in of_loop}
-        of = {"quantities": {name: value for name, (value, _) in values.items()}} if asked else {}
-        settings = run.settings.values()
-        print_json({**figures, **more, **of, "tables": tables, "settings": settings})
+    """Print what a run came to; nothing of its states where instants are lost."""
+    figures = summary(run.settings, run.solution)
+    of_loop: Sequence[KeyFigure] = ()
+    of_run: Sequence[Quantity] = ()
+    if run.lost_from is None:
+        of_loop = figures_of(run)
+        of_run = [QUANTITIES[name] for name in OF_WHOLE_RUN]
+    else:
+        figures["lost_from"] = _loss(run.problem, run.lost_from)
+    if not as_json:
+        _print_lines(figures)
+        for figure in of_loop:
+            print(f"{figure.name:<20} {_in_words(run, figure)}")
+        for one in of_run:
+            number = _number(one(run), one.unit)
+            print(f"{one.name:<20} {number} ({one.title}, whole run)")
+        for one in asked:
+            print(f"{one.name:<20} {_number(one(run), one.unit)}")
         return
+    figures |= {figure.name: figure.largest for figure in of_loop}
+    figures |= {one.name: one(run) for one in of_run}
+    figures["key_figures"] = {figure.name: _told(run, figure) for figure in of_loop}
+    if asked:
+        figures["quantities"] = {one.name: one(run) for one in asked}
+    print_json({**figures, "tables": tables, "settings": run.settings.values()})
+
+
+def _print_lines(figures: Mapping[str, object]) -> None:
     for name, value in figures.items():
         for line in value if isinstance(value, list) else [value]:
             print(f"{name:<20} {f'{line:.6g}' if isinstance(line, float) else line}")
-    for figure in of_loop:
-        when = "in all" if figure.name == "energy" else f"at {time_of_load:.6g} s"
-        number = f"{figure.value:.6g} {figure.unit}".strip()
-        print(f"{figure.name:<20} {number} ({figure.title}, {when})")
-    for name, (value, unit) in values.items():
-        number = "none" if math.isnan(value) else f"{value:.6g} {unit}".strip()
-        print(f"{name:<20} {number}")
 
 
-def _distance(problem: Problem, limit: float) -> Distance | None:
-    """Distance to the reference, or None where there is none in time."""
+def _loss(problem: Problem, first: int) -> float:
+    """Tell from when on there is no solution, of its first instant; that time, s."""
+    count = problem.n_instants
+    time_lost = float(problem.instants[first])
+    lost = f"no solution is found at {count - first} of {count} instants"
+    warn(f"no key figures are told: {lost}, from {time_lost:.4g} s on")
+    return time_lost
+
+
+def _in_words(run: FinishedRun, figure: KeyFigure) -> str:
+    """A key figure in words: its largest value and when that is, and its last."""
+    at = f"at {run.problem.instants[figure.instant]:.6g} s"
+    largest = _number(figure.largest, figure.unit)
+    last = _number(figure.last, figure.unit)
+    return f"{largest} ({figure.title}, largest, {at}; last {last})"
+
+
+def _told(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
+    """A key figure for scripts: its largest value and when that is, s, and its last."""
+    return {
+        "title": figure.title,
+        "unit": figure.unit,
+        "largest": figure.largest,
+        "largest_at": float(run.problem.instants[figure.instant]),
+        "last": figure.last,
+    }
+
+
+def _number(value: float, unit: str) -> str:
+    return "none" if math.isnan(value) else f"{value:.6g} {unit}".strip()
+
+
+def _known(problem: Problem, limit: float) -> Known:
+    """The reference, or none where there is none in time, and what is said of it."""
     end = time.perf_counter() + limit
-    reference, doubt = known_reference(problem, lambda: time.perf_counter() > end)
-    if reference is None:
-        warn(f"no errors are known: {doubt}")
-        return None
-    if doubt:
-        warn(f"{doubt}; errors are to one of them")
-    return distance_to(reference, problem)
+    known = known_reference(problem, lambda: time.perf_counter() > end)
+    if known.reference is None:
+        warn(f"no errors are known: {known.doubt}")
+    elif known.doubt:
+        warn(f"{known.doubt}; errors are to one of them")
+    return known
 
 
 def _scenes(_chosen: argparse.Namespace) -> int:

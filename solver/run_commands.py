@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from pathlib import Path
@@ -117,14 +118,20 @@ def _compare(chosen: argparse.Namespace) -> int:
     announce(settings, problem)
     solution = solve(problem, method_of(settings))
     figures = beside.figures(solution.iterate)
-    if isinstance(beside, LoopComparison):
-        warn(*beside.drive_messages(figures["distance_given"]))
     status = solution.status
+    if status.lost_from is not None:
+        time_lost = problem.instants[status.lost_from]
+        warn(f"no distance is told: no solution is found from {time_lost:.4g} s on")
+        figures |= dict.fromkeys(figures.keys() & {"distance", "distance_given"}, math.nan)
+    elif isinstance(beside, LoopComparison):
+        warn(*beside.drive_messages(figures["distance_given"]))
     if chosen.json:
         print_json({**figures, "tables": {**tables, name: message}, "status": str(status.ending)})
     else:
-        far = f"{figures['quantity']}: {100.0 * figures['distance']:.4g} % from {name}"
-        print(f"{far}, at {figures['rows_compared']} of {figures['rows']} rows")
+        distance = figures["distance"]
+        far = "no distance" if math.isnan(distance) else f"{100.0 * distance:.4g} %"
+        rows = f"{figures['rows_compared']} of {figures['rows']} rows"
+        print(f"{figures['quantity']}: {far} from {name}, at {rows}")
     return 0 if status.ending is Ending.CONVERGED else 1
 
 

@@ -22,7 +22,13 @@ from solver.study.quantities.finished import FinishedRun, finished_run
 
 STIFFNESS, BOUND = 210e9 * 3.14e-6, 1500.0
 SMALL = {"elements": 20, "instants": 21, "substructures": 2}
-DECIDED_BY_THE_LOAD = "residual_displacement", "holding_friction", "cycle_energy_ratio"
+DECIDED_BY_THE_LOAD = (
+    "residual_displacement",
+    "holding_friction",
+    "cycle_energy_ratio",
+    "displacement",
+    "force",
+)
 SMALL_BLOCK = {"elements": 12, "elements_up": 6, "instants": 13, "substructures": 1}
 
 

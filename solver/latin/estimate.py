@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -130,8 +131,9 @@ class ErrorEstimate:
             return
         except Interrupted:
             return
-        jumped = solution.jumps_at is not None and solution.is_lost
-        self.ending = JUMPS if jumped else None
+        self.ending = None
+        if solution.jumps_at is not None and solution.is_lost:
+            self.ending = replace(JUMPS, lost_from=int(np.argmin(solution.converged)))
         if solution.collapse is not None:
             self.ending = collapses(solution.collapse)
         if certificate is not None and certificate.residual <= self._accuracy:

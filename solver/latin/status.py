@@ -33,10 +33,15 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True)
 class Status:
-    """The end of a run, in a word, and what to try next in a sentence."""
+    """The end of a run, in a word, and what to try next in a sentence.
+
+    `lost_from` is the first instant that has no solution, where some are known to have none: what
+    an iterate shows from there on is no state of the structure.
+    """
 
     ending: Ending
     advice: str
+    lost_from: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +107,7 @@ def collapses(collapse: Collapse) -> Status:
         Ending.STALLED,
         f"There is no equilibrium from {collapse.time:.4g} s on: no contact forces within friction "
         f"balance the loads, and the structure {way}. {remedy}",
+        lost_from=collapse.instant,
     )
 
 

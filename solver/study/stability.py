@@ -181,7 +181,7 @@ def _measured(solution: Solution) -> Outcome:
     iterate, status, problem = solution.iterate, solution.status, solution.iterate.problem
     if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
         return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
-    reference, doubt = known_reference(problem)
+    reference, doubt, _ = known_reference(problem)
     distance = None if reference is None else distance_to(reference, problem)
     residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
     error = distance.of_friction_force(iterate) if distance else math.nan

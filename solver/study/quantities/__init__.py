@@ -23,12 +23,17 @@ QUANTITIES = {
     if isinstance(found, Quantity)
 }
 """All quantities by name, as their modules define them."""
+FORMER = {"energy": "dissipation", "slipping": "slipped_share"}
+"""Names that quantities had elsewhere before, and those that they have."""
 
 
 def reading(text: object) -> Quantity:
     """Quantity that is asked for, as `NAME` or `NAME@PARAMETER`; others are refused."""
     name, at_sign, number = text.partition("@") if isinstance(text, str) else ("", "", "")
     quantity = QUANTITIES.get(name)
+    if name in FORMER:
+        new = FORMER[name]
+        raise SettingError("quantity", text, new, f"{name} is called {new}")
     if quantity is None:
         raise SettingError("quantity", text, ", ".join(QUANTITIES), "choose one of these")
     parameter = quantity.parameter

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from dataclasses import dataclass
 from operator import attrgetter
 
 import numpy as np
@@ -17,7 +18,13 @@ from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
 from solver.settings import Settings
 from solver.study.quantities.cycles import instants_of
-from solver.study.quantities.finished import FinishedRun, largest_load
+from solver.study.quantities.finished import (
+    EQUAL,
+    FinishedRun,
+    figures_of,
+    first_largest,
+    largest_load,
+)
 from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantity
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
@@ -29,9 +36,14 @@ _over_a_displacement = attrgetter("loop_is_over_displacement")
 
 
 def _rubs_by_mu(settings: Settings) -> bool:
-    """Whether friction before slip is mu N."""
+    """Whether friction is mu N at most, whatever has slipped."""
     law = settings.law
-    return law.cohesion == 0.0 and math.isinf(law.cap)
+    return law.cohesion == 0.0 and math.isinf(law.cap) and law.strength is None
+
+
+def _has_no_wires_around(settings: Settings) -> bool:
+    """Whether the loop is no moment over a curvature."""
+    return settings.kind != "helices"
 
 
 def _in_the_plane(settings: Settings) -> bool:
@@ -47,16 +59,41 @@ def peak_displacement(run: FinishedRun) -> float:
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
 
 
+def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
+    """Key figure of the loop: largest in size, or at a share of the interval; NaN without it."""
+    for figure in figures_of(run):
+        if figure.name == name:
+            return figure.largest if at is None else figure.at(_instant_at(run, at))
+    return math.nan
+
+
+@quantity("Largest displacement of the loop", "m", parameter=AT, applies=_has_no_wires_around)
+def displacement(run: FinishedRun, at: float | None) -> float:
+    """Displacement of the loop that is largest in size, m; NaN where it is over something else."""
+    return _of_loop(run, "displacement", at)
+
+
+@quantity("Largest force of the loop", "N", parameter=AT, applies=_has_no_wires_around)
+def force(run: FinishedRun, at: float | None) -> float:
+    """Force of the loop that is largest in size, N; NaN where it shows something else."""
+    return _of_loop(run, "force", at)
+
+
 def _axial_force(run: FinishedRun) -> Array:
     return AxialForce(run.problem)(run.iterate.displacement)
 
 
 def _most_axial_force(run: FinishedRun, at: float | None) -> int:
     """Instant at a share of the interval, or that of the largest axial force."""
-    times = run.problem.instants
     if at is None:
-        return int(np.abs(_axial_force(run)).max(axis=0).argmax())
-    return int(np.abs(times - at * times[-1]).argmin())
+        return first_largest(np.abs(_axial_force(run)).max(axis=0))
+    return _instant_at(run, at)
+
+
+def _instant_at(run: FinishedRun, share: float) -> int:
+    """Instant that is nearest to a share of the interval."""
+    times = run.problem.instants
+    return int(np.abs(times - share * times[-1]).argmin())
 
 
 @quantity(
@@ -69,7 +106,7 @@ def _most_axial_force(run: FinishedRun, at: float | None) -> int:
 def axial_force(run: FinishedRun, instant: int) -> float:
     """Largest axial force in any element at an instant, N, pull positive."""
     force = _axial_force(run)[:, instant]
-    return float(force[np.abs(force).argmax()])
+    return float(force[first_largest(force)])
 
 
 def _force_at(side: str) -> Quantity:
@@ -80,7 +117,7 @@ def _force_at(side: str) -> Quantity:
         if isinstance(structure, Rods):
             end = structure.end_force(problem, "right" if side == "right" else "left")
             values = end.of(run.iterate)
-            return float(values[np.abs(values).argmax()])
+            return float(values[first_largest(values)])
         moved = run.iterate.displacement
         return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
 
@@ -178,6 +215,76 @@ def spring_force(run: FinishedRun) -> float:
     return float(run.force.max())
 
 
+@dataclass(frozen=True, eq=False)
+class _Hold:
+    """How far an interface as a whole is from sliding, at every instant, (n_instants,).
+
+    Attributes
+    ----------
+    pressing
+        All that presses, N; where mu varies, by its factors.
+    carried
+        All its friction, N.
+    slides
+        Whether all its points slip one way.
+    """
+
+    pressing: Array
+    carried: Array
+    slides: NDArray[np.bool_]
+
+    @property
+    def needed(self) -> Array:
+        """Coefficient of friction that is in use; 0 where nothing presses."""
+        nothing = np.zeros_like(self.pressing)
+        return np.divide(np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0)
+
+    def sliding(self, friction: float, instants: Array) -> Array:
+        """All that presses while it slides, N: at its instants, and as it begins to slide.
+
+        It begins between two instants, where all its friction, if it grows on as before, comes to
+        mu times all that presses.
+        """
+        pressing = self.pressing
+        carried = np.abs(self.carried)
+        step = np.diff(instants)
+        begins = np.flatnonzero(self.slides[2:] & ~self.slides[1:-1]) + 2
+        before = begins - 1
+        pace = (carried[before] - carried[before - 1]) / step[before - 1]
+        growth = pace * step[before]
+        rise = pressing[begins] - pressing[before]
+        lacks = friction * pressing[before] - carried[before]
+        closes = growth - friction * rise
+        share = np.divide(lacks, closes, np.ones_like(lacks), where=closes > 0.0)
+        at_onset = pressing[before] + np.clip(share, 0.0, 1.0) * rise
+        return np.concatenate([pressing[self.slides], at_onset])
+
+
+def _holds(run: FinishedRun) -> list[_Hold]:
+    """Interfaces with friction, each as a whole."""
+    problem, friction = run.problem, run.settings.friction
+    # A point that a clamp holds, too, never slips.
+    determinate = determinate_forces(problem)
+    holds = []
+    for name, law in problem.rubbing.items():
+        contact = run.iterate.contact(name)
+        *_, tangential = problem.contact_places[name]
+        if contact.normal_force is None:
+            bound = law.by_point(law.tangential.bound) * problem.scales.force
+            pressing = np.broadcast_to(bound / friction, contact.status.shape)
+        else:
+            share = law.mean_by_point(law.tangential.friction) / friction
+            pressing = share[:, None] * contact.normal_force
+        status = contact.status
+        is_free = (status == OPEN) | ~determinate[tangential] | (pressing <= 0.0)
+        forward = ((status == 1) | is_free).all(axis=0)
+        backward = ((status == -1) | is_free).all(axis=0)
+        slides = (forward | backward) & ~is_free.all(axis=0)
+        carried = contact.tangential_force.sum(axis=0)
+        holds.append(_Hold(pressing.sum(axis=0), carried, slides))
+    return holds
+
+
 @quantity("Smallest friction that holds", applies=_rubs_by_mu)
 def holding_friction(run: FinishedRun) -> float:
     """Smallest coefficient of friction at which no interface slides as a whole.
@@ -187,52 +294,36 @@ def holding_friction(run: FinishedRun) -> float:
     """
     if not run.settings.friction:
         return math.nan
-    # A point that a clamp holds, too, never slips.
-    determinate = determinate_forces(run.problem)
-    for name in run.problem.rubbing:
-        status = run.iterate.contact(name).status
-        *_, tangential = run.problem.contact_places[name]
-        is_free = (status == OPEN) | ~determinate[tangential]
-        ways = [(status == way) | is_free for way in (-1, 1)]
-        if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
-            return math.nan
-    needed, _ = _nearest_to_sliding(run)
+    holds = _holds(run)
+    if any(hold.slides.any() for hold in holds):
+        return math.nan
+    needed = max(float(hold.needed.max(initial=0.0)) for hold in holds)
     return needed if needed > RESIDUE else 0.0
 
 
-@quantity("Force that friction could hold", "N", applies=_rubs_by_mu)
+@quantity("Largest force that friction could hold", "N", applies=_rubs_by_mu)
 def holding_force(run: FinishedRun) -> float:
-    """Largest force that friction could hold at an interface, N, where and when it is nearest to.
+    """Largest force that friction could hold at an interface that comes nearest to sliding, N.
 
-    That is mu times all that presses; beyond it the interface slides as a whole.
+    That is mu times all that presses. Where interfaces slide as a whole, it is the largest while
+    they do, from where they begin to; else that at the interface and the instant of which the
+    largest share is in use, and the largest of several.
     """
     friction = float(run.settings.friction)
-    return friction and friction * _nearest_to_sliding(run)[1]
-
-
-def _nearest_to_sliding(run: FinishedRun) -> tuple[float, float]:
-    """Largest share of all friction at an interface in all that presses it, and the latter, N."""
-    friction, every = run.settings.friction, [np.zeros((2, 0))]
-    for name, law in run.problem.rubbing.items():
-        contact = run.iterate.contact(name)
-        if contact.normal_force is None:
-            bound = law.tangential.bound.sum(axis=0) * run.problem.scales.force
-            pressing = np.broadcast_to(bound / friction, run.problem.n_instants)
-        else:
-            share = law.mean_by_point(law.tangential.friction) / friction
-            pressing = share @ contact.normal_force
-        held, is_pressed = np.abs(contact.tangential_force.sum(axis=0)), pressing > 0.0
-        every.append(np.array([held[is_pressed] / pressing[is_pressed], pressing[is_pressed]]))
-    shares, forces = np.concatenate(every, axis=1)
-    if not len(shares):
-        return 0.0, 0.0
-    nearest = shares.argmax()
-    return float(shares[nearest]), float(forces[nearest])
+    if not friction:
+        return 0.0
+    holds = _holds(run)
+    instants = run.problem.instants
+    forces = [hold.sliding(friction, instants) for hold in holds if hold.slides.any()]
+    if not forces:
+        most = max(float(hold.needed.max(initial=0.0)) for hold in holds)
+        forces = [hold.pressing[hold.needed >= (1.0 - EQUAL) * most] for hold in holds]
+    return friction * float(np.concatenate(forces).max(initial=0.0))
 
 
 @quantity("Displacement at the largest load", "m", applies=_over_a_displacement, when=largest_load)
 def end_displacement(run: FinishedRun, instant: int) -> float:
-    """Displacement of the loop where its force first is largest, m."""
+    """Displacement of the loop where its force is largest, m: the largest while that stands."""
     return float(run.displacement[instant])
 
 
@@ -260,27 +351,45 @@ def dissipation(run: FinishedRun, at: float | None) -> float:
 
 @quantity("Share of the points that slip", is_share=True)
 def slipped_share(run: FinishedRun) -> float:
-    """Share of the points that slip at any instant."""
-    return float(_has_slipped(run)[:, -1].mean())
+    """Share of the points that slip at any instant, of those that can."""
+    return float(_slipped_shares(run)[-1])
 
 
 @quantity("Share of the contact that sticks at the largest load", is_share=True, when=largest_load)
 def stuck_share(run: FinishedRun, instant: int) -> float:
-    """Share of what touches that sticks at the largest load, by length; NaN if nothing does."""
+    """Share of what touches that sticks at the largest load, by length; NaN if nothing does.
+
+    Points that are held and never move are left out.
+    """
     length, every = _touching(run)
+    still = _stand_still(run)
+    length = length * ~np.concatenate([still[name] for name in _lengths(run)])
     status = every[:, instant]
     touching = length[status != OPEN].sum()
     return float(length[status == 0].sum() / touching) if touching else math.nan
 
 
-def _has_slipped(run: FinishedRun) -> NDArray[np.bool_]:
-    """Which points have slipped by every instant, shape (n_points, n_instants)."""
-    return np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
+def _slipped_shares(run: FinishedRun) -> Array:
+    """Share of the points that have slipped by every instant, of those that can, (n_instants,)."""
+    slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
+    counted = slipped[~np.concatenate(list(_stand_still(run).values()))]
+    return counted.mean(axis=0) if len(counted) else np.zeros(slipped.shape[1])
+
+
+def _stand_still(run: FinishedRun) -> dict[str, NDArray[np.bool_]]:
+    """Points of each interface that are held and never move, (n_points,): they cannot slip."""
+    held = run.problem.is_held
+    still = {}
+    for name, law in run.problem.rubbing.items():
+        is_held = np.all([held[rows] for rows in law.tangent.sides], axis=0)
+        has_slipped = np.any(np.abs(run.iterate.contact(name).status) == 1, axis=1)
+        still[name] = (law.by_point(1.0 * ~is_held) == 0.0) & ~has_slipped
+    return still
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
     """Value at the instant by which a share of the points, or any, has slipped; or infinite."""
-    share = _has_slipped(run).mean(axis=0)
+    share = _slipped_shares(run)
     slips = (share > 0.0) & (share >= (at or 0.0))
     return float(values[np.argmax(slips)]) if slips.any() else math.inf
 

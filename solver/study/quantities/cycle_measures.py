@@ -15,7 +15,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of
-from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import CYCLE, quantity
 
 NO_ENERGY = 1e-12
@@ -132,7 +132,7 @@ def slipping_bending(run: FinishedRun) -> float:
     "Moment over the largest curvature",
     "N·m^2",
     applies=is_rope,
-    when=lambda run: int(np.argmax(np.abs(run.displacement))),
+    when=lambda run: first_largest(run.displacement),
 )
 def bending_stiffness(run: FinishedRun, instant: int) -> float:
     """Moment at the largest curvature over that, N m^2."""
@@ -189,7 +189,7 @@ def wire_work(run: FinishedRun) -> float:
     "Length over which a broken wire regains its force",
     "m",
     applies=lambda settings: settings.has("broken"),
-    when=lambda run: int(np.argmax(run.force)),
+    when=lambda run: first_largest(np.maximum(run.force, 0.0)),
 )
 def recovery_length(run: FinishedRun, instant: int) -> float:
     """How far from its break a wire carries its tension again, at the largest tension, m.
@@ -197,7 +197,7 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
     NaN without a broken wire, or without tension; infinite if it does so on neither side.
     """
     described = run.settings.structure().described()
-    if described.broken is None or not run.force[instant]:
+    if described.broken is None or run.force[instant] <= 0.0:
         return math.nan
     wire, place = described.broken
     axial = AxialForce(run.problem, slice(instant, instant + 1))

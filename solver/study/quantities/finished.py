@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,24 @@ takes 1 to 3 and 3 to 9 (measured)."""
 ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
-"""Relative difference up to which two loads count as equally large."""
+"""Relative difference up to which two values count as equally large."""
+Axes = tuple[tuple[str, str], tuple[str, str]]
+"""Titles and units of the two axes of a loop."""
+OF_UNITS = {
+    "m": "displacement",
+    "N": "force",
+    "N·m": "moment",
+    "rad": "rotation",
+    "°": "slope",
+    "1/m": "curvature",
+}
+"""Names of the key figures of a loop, by unit."""
+DRIVES = {
+    "Strain without force": "strain",
+    "Settlement": "settlement",
+    "Body force": "body_force",
+}
+"""Names by title of what drives a loop without being its displacement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +70,26 @@ class FinishedRun:
     """A run from its settings to its end, from another run if it was warm.
 
     `made_loop` is its loop, where that is at hand: in the plane it takes a while to make one.
+    `known_loss` is the first instant that a reference knows to have no solution.
     """
 
     settings: Settings
     solution: Solution
     was_warm: bool = False
     made_loop: Loop | None = None
+    known_loss: int | None = None
+
+    @property
+    def lost_from(self) -> int | None:
+        """First instant that is known to have no solution; None where there is none such.
+
+        With it the run has no quantities: all instants are iterated together, and those that have
+        no solution keep the others from theirs. A certified run has a solution at all of them.
+        """
+        if self.solution.is_certified:
+            return None
+        losses = self.known_loss, self.solution.status.lost_from
+        return min((loss for loss in losses if loss is not None), default=None)
 
     @property
     def iterate(self) -> Iterate:
@@ -109,59 +140,86 @@ class FinishedRun:
         for instant in range(self.problem.n_instants):
             moved = inside.displacement(self.iterate.displacement, [instant])[:, :, 0]
             stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
-            element = int(stress.argmax())
-            if stress[element] > largest:
+            element = first_largest(stress)
+            if stress[element] > (1.0 + EQUAL) * largest:
                 largest = float(stress[element])
                 place = inside.nodes[inside.elements[element]].mean(axis=0)
         return largest, float(place[0]), float(place[1])
 
 
-def largest_load(run: FinishedRun) -> int:
-    """Instant at which the loop's force first is largest."""
-    size = np.abs(run.force)
+def first_largest(values: Array) -> int:
+    """Instant at which values, shape (n_instants,), first are largest in size, up to rounding."""
+    size = np.abs(values)
     return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
 
-@dataclass(frozen=True)
+def largest_load(run: FinishedRun) -> int:
+    """Instant of the largest load: where the loop's force is largest in size.
+
+    While the same load stands, displacement may go on to grow, as where friction falls. So of all
+    instants of that force, that counts at which the displacement first is largest in size.
+    """
+    force = run.force
+    first = first_largest(force)
+    stands = np.flatnonzero(np.abs(force - force[first]) <= EQUAL * np.abs(force[first]))
+    return int(stands[first_largest(run.displacement[stands])])
+
+
+@dataclass(frozen=True, eq=False)
 class KeyFigure:
-    """A number of a run at an instant, and the largest in the run, in SI; a share has no unit."""
+    """A number of a run at every instant, (n_instants,), SI; a share has no unit."""
 
     name: str
     title: str
-    value: float
     unit: str
-    largest: float
+    values: Array
+
+    @cached_property
+    def instant(self) -> int:
+        """Instant at which it first is largest in size."""
+        return first_largest(self.values)
+
+    @property
+    def largest(self) -> float:
+        """Value that is largest in size."""
+        return float(self.values[self.instant])
+
+    @property
+    def last(self) -> float:
+        """Value at the last instant."""
+        return self.at(-1)
+
+    def at(self, instant: int) -> float:
+        """Value at an instant; zero where rounding alone leaves something."""
+        value = float(self.values[instant])
+        return value if abs(value) > ZERO * abs(self.largest) else 0.0
 
 
-def key_figures(
-    axes: tuple[tuple[str, str], tuple[str, str]],
-    loop: Iterable[NDArray[Any]],
-    status: NDArray[np.int8],
-    energy: float,
-    instant: int,
-) -> list[KeyFigure]:
-    """Key figures at an instant.
+def key_figures(axes: Axes, loop: Iterable[NDArray[Any]]) -> list[KeyFigure]:
+    """Key figures of a loop: of its axes, and of both its sides, shape (2, n_instants).
 
-    Of the axes of the loop and both of its sides, shape (2, n_instants), the status of all contact
-    points, shape (n_points, n_instants), and the energy that friction takes in the whole run, J.
+    A displacement has the name `displacement`, a force `force`; other numbers have others.
     """
     figures = []
-    for name, (title, unit), values in zip(("displacement", "force"), axes, loop, strict=True):
-        largest, value = float(np.abs(values).max()), float(values[instant])
-        value = value if abs(value) > ZERO * largest else 0.0
-        figures.append(KeyFigure(name, title, value, unit, largest))
-    now = status[:, instant]
-    slipping = float(np.mean((now != 0) & (now != OPEN))) if len(now) else 0.0
-    figures.append(KeyFigure("slipping", "Slips", slipping, "", 1.0))
-    return [*figures, KeyFigure("energy", "Energy lost", energy, "J", abs(energy))]
+    for (title, unit), values in zip(axes, loop, strict=True):
+        name = DRIVES.get(title) or OF_UNITS[unit]
+        figures.append(KeyFigure(name, title, unit, np.asarray(values)))
+    return figures
 
 
-def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
-    """Key figures of a run where its force first is largest, and when that is, s."""
-    instant = largest_load(run)
-    status, energy = run.iterate.status, float(run.dissipated.sum())
-    figures = key_figures(run.loop.axes, (run.displacement, run.force), status, energy, instant)
-    return figures, float(run.problem.instants[instant])
+def figures_of(run: FinishedRun) -> list[KeyFigure]:
+    """Key figures of the loop of a run."""
+    return key_figures(run.loop.axes, (run.displacement, run.force))
+
+
+def slipping_shares(status: NDArray[np.int8]) -> Array:
+    """Share of the points that slip at each instant, (n_instants,).
+
+    Of the status of all contact points, shape (n_points, n_instants).
+    """
+    if not len(status):
+        return np.zeros(status.shape[1])
+    return np.asarray(((status != 0) & (status != OPEN)).mean(axis=0))
 
 
 @cache
@@ -187,8 +245,10 @@ def finished_run(
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
-    reference, _ = known_reference(problem) if errors else (None, "")
-    distance = None if reference is None else distance_to(reference, problem)
+    known = known_reference(problem) if errors else Known()
+    distance = None
+    if known.reference is not None:
+        distance = distance_to(known.reference, problem)
     if before is not None and (near := neighbour(problem, settings, before)) is not None:
         return FinishedRun(settings, near, was_warm=True)
     solution = solve(
@@ -199,33 +259,44 @@ def finished_run(
         spent=spent,
         cancelled=cancelled,
     )
-    return FinishedRun(settings, solution)
+    return FinishedRun(settings, solution, known_loss=known.lost_from)
 
 
-def known_reference(
-    problem: Problem, stop: Callable[[], bool] | None = None
-) -> tuple[Reference | None, str]:
+class Known(NamedTuple):
     """The reference, if there is one, and why it is not the one solution, if it is not.
 
-    `stop` is asked once per instant whether to give it up.
+    `lost_from` is the first instant that is known to have no solution.
     """
+
+    reference: Reference | None = None
+    doubt: str = ""
+    lost_from: int | None = None
+
+
+def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
+    """Find what is known without a run; `stop` is asked once per instant whether to give up."""
     try:
         reference = reference_of(problem, stop)
     except Interrupted:
-        return None, "the reference takes longer"
+        return Known(doubt="the reference takes longer")
     except NoReferenceError as refusal:
-        return None, str(refusal)
+        return Known(doubt=str(refusal))
     if lost := np.count_nonzero(~reference.converged):
+        lost_from = None
         message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
         if reference.collapse is not None:
+            lost_from = reference.collapse.instant
             message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
         elif reference.jumps_at is not None:
+            # That none is found is no proof: a run may converge to one.
             message += ": friction softens until the structure jumps"
-        return None, message
+        return Known(None, message, lost_from)
     if reference.jumps_at is not None:
-        return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
+        message = f"it jumps at instant {reference.jumps_at} to another equilibrium"
+        return Known(reference, message)
     several = np.count_nonzero(reference.ambiguous)
-    return reference, f"there are several solutions at {several} instants" if several else ""
+    message = f"there are several solutions at {several} instants" if several else ""
+    return Known(reference, message)
 
 
 def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:

@@ -40,6 +40,7 @@ class Quantity:
     of
         Takes it of a run, and of the instant if there is a `when`, or else of the parameter or None
         if there is one: NaN where the run has none, infinity where what is waited for never comes.
+        What a run came to is NaN where some of its instants are known to have no solution.
     when
         Instant at which it is taken of a run, and of the parameter or None if there is one.
     parameter, at
@@ -68,6 +69,8 @@ class Quantity:
     def __call__(self, run: FinishedRun) -> float:
         """Value of a run."""
         if not self.applies(run.settings):
+            return math.nan
+        if self.reads is None and run.lost_from is not None:
             return math.nan
         given = () if self.parameter is None else (self.at,)
         if self.when is None:

@@ -133,7 +133,8 @@ class Row:
         its process was ended.
     values
         Of the readings of the plan, in their units: NaN where the run has none, infinity for
-        never. Those of a run that has not converged are what it had come to.
+        never. Those of a run that has not converged are what it had come to, and NaN where some of
+        its instants have no solution.
     seconds
         With its problem, its reference and its readings.
     """
