@@ -107,6 +107,9 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
     )
     areas = stack.length * weights
     law, scales = stack.friction_law, (stack.length, stack.young * stack.length)
+    is_image = support is not None and support.is_image
+    if is_image:
+        law = law.of_one_side()
     if support is not None and support.bound is not None:
         known = support.bound[node] / (stack.young * stack.length) * areas[:, None]
         friction = law.at(along, areas, scales, known=known)
@@ -138,6 +141,7 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
             depth=stack.height * (stack.rectangles[body].rows / stack.elements[1]),
         ),
         macro=macro,
+        slip_ratio=2.0 if is_image else 1.0,
     )
 
 

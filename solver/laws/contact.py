@@ -103,6 +103,9 @@ class Contact(Interface):
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
         from the other is in equilibrium in the coarse problem. None on a rigid support.
+    slip_ratio
+        Slip between both sides over the displacement along the interface that the rows have: 2
+        where the image of the body lies below, which no row sees and which moves the other way.
     """
 
     points: Indices
@@ -112,6 +115,7 @@ class Contact(Interface):
     normal: Unilateral | None = None
     around: Rod | Bodies = field(default_factory=Rod)
     macro: sparse.csr_array | None = None
+    slip_ratio: float = 1.0
 
     remembers = True
 

@@ -50,7 +50,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
     moved, force = iterate.local_displacement, iterate.boundary_local_force
     for law in iterate.problem.rubbing.values():
         slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
-        slip *= scales.displacement
+        slip *= law.slip_ratio * scales.displacement
         yield law, slip, force[law.tangent.above] * slip * -scales.force
 
 
