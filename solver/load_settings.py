@@ -10,6 +10,7 @@ import param
 
 from solver.arrays import Array
 from solver.definitions import LOAD, CurveParameter, Rows, about
+from solver.discrete.drives import Drive
 from solver.friction_settings import FrictionSettings
 from solver.loads import (
     NO_KNOTS,
@@ -212,6 +213,16 @@ class LoadSettings(FrictionSettings):
             return interpolate(getattr(self, name), instants)
         values = preset.value(instants / self.duration, self.seed, self.cycles)
         return self.size_of(name) * values
+
+    def drives(self) -> tuple[Drive, ...]:
+        """Loads and motions over time that are not zero, by the settings of their sizes."""
+        found = []
+        for path in self.paths:
+            values = self.path(path)
+            if np.any(values):
+                unit = self.curve_units(path)[1]
+                found.append(Drive(self.size_or_table(path), unit, values))
+        return tuple(found)
 
     def points(self, name: str) -> Rows:
         """Points of a curve or rows of a table, or those that stand for its preset."""

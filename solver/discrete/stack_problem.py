@@ -58,6 +58,9 @@ def problem_of(stack: Stack) -> Problem:
         scales=scales,
         inside=inside,
         rest=_rest(stack, inside),
+        has_short_joints=any(
+            joint.is_upright and len(set(cut.bodies(joint))) > 1 for joint in cut.pairs
+        ),
     )
 
 

@@ -13,7 +13,7 @@ from solver.discrete.problem import Problem
 from solver.latin.cost import WAIT, Costs, costs_of
 from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
-from solver.latin.status import JUMPS, Status, collapses
+from solver.latin.status import Status, collapses, lost_jump
 from solver.latin.status_step import Certificate, states_of, status_step
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import LEAST_SHARE, VANISHING
@@ -130,10 +130,11 @@ class ErrorEstimate:
             return
         except Interrupted:
             return
-        jumped = solution.jumps_at is not None and solution.is_lost
-        self.ending = JUMPS if jumped else None
+        self.ending = None
         if solution.collapse is not None:
-            self.ending = collapses(solution.collapse)
+            self.ending = collapses(iterate.problem, solution.collapse)
+        elif solution.jumps_at is not None and solution.is_lost:
+            self.ending = lost_jump(iterate.problem, solution.jumps_at)
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
 

@@ -10,6 +10,7 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import BODY, CONTACT, Parameter, Rows, SettingGroup, redefined
+from solver.discrete.drives import loads_at
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Given, Side, Spring, Stack, Support
@@ -241,10 +242,15 @@ class BlockSettings(SideSettings):
         super().check_together()
         loss = loss_of_equilibrium(self.structure())
         if loss is not None:
+            time, reason = loss
+            loads = loads_at(self.drives(), int(np.searchsorted(self.times(), time)))
+            when = f"from {plain(time)} s on"
+            if loads:
+                when = f"with {loads}, {when},"
             raise self.refusal(
                 "top",
                 "sides and loads that leave the body in equilibrium",
-                f"nothing but contact holds it, and from {plain(loss[0])} s on {loss[1]}: "
+                f"nothing but contact holds it, and {when} {reason}: "
                 "lower that load, press more, raise friction where it slides, take a longer or "
                 "lower body where it tips, or hold a side",
             )

@@ -18,7 +18,7 @@ from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.certified import finished
 from solver.latin.cost import costs_of
-from solver.latin.status import certified
+from solver.latin.status import certified, jump_of, limit_of
 from solver.latin.status_step import status_step
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
@@ -218,12 +218,13 @@ def known_reference(
     if lost := np.count_nonzero(~reference.converged):
         message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
         if reference.collapse is not None:
-            message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
+            message += f": there is no equilibrium {limit_of(problem, reference.collapse)}"
         elif reference.jumps_at is not None:
             message += ": friction softens until the structure jumps"
         return None, message
     if reference.jumps_at is not None:
-        return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
+        where = jump_of(problem, reference.jumps_at)
+        return reference, f"at {where} it jumps to another equilibrium"
     several = np.count_nonzero(reference.ambiguous)
     return reference, f"there are several solutions at {several} instants" if several else ""
 
