@@ -231,7 +231,7 @@ class LoadSettings(FrictionSettings):
             return value
         preset = self.definitions()[name].presets[value]
         if not isinstance(preset, Preset):
-            rows: Rows = preset(self)
+            rows: Rows = preset.rows(self)
             return rows
         even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
         times = instants_of(self.duration, 2, NO_KNOTS, self.knots(name))

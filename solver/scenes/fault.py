@@ -20,6 +20,7 @@ from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of
+from solver.profiles import Profile
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
@@ -27,9 +28,12 @@ from solver.scenes.plane import PlaneSettings
 from solver.settings import Icon
 
 PROFILES = {
-    "uniform": ((0.0, 1.0), (1.0, 1.0)),
-    "rising": ((0.0, 1.0), (1.0, 2.0)),
-    "barrier": ((0.0, 1.0), (0.15, 1.0), (0.16, 5.0), (1.0, 5.0)),
+    "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),
+    "rising": Profile("rises evenly from 1 at the well to 2 at the end", ((0.0, 1.0), (1.0, 2.0))),
+    "barrier": Profile(
+        "1 up to 0.15 times the length, and 5 from 0.16 times the length on",
+        ((0.0, 1.0), (0.15, 1.0), (0.16, 5.0), (1.0, 5.0)),
+    ),
 }
 """Factors over shares of the length."""
 FINE = 4000
@@ -127,8 +131,6 @@ class FaultSettings(PlaneSettings):
         "Pressure p of the fluid where it is let in, above what was there before.",
         "steady",
         INJECTIONS,
-        path_doc="stopped: no more after half of the interval; what has spread goes on. rising: "
-        "from nothing. pulses: down and up again, six times. ",
         places=("left x",),
     )
     shear_stress = LOAD.quantity(
@@ -182,8 +184,8 @@ class FaultSettings(PlaneSettings):
         PlaneSettings.param["strength"],
         "constant",
         doc="Factor on the largest friction force over the accumulated slip between both sides of "
-        "the fault. constant: 1. linear: from 1 to the ratio below. Or points (m, factor), the "
-        "first (0, 1), such as a peak, softening and a residual; the last one stays.",
+        "the fault: a preset, or points (m, factor), the first (0, 1), such as a peak, softening "
+        "and a residual; the last one stays.",
     )
     slip_length = redefined(
         PlaneSettings.param["slip_length"],
