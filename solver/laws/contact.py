@@ -106,6 +106,9 @@ class Contact(Interface):
     slip_ratio
         Slip between both sides over the displacement along the interface that the rows have: 2
         where the image of the body lies below, which no row sees and which moves the other way.
+    copies
+        Number of interfaces that this one stands for in sums over the structure that is shown, as
+        one wire of a layer does for all: forces and energies of its points count as many times.
     """
 
     points: Indices
@@ -116,6 +119,7 @@ class Contact(Interface):
     around: Rod | Bodies = field(default_factory=Rod)
     macro: sparse.csr_array | None = None
     slip_ratio: float = 1.0
+    copies: float = 1.0
 
     remembers = True
 

@@ -121,7 +121,11 @@ def peak_slip(run: FinishedRun) -> float:
 @quantity("Largest friction, all points", "N")
 def peak_friction(run: FinishedRun) -> float:
     """Largest sum over all points of the sizes of the friction force, N."""
-    return float(np.abs(run.iterate.friction_force).sum(axis=0).max())
+    total = np.zeros(run.problem.n_instants)
+    for name, law in run.problem.rubbing.items():
+        force = run.iterate.contact(name).tangential_force
+        total += law.copies * np.abs(force).sum(axis=0)
+    return float(total.max())
 
 
 def _pressing(run: FinishedRun, name: str) -> Array:

@@ -92,7 +92,7 @@ class FinishedRun:
     @cached_property
     def dissipated(self) -> Array:
         """Energy that friction takes between each instant and the one before, (n_instants,), J."""
-        works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
+        works = (law.copies * work.sum(axis=0) for law, _, work in slips_of(self.iterate))
         return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
 
     @cached_property
