@@ -1,7 +1,8 @@
-"""Loads and motions that drive a structure, in the names of the settings that give them.
+"""Loads and motions that drive a structure, named by the settings that give them.
 
-A person gives a load, and its path over time may be a preset that nobody drew: where a run tells at
-which point of its path something happens, it tells the load, and the time beside it.
+A person gives a load, and its path over time may be a preset that nobody drew: where a
+run tells at which point of its path something happens, it tells the load, and the time
+beside it.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ class Drive:
     unit
         SI unit of the values.
     values
-        At the instants of a problem, shape (n_instants,); before the first there is nothing.
+        At the instants of a problem, shape (n_instants,); before the first there is
+        nothing.
     """
 
     name: str
@@ -59,9 +61,9 @@ class Drive:
         return abs(float(self.values[instant])) < abs(self.before(instant))
 
     def at(self, instant: int, share: float = 1.0) -> str:
-        """Value after a share of the step to an instant, and the factor on the largest, in words.
+        """Words on the value after a share of the step to an instant.
 
-        As a mechanic counts load factors, of the largest value of the same sign.
+        They have the load factor too: that on the largest value of the same sign.
         """
         before = self.before(instant)
         value = before + share * (float(self.values[instant]) - before)
@@ -70,27 +72,34 @@ class Drive:
         amount = f"{self.name} = {plain(float(f'{value:.4g}'))} {self.unit}".rstrip()
         if largest <= 0.0:
             return amount
-        return f"{amount} ({plain(float(f'{abs(value) / largest:.3g}'))} times its largest value)"
+        factor = plain(float(f"{abs(value) / largest:.3g}"))
+        return f"{amount} ({factor} times its largest value)"
 
 
 def loads_at(drives: Sequence[Drive], instant: int, share: float = 1.0) -> str:
-    """Words on what drives after a share of the step to an instant; empty where nothing changes."""
+    """Words on what drives after a share of the step to an instant.
+
+    Empty where nothing changes.
+    """
     moving = [drive.at(instant, share) for drive in drives if drive.changes(instant)]
     return " and ".join(moving)
 
 
 def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
-    """Words on the loads past which something happens, after a share of the step to an instant.
+    """Words on the loads past which something happens.
 
-    What falls is passed downwards; of loads that act together from nothing on, no share may be
-    carried. Empty where nothing changes.
+    They are those after a share of the step to an instant. What falls is passed
+    downwards; of loads that act together from nothing on, no share may be carried. Empty
+    where nothing changes.
     """
     moving = [drive for drive in drives if drive.changes(instant)]
-    if moving and share <= LEAST_STEP and not any(drive.before(instant) for drive in moving):
+    from_nothing = not any(drive.before(instant) for drive in moving)
+    if moving and from_nothing and share <= LEAST_STEP:
         return f"with {loads_at(drives, instant)}"
     words = []
     for falls, way in ((False, "beyond"), (True, "below")):
-        amounts = [each.at(instant, share) for each in moving if each.falls(instant) is falls]
+        passed = [drive for drive in moving if drive.falls(instant) is falls]
+        amounts = [drive.at(instant, share) for drive in passed]
         if amounts:
             words.append(f"{way} {' and '.join(amounts)}")
     return " and ".join(words)

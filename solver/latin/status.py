@@ -98,7 +98,7 @@ _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a l
 
 
 def collapses(problem: Problem, collapse: Collapse) -> Status:
-    """Status of a run whose loads no contact forces can balance from a point of their path on."""
+    """Status of a run whose loads no contact forces balance from a point of a path on."""
     way, remedy = "slides away", "Lower the load, or raise friction or pressure."
     if collapse.tips:
         way, remedy = "tips over", "Lower the load, or make it wider, or press it more."
@@ -111,21 +111,21 @@ def collapses(problem: Problem, collapse: Collapse) -> Status:
 
 
 def limit_of(problem: Problem, collapse: Collapse) -> str:
-    """Words on where an equilibrium ends: the loads that are carried, and when that is."""
+    """Words on where an equilibrium ends: the loads that are carried, and when."""
     loads = beyond(problem.drives, collapse.instant, collapse.share)
     time = f"from {collapse.time:.4g} s on"
     return f"{loads}, {time}" if loads else time
 
 
 def jump_of(problem: Problem, instant: int) -> str:
-    """Words on where a structure jumps: the loads of the first instant after it, and when."""
+    """Words on where a structure jumps: the loads at the instant after it, and when."""
     loads = loads_at(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
     return f"{time}, with {loads}," if loads else time
 
 
 def lost_jump(problem: Problem, instant: int) -> Status:
-    """Status of a run that jumps at an instant, beyond which no equilibrium is found."""
+    """Status of a run that jumps at an instant, and finds no equilibrium beyond."""
     return Status(Ending.STALLED, _LOST_JUMP.format(jump_of(problem, instant)))
 
 
