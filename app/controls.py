@@ -15,7 +15,14 @@ from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, looks, mask_of
-from solver.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
+from solver.definitions import (
+    CurveParameter,
+    Parameter,
+    about,
+    help_of,
+    is_logarithmic,
+    title_of,
+)
 from solver.scenes import CATALOGUE
 
 WIDTH = 286
@@ -63,7 +70,7 @@ class SettingControl:
     def _make(self) -> tuple[Any, Any]:
         """The field and what stands on the page."""
         definition = self._definition
-        more: dict[str, Any] = {"description": definition.doc, "size": "small", "width": WIDTH}
+        more: dict[str, Any] = {"description": help_of(definition), "size": "small", "width": WIDTH}
         more |= {"margin": (4, 0), "label": self._unit.titled(title_of(self._definition))}
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
@@ -144,8 +151,12 @@ class SettingControl:
             self.slider.param.update(value=place, value_throttled=place)
 
     def _explain(self, refusal: str) -> None:
-        if getattr(self.field, "helper_text", refusal) != refusal:
-            self.field.param.update(helper_text=refusal, error_state=bool(refusal))
+        """Say below the field why a value is refused, or of a preset that holds what it is."""
+        value = getattr(self._state.settings, self.name)
+        line = self._about.presets.get(value, "") if isinstance(value, str) else ""
+        text = refusal or line[:1].upper() + line[1:]
+        if getattr(self.field, "helper_text", text) != text:
+            self.field.param.update(helper_text=text, error_state=bool(refusal))
 
     def _on_field(self, value: Any) -> None:
         if self._is_updating or value is None:

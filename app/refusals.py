@@ -61,9 +61,25 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
     return re.sub(amounts, lambda match: unit(float(match[1]), EXACT), text) if si else text
 
 
+def amounts_in_titles(settings: Settings, text: str) -> str:
+    """A text whose settings with an amount, as in traction = 2e5 Pa, are as their fields say it."""
+    definitions = settings.definitions()
+
+    def said(match: re.Match[str]) -> str:
+        name = match[1]
+        si, unit = _units(settings, name)
+        if si != (match[3] or ""):
+            return match[0]
+        return f"{title_of(definitions[name])} {unit(float(match[2]), EXACT)}"
+
+    names = "|".join(definitions)
+    return re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", said, text)
+
+
 def _in_titles(settings: Settings, text: str) -> str:
     """A text with titles for names of settings, and with numbers as the page prints them."""
     definitions = settings.definitions()
+    text = amounts_in_titles(settings, text)
 
     def titled(match: re.Match[str]) -> str:
         lead, name = match[1] or "", match[2]

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from html import escape
 
 from app.frame import Frame, Selection
+from app.refusals import amounts_in_titles
 from app.state import PageState
 from app.units import number, percent, unit_for
 from solver.latin import Ending
@@ -73,7 +74,7 @@ def _details(frame: Frame, said: list[str]) -> str:
         f"{number(frame.run.reference_seconds)} s",
     ]
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
-        words.append(escape(frame.status.advice))
+        words.append(escape(amounts_in_titles(settings, frame.status.advice)))
     if not _is_lost(frame):
         figures = [f"{one.title}: {_over_time(frame, one)}" for one in _of_loop(frame)]
         words.extend(map(escape, figures))
@@ -85,9 +86,11 @@ def _said(state: PageState) -> list[str]:
     words = [escape(text) for text in (state.message, state.refusal) if text]
     frame = state.frame
     if frame is not None and frame.status is not None:
+        told = list(frame.remarks)
         if frame.status.ending is not Ending.CONVERGED:
-            words.append(escape(frame.status.advice))
-        words.extend(map(escape, frame.remarks))
+            told.insert(0, frame.status.advice)
+        settings = frame.run.settings
+        words.extend(escape(amounts_in_titles(settings, text)) for text in told)
     return words
 
 

@@ -271,4 +271,6 @@ def _settings(chosen: argparse.Namespace) -> int:
             default += f" (method=paper: {json.dumps(papers[name])})"
         print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
         print(f"{'':<{width}} {definition.doc}")
+        for preset, line in about(definition).presets.items():
+            print(f"{'':<{width}}   {preset}: {line}")
     return 0

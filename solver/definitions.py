@@ -10,10 +10,10 @@ import difflib
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from textwrap import shorten
-from typing import Any
+from typing import Any, Protocol
 
 import param
 
@@ -63,6 +63,8 @@ class About:
         own size, and this value does nothing.
     places
         What it places or scales in a picture: "right x" along a side, "body" throughout.
+    presets
+        A line on each of the presets that it has, by name, without a full stop.
     """
 
     group: str
@@ -70,6 +72,23 @@ class About:
     applies: Callable[[Any], bool] = lambda settings: True
     path: str = ""
     places: tuple[str, ...] = ()
+    presets: Mapping[str, str] = field(default_factory=dict)
+
+
+class Described(Protocol):
+    """A preset, whatever it makes."""
+
+    @property
+    def description(self) -> str:
+        """A line on it, without a full stop."""
+
+
+@dataclass(frozen=True)
+class TablePreset:
+    """A table with a name: a line on it, and rows that the settings make."""
+
+    description: str
+    rows: Callable[[Any], Rows]
 
 
 class CurveParameter(Parameter):
@@ -80,7 +99,7 @@ class CurveParameter(Parameter):
     Attributes
     ----------
     presets
-        By name: a path over time is a `solver.loads.Preset`, others make the points of settings.
+        By name: a path over time is a `solver.loads.Preset`, others are a `TablePreset`.
     columns, units
         Names of the columns, and their units, empty for a pure number.
     bounds
@@ -116,6 +135,12 @@ def about(parameter: Parameter) -> About:
     """Record of a setting's definition."""
     record: About = parameter.metadata["about"]
     return record
+
+
+def help_of(definition: Parameter) -> str:
+    """Help of a setting with a line on each of its presets, as one paragraph."""
+    lines = (f"{name}: {line}." for name, line in about(definition).presets.items())
+    return " ".join([definition.doc or "", *lines])
 
 
 def title_of(definition: Parameter) -> str:
@@ -173,10 +198,16 @@ class SettingGroup:
         """Setting that is one of a few names."""
         return param.Selector(default=default, objects=list(options), **self._common(doc, **record))
 
+    def preset(
+        self, default: str, presets: Mapping[str, Described], doc: str, **record: Any
+    ) -> param.Selector[str]:
+        """Setting that is one of a few presets, and no table."""
+        return self.choice(default, presets, doc, presets=_lines_on(presets), **record)
+
     def curve(
         self,
         default: str,
-        presets: Mapping[str, Any],
+        presets: Mapping[str, Described],
         units: Mapping[str, str],
         doc: str,
         *,
@@ -185,12 +216,17 @@ class SettingGroup:
     ) -> CurveParameter:
         """Path or table: a preset's name or rows, with unit and bounds of each column."""
         bounds = bounds or [ANY] * len(units)
-        return CurveParameter(default, presets, units, bounds, **self._common(doc, **record))
+        common = self._common(doc, presets=_lines_on(presets), **record)
+        return CurveParameter(default, presets, units, bounds, **common)
 
     def _common(self, doc: str, title: str | None = None, **record: Any) -> dict[str, Any]:
         """Arguments of param that all settings have."""
         metadata = {"about": About(self.name, **record)}
         return {"doc": doc, "label": title, "constant": True, "metadata": metadata}
+
+
+def _lines_on(presets: Mapping[str, Described]) -> dict[str, str]:
+    return {name: preset.description for name, preset in presets.items()}
 
 
 CONTACT, LOAD, BODY = SettingGroup("Contact"), SettingGroup("Load"), SettingGroup("Body")

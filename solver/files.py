@@ -29,36 +29,68 @@ IN_FILES = {"str": str, "int": int, "float": (int, float), "tuple[str, ...]": li
 INDICATORS = "indicator", "behaviour", "estimated_error"
 ERRORS = "error_displacement", "error_force"
 """What is known of every iteration, beside its time; errors where there is a reference."""
+FORMAT = 2
+"""Number of the format of settings files. Files of before the second have none: in them the slip of
+a fault is that of one of its sides."""
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
-    """Settings of a saved file in TOML, whose curves name no other files.
+    """Settings of a saved file in TOML, as `read_settings`."""
+    return read_settings(text, source)[0]
 
-    It has a scene's name under `scene`, and settings by name; messages begin with its source.
+
+def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
+    """Settings of a saved file in TOML, and what to know of those that once meant something else.
+
+    The latter by the name of the setting. The file has a scene's name under `scene`, and settings
+    by name; its curves name no other files; messages begin with its source.
     """
     values = _parsed(text, source, text)
     values.pop("case", None)
-    return scene_settings(values.pop("scene", None)).checked(values)
+    number = format_in(values)
+    settings = scene_settings(values.pop("scene", None)).checked(values)
+    return settings, meant_before(settings, values, number)
+
+
+def format_in(values: dict[str, Any]) -> int:
+    """Take the number of the format out of the content of a settings file; 1 where it has none."""
+    number = values.pop("format", 1)
+    remedy = "the file is of a later version: update Slipfront, or save the settings again"
+    is_known = isinstance(number, int) and 1 <= number <= FORMAT
+    require(is_known, "format", number, f"a whole number from 1 to {FORMAT}", remedy)
+    return int(number)
+
+
+def meant_before(settings: Settings, given: Collection[str], number: int) -> Mapping[str, str]:
+    """What to know of given settings that meant something else in a format, by their names."""
+    if number >= FORMAT:
+        return {}
+    changed = settings.changed_meanings()
+    return {name: message for name, message in changed.items() if name in given}
 
 
 def dump(settings: Settings) -> str:
     """Text of a TOML file of settings, which every front reads."""
     lines = [f"{name} = {json.dumps(value)}" for name, value in settings.values().items()]
-    return "\n".join([f"scene = {json.dumps(settings.scene)}", *lines, ""])
+    head = [f"scene = {json.dumps(settings.scene)}", f"format = {FORMAT}"]
+    return "\n".join([*head, *lines, ""])
 
 
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it, and what tables say.
+    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it, and what to know.
 
     CSV files that it names are sought beside the saved file, and those of assignments in the
-    working folder; what was understood of them is by the name of their setting.
+    working folder; what was understood of them is by the name of their setting, and so is what
+    those of the file meant that once meant something else.
     """
     values: dict[str, Any] = {"scene": scene}
+    number = FORMAT
     if scene.endswith(".toml"):
         values = read_toml(Path(scene), "settings file")
         values.pop("case", None)
+        number = format_in(values)
     kind = scene_settings(values.pop("scene", None))
     tables = read_tables(kind, values, Path(scene).parent)
     changes: dict[str, object] = {}
@@ -70,7 +102,10 @@ def settings_from_command(
         tables.pop(name, None)
     tables |= read_tables(kind, changes, Path())
     settings = kind.checked(values).replace(**changes)
-    return settings, messages(tables, settings)
+    told = dict(messages(tables, settings))
+    for name, message in meant_before(settings, values.keys() - changes, number).items():
+        told[name] = f"{told[name]}; {message}" if name in told else message
+    return settings, told
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:

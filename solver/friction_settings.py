@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.definitions import ANY, CONTACT, Rows, about
+from solver.definitions import ANY, CONTACT, Rows, TablePreset, about
 from solver.laws import FrictionLaw, Strength
 from solver.method_settings import MethodSettings
 from solver.refusal import plain
@@ -15,6 +15,15 @@ LARGEST_FACTOR = 1e3
 """Of a strength."""
 STIFFNESSES = 1e-9, 1e9
 """Of contacts and springs, over that of bodies: softer or stiffer, no digits are left."""
+
+
+STRENGTHS = {
+    "constant": TablePreset("1, whatever has slipped", lambda settings: settings.strength_points()),
+    "linear": TablePreset(
+        "from 1 evenly to friction_ratio at slip_length, where it stays",
+        lambda settings: settings.strength_points(),
+    ),
+}
 
 
 class FrictionSettings(MethodSettings):
@@ -67,11 +76,11 @@ class FrictionSettings(MethodSettings):
     )
     strength = CONTACT.curve(
         "constant",
-        dict.fromkeys(("constant", "linear"), lambda settings: settings.strength_points()),
+        STRENGTHS,
         {"slip": "m", "factor": ""},
-        "Factor on the largest friction force over the accumulated slip of a point. constant: 1. "
-        "linear: from 1 to the ratio below. Or points (m, factor), the first (0, 1), such as a "
-        "peak, softening and a residual; the last one stays.",
+        "Factor on the largest friction force over the accumulated slip of a point: a preset, or "
+        "points (m, factor), the first (0, 1), such as a peak, softening and a residual; the last "
+        "one stays.",
         bounds=(ANY, (0.0, LARGEST_FACTOR)),
         title="Strength over slip",
         applies=lambda settings: settings.is_general,

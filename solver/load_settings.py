@@ -10,6 +10,7 @@ import param
 
 from solver.arrays import Array
 from solver.definitions import LOAD, CurveParameter, Rows, about
+from solver.discrete.drives import Drive
 from solver.friction_settings import FrictionSettings
 from solver.loads import (
     NO_KNOTS,
@@ -213,6 +214,16 @@ class LoadSettings(FrictionSettings):
         values = preset.value(instants / self.duration, self.seed, self.cycles)
         return self.size_of(name) * values
 
+    def drives(self) -> tuple[Drive, ...]:
+        """Loads and motions over time that are not zero, by the settings of their sizes."""
+        found = []
+        for path in self.paths:
+            values = self.path(path)
+            if np.any(values):
+                unit = self.curve_units(path)[1]
+                found.append(Drive(self.size_or_table(path), unit, values))
+        return tuple(found)
+
     def points(self, name: str) -> Rows:
         """Points of a curve or rows of a table, or those that stand for its preset."""
         value: str | Rows = getattr(self, name)
@@ -220,7 +231,7 @@ class LoadSettings(FrictionSettings):
             return value
         preset = self.definitions()[name].presets[value]
         if not isinstance(preset, Preset):
-            rows: Rows = preset(self)
+            rows: Rows = preset.rows(self)
             return rows
         even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
         times = instants_of(self.duration, 2, NO_KNOTS, self.knots(name))

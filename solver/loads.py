@@ -43,11 +43,14 @@ def interpolate(points: Rows | Array, where: Array) -> Array:
 class Preset:
     """A path with a name: straight lines between points after a beginning that has the first.
 
+    The description is a line on it, where "the value" is the largest that it reaches.
+
     Points, for a seed of what is random, are phases after the beginning, and ordinates. It begins
     after a share of the interval, and comes back to where it is from another on, if at all. A wave
     has ordinates at such phases in place of straight lines, where it bends.
     """
 
+    description: str
     points: Callable[[int], tuple[Array, Array]]
     begins: float = 0.0
     repeats: float | None = None
@@ -74,11 +77,15 @@ class Preset:
 
 
 def _lines(
-    *ordinates: float, begins: float = 0.0, repeats: float | None = None, wave: Wave | None = None
+    description: str,
+    *ordinates: float,
+    begins: float = 0.0,
+    repeats: float | None = None,
+    wave: Wave | None = None,
 ) -> Preset:
     """Preset of ordinates that are evenly spaced."""
     points = np.linspace(0.0, 1.0, len(ordinates)), np.array(ordinates)
-    return Preset(lambda seed: points, begins, repeats, wave)
+    return Preset(description, lambda seed: points, begins, repeats, wave)
 
 
 def _walk(seed: int) -> tuple[Array, Array]:
@@ -104,41 +111,130 @@ def _sine(phase: Array) -> Array:
 
 QUARTERS = 0.0, 1.0, 0.0, -1.0, 0.0
 PRESETS: dict[str, Preset] = {
-    "ramp": _lines(0.0, 1.0),
-    "triangle": _lines(0.0, 1.0, 0.0, repeats=0.0),
-    "cycle": _lines(*QUARTERS, 1.0, repeats=0.2),
-    "sine": _lines(*QUARTERS, repeats=0.0, wave=_sine),
-    "decaying": _lines(0.0, *DECAY, 0.0, repeats=0.0),
-    "random": Preset(_walk),
-    "hold": Preset(lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0]))),
-    "delayed": _lines(*QUARTERS, begins=HELD, repeats=HELD, wave=_sine),
-    "cycles": _lines(0.0, *QUARTERS[1:] * CYCLES, begins=HELD, repeats=HELD),
+    "ramp": _lines("rises evenly from 0 to the value, which it has at the end", 0.0, 1.0),
+    "triangle": _lines(
+        "rises evenly to the value in the middle of the interval, and falls back to 0",
+        *(0.0, 1.0, 0.0),
+        repeats=0.0,
+    ),
+    "cycle": _lines(
+        "goes to the value, to its opposite and to the value again, in straight lines",
+        *(*QUARTERS, 1.0),
+        repeats=0.2,
+    ),
+    "sine": _lines(
+        "a wave of a sine: to the value, to its opposite, and back to 0",
+        *QUARTERS,
+        repeats=0.0,
+        wave=_sine,
+    ),
+    "decaying": _lines(
+        "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, and to 0",
+        *(0.0, *DECAY, 0.0),
+        repeats=0.0,
+    ),
+    "random": Preset(
+        "a random walk of 12 straight lines, as the seed has it, whose largest size is the value",
+        _walk,
+    ),
+    "hold": Preset(
+        "rises evenly to the value in the first quarter of the interval, and stays there",
+        lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0])),
+    ),
+    "delayed": _lines(
+        "0 for the first quarter of the interval, then a wave of a sine: to the value, to its "
+        "opposite, and back to 0",
+        *QUARTERS,
+        begins=HELD,
+        repeats=HELD,
+        wave=_sine,
+    ),
+    "cycles": _lines(
+        "0 for the first quarter of the interval, then six times to the value, to its opposite "
+        "and back to 0, in straight lines",
+        *(0.0, *QUARTERS[1:] * CYCLES),
+        begins=HELD,
+        repeats=HELD,
+    ),
 }
 
 PULLS: dict[str, Preset] = {
     **PRESETS,
-    "cycle": _lines(0.0, 1.0, 0.0, 1.0, 0.0, 1.0, repeats=0.2),
-    "sine": _lines(*QUARTERS, repeats=0.0, wave=lambda phase: _sine(phase) ** 2),
-    "decaying": _lines(0.0, *(0.5 + 0.5 * DECAY), 0.0, repeats=0.0),
-    "random": Preset(_size_of_walk),
-    "delayed": _lines(*QUARTERS, begins=HELD, repeats=HELD, wave=lambda phase: _sine(phase) ** 2),
-    "cycles": _lines(0.0, *[1.0, 0.0] * CYCLES, begins=HELD, repeats=HELD),
+    "cycle": _lines(
+        "goes to the value, to 0, to the value, to 0 and to the value again, in straight lines",
+        *(0.0, 1.0, 0.0, 1.0, 0.0, 1.0),
+        repeats=0.2,
+    ),
+    "sine": _lines(
+        "two waves of a sine squared, from 0 to the value and back",
+        *QUARTERS,
+        repeats=0.0,
+        wave=lambda phase: _sine(phase) ** 2,
+    ),
+    "decaying": _lines(
+        "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the value, and to 0",
+        *(0.0, *(0.5 + 0.5 * DECAY), 0.0),
+        repeats=0.0,
+    ),
+    "random": Preset(
+        "the size of a random walk of 12 straight lines, as the seed has it, at most the value",
+        _size_of_walk,
+    ),
+    "delayed": _lines(
+        "0 for the first quarter of the interval, then two waves of a sine squared, from 0 to the "
+        "value and back",
+        *QUARTERS,
+        begins=HELD,
+        repeats=HELD,
+        wave=lambda phase: _sine(phase) ** 2,
+    ),
+    "cycles": _lines(
+        "0 for the first quarter of the interval, then six times to the value and back to 0, in "
+        "straight lines",
+        *(0.0, *[1.0, 0.0] * CYCLES),
+        begins=HELD,
+        repeats=HELD,
+    ),
 }
 """Presets that never push, for what carries tension alone."""
 
 PRESSURES: dict[str, Preset] = {
-    "steady": _lines(1.0, 1.0),
-    "loosening": _lines(1.0, LOOSE, begins=HELD),
-    "tightening": _lines(LOOSE, 1.0, begins=HELD),
-    "shaken": _lines(1.0, *[LOOSE, 1.0] * CYCLES, begins=HELD, repeats=HELD),
+    "steady": _lines("the value from the beginning to the end", 1.0, 1.0),
+    "loosening": _lines(
+        "the value for the first quarter of the interval, then falls evenly to a fifth of it, as "
+        "of a bolt",
+        *(1.0, LOOSE),
+        begins=HELD,
+    ),
+    "tightening": _lines(
+        "a fifth of the value for the first quarter of the interval, then rises evenly to the "
+        "value",
+        *(LOOSE, 1.0),
+        begins=HELD,
+    ),
+    "shaken": _lines(
+        "the value for the first quarter of the interval, then six times down to a fifth of it and "
+        "back, in straight lines",
+        *(1.0, *[LOOSE, 1.0] * CYCLES),
+        begins=HELD,
+        repeats=HELD,
+    ),
 }
 """Presets of what presses: all of it at first, or in the end, and never nothing."""
 
 INJECTIONS: dict[str, Preset] = {
     "steady": PRESSURES["steady"],
-    "stopped": _lines(1.0, 1.0, 0.0, wave=lambda phase: np.where(phase <= 0.5, 1.0, 0.0)),
-    "rising": _lines(0.0, 1.0),
-    "pulses": _lines(1.0, *[0.0, 1.0] * CYCLES, repeats=0.0),
+    "stopped": _lines(
+        "the value for half of the interval, then nothing; what has spread goes on",
+        *(1.0, 1.0, 0.0),
+        wave=lambda phase: np.where(phase <= 0.5, 1.0, 0.0),
+    ),
+    "rising": _lines("rises evenly from nothing to the value, which it has at the end", 0.0, 1.0),
+    "pulses": _lines(
+        "the value, then six times down to nothing and back, in straight lines",
+        *(1.0, *[0.0, 1.0] * CYCLES),
+        repeats=0.0,
+    ),
     "random": PULLS["random"],
 }
 """Presets of a fluid that is let in from the beginning."""

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.definitions import Rows
 from solver.loads import interpolate
+
+
+class Profile(NamedTuple):
+    """A preset along a body: a line on it, and points over shares of the length."""
+
+    description: str
+    points: Rows
+
 
 UNSEEN = 0.01
 """Share of its range by which a table may differ between nodes from the line through them."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
+from solver.discrete.drives import loads_at
 from solver.discrete.plane_parts import Inside
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import is_upright
@@ -60,9 +61,12 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     remarks += [] if beyond is None else [beyond]
     standing = _standing_on_an_end(settings, iterate)
     if standing.any():
-        first = float(iterate.problem.instants[np.argmax(standing)])
+        problem, first = iterate.problem, int(np.argmax(standing))
+        loads = loads_at(problem.drives, first)
+        time = f"{problem.instants[first]:.4g} s"
+        when = f"{loads}, at {time}," if loads else f"{time} on"
         remarks.append(
-            f"From {first:.4g} s on the body tips: it stands on one end of its base. Take a longer "
+            f"From {when} the body tips: it stands on one end of its base. Take a longer "
             "or lower body, less friction, or a side that keeps it from turning."
         )
     growth = contact_growth(iterate)

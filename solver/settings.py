@@ -110,6 +110,13 @@ class Settings(LoadSettings):
         """Whether there is such a setting, which does something and is not 0."""
         return bool(self.values().get(name)) and self.applies(name)
 
+    def changed_meanings(self) -> Mapping[str, str]:
+        """Describe settings that meant something else in files of before, by name.
+
+        Of those that do something; a sentence without its name.
+        """
+        return {}
+
     def behind(self) -> Mapping[str, str]:
         """Settings that place or scale what acts on the scene, where any does.
 

@@ -15,6 +15,7 @@ from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
+from solver.files import dump, read_settings, settings_from_command
 from solver.latin import Auto, Ending, Latin, Stop, solve
 from solver.reference.closed_forms.fluid_driven_slip import (
     fronts,
@@ -26,6 +27,8 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.fault import FaultSettings
+from solver.study.quantities import reading
+from solver.study.quantities.finished import finished_run
 
 SMALL = {"elements": 48, "elements_up": 24, "instants": 31}
 
@@ -149,6 +152,88 @@ def test_what_would_open_the_fault_is_refused(
         FaultSettings.checked(changes)
     assert name in str(refused.value)
     assert words in str(refused.value)
+
+
+JOINT = {
+    "friction_law": "general",
+    "tangential_stiffness": 5e8,
+    "shear_stress": 3.3e6,
+    "overpressure": 0.0,
+    "instants": 1,
+    "elements": 24,
+    "elements_up": 12,
+}
+
+
+def test_a_joint_slips_by_the_shear_stress_over_its_stiffness_between_both_of_its_sides() -> None:
+    """Some 6.5 mm between its sides, of which the body that is solved moves half."""
+    settings, problem, found = solved(**JOINT)
+    law, contact = problem.rubbing["support"], found.contact("support")
+    shear = -contact.tangential_force / law.by_point(law.weights)[:, None]
+    assert shear == pytest.approx(5e8 * contact.slip, rel=1e-9)
+    assert contact.slip.max() == pytest.approx(0.0065, rel=0.015)
+    above = problem.row_dofs[law.tangent.above]
+    assert found.displacement[above] == pytest.approx(0.5 * contact.slip[law.points], rel=1e-12)
+    across, _ = settings.structure().loop(problem).along(found)
+    assert across == pytest.approx(contact.slip[0], rel=1e-12)
+
+
+def test_quantities_of_a_fault_are_those_between_both_of_its_sides() -> None:
+    """A point over that across from it, which moves as much the other way."""
+    run = finished_run(FaultSettings.checked({**SMALL, **JOINT}), errors=False)
+    inside = run.problem.inside
+    moved = inside.displacement(run.iterate.displacement, slice(None))[:, 0]
+    contact = run.iterate.contact("support")
+    assert reading("peak_slip")(run) == contact.slip.max()
+    assert reading("peak_displacement")(run) == pytest.approx(2.0 * moved.max())
+
+
+@pytest.mark.parametrize("law", ["slip-dependent", "general"])
+def test_friction_of_a_fault_has_its_last_value_after_the_slip_length_between_its_sides(law):
+    """All of the fault slides, as its top is moved by more than friction holds."""
+    length, ratio = 0.02, 0.5
+    changes = {"friction_law": law, "friction_ratio": ratio, "slip_length": length}
+    changes |= {"strength": "linear"} if law == "general" else {}
+    changes |= {"overpressure": 0.0, "shear_stress": 6.3e6, "instants": 2, "elements": 8}
+    _, problem, found = solved(**{**changes, "elements_up": 4})
+    contact, where = found.contact("support"), problem.rubbing["support"]
+    factor = np.abs(contact.tangential_force) / where.by_point(where.weights)[:, None] / 6e6
+    slip = np.abs(contact.slip)
+    assert found.converged.all()
+    assert slip.max() > 0.001
+    assert factor == pytest.approx(1.0 - (1.0 - ratio) * np.minimum(slip / length, 1.0), rel=1e-9)
+
+
+OLD = """
+scene = "fault"
+friction_law = "general"
+strength = "linear"
+slip_length = 1e-3
+tangential_stiffness = 1e9
+"""
+
+
+def test_a_settings_file_of_before_is_told_that_slip_is_that_of_both_sides(tmp_path) -> None:
+    settings, told = read_settings(OLD, "old.toml")
+    assert told.keys() == {"slip_length", "tangential_stiffness"}
+    assert "give 0.002 m" in told["slip_length"]
+    assert "give 5e8 N/m^3" in told["tangential_stiffness"]
+    again, told = read_settings(dump(settings), "new.toml")
+    assert again.values() == settings.values()
+    assert told == {}
+    saved = tmp_path / "old.toml"
+    saved.write_text(OLD, encoding="utf-8")
+    _, told = settings_from_command(str(saved), ["slip_length=2e-3"])
+    assert told.keys() == {"tangential_stiffness"}
+    with pytest.raises(SettingError, match="later version"):
+        read_settings("format = 3" + OLD, "later.toml")
+
+
+def test_what_friction_never_changes_is_not_told_of_a_file_of_before() -> None:
+    for line in ('friction_law = "coulomb"', "slip_length = 1e-3", ""):
+        assert read_settings(f'scene = "fault"\n{line}\n', "old.toml")[1] == {}
+    bar = 'scene = "bar"\nfriction_law = "slip-dependent"\nslip_length = 1e-3\n'
+    assert read_settings(bar, "old.toml")[1] == {}
 
 
 VIESCA = {0.1: 3.6405, 0.3: 1.3474, 0.5: 0.79161, 0.7: 0.43513, 0.9: 0.13981}

@@ -196,6 +196,11 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     path = 0.1 * np.cos(np.linspace(0.0, 4.0 * np.pi, 801))
     energy = abs(float(np.trapezoid(exact.along(path)[400:], path[400:])))
     assert reading("energy_per_metre@2")(run) == pytest.approx(energy, rel=0.01)
+    # One wire stands for all of its layer: what is taken is that of the strand that is drawn.
+    drawn = settings.structure().described().length
+    assert reading("dissipation@2")(run) == pytest.approx(energy * drawn, rel=0.01)
+    of_one = np.abs(run.iterate.contact("wire 1.1").tangential_force).sum(axis=0).max()
+    assert taken("peak_friction", run) == pytest.approx(6.0 * 2.0 * of_one, rel=1e-9)
     secant = float(exact.moment(np.array(0.1))) / 0.1
     assert taken("bending_stiffness", run) == pytest.approx(secant, rel=0.005)
     assert taken("slipping_bending", run) < secant < taken("stuck_bending", run)

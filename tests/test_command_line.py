@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,8 +15,9 @@ import pytest
 from bars import SMALL_BAR as SMALL
 
 from solver.cli import main
-from solver.definitions import SettingError, about, allowed
+from solver.definitions import CurveParameter, SettingError, about, allowed, help_of
 from solver.files import settings_from_toml
+from solver.loads import DECAY, PRESETS, PULLS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
@@ -89,10 +91,9 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
     lines = capsys.readouterr().out.splitlines()
     kind = CATALOGUE[scene]
     definitions, paper = kind.definitions(), kind.of_method("paper")
-    assert len(lines) == 2 * len(definitions)
-    for head, text, (name, definition) in zip(
-        lines[::2], lines[1::2], definitions.items(), strict=True
-    ):
+    rest = iter(lines)
+    for name, definition in definitions.items():
+        head, text = next(rest), next(rest)
         assert head.split()[0] == name
         assert head.split()[1] == (about(definition).unit or "-")
         assert f"default {json.dumps(definition.default)}" in head
@@ -100,6 +101,38 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
         assert (f"(method=paper: {json.dumps(paper.get(name))})" in head) == differs
         assert head.endswith(allowed(definition))
         assert text.strip() == definition.doc
+        for preset, line in about(definition).presets.items():
+            assert next(rest).strip() == f"{preset}: {line}"
+    assert next(rest, None) is None
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_every_preset_of_a_path_or_a_table_has_a_line_of_its_own(scene):
+    for name, definition in CATALOGUE[scene].definitions().items():
+        lines = about(definition).presets
+        if isinstance(definition, CurveParameter):
+            assert list(lines) == list(definition.presets)
+            assert len(set(lines.values())) == len(lines)
+        elif name.endswith("_load"):
+            assert list(lines) == list(definition.objects)
+        for preset, line in lines.items():
+            assert 5 < len(line) < 140
+            assert "\n" not in line
+            assert not line.endswith(".")
+            assert f"{preset}: {line}." in help_of(definition)
+
+
+@pytest.mark.parametrize(
+    ("presets", "name", "numbers"),
+    [
+        (PRESETS, "decaying", DECAY),
+        (PULLS, "decaying", 0.5 + 0.5 * DECAY[:-1]),
+    ],
+)
+def test_numbers_in_the_line_on_a_preset_are_those_of_its_path(presets, name, numbers):
+    said = [float(number) for number in re.findall(r"-?\d\.?\d*", presets[name].description)]
+    assert said[: len(numbers)] == pytest.approx(numbers)
+    assert presets[name].points(0)[0][-1] == 1.0
 
 
 @pytest.mark.parametrize("kind", ["table", "settings", "lesson"])

@@ -282,3 +282,25 @@ def test_a_number_in_another_unit_is_refused() -> None:
     for text in ("5 kg", "1e", "--3", "5 5"):
         with pytest.raises(ValueError, match="write a number"):
             typed(text, Unit("kN", 1e3), "N")
+
+
+def test_a_preset_of_a_path_is_described_where_it_is_chosen() -> None:
+    state = of_scene("bar")
+    control = SettingControl("load", state)
+    assert control.field.helper_text.startswith("A wave of a sine: to the value")
+    assert "triangle: rises evenly to the value in the middle" in control.field.description
+    control.field.value = "ramp"
+    control.update()
+    assert control.field.helper_text == "Rises evenly from 0 to the value, which it has at the end"
+    assert not control.field.error_state
+    state.change(load=[[0.0, 0.0], [1.0, 500.0]])
+    control.update()
+    assert control.field.helper_text == ""
+
+
+def test_a_file_of_before_is_said_to_have_given_the_slip_of_one_side() -> None:
+    opener = TableOpener(of_scene("bar"), "Open", ".toml", 200)
+    old = b'scene = "fault"\nfriction_law = "slip-dependent"\nslip_length = 1e-3\n'
+    opener.file.param.update(filename="old.toml", value=old)
+    assert "Slip length: the file is of a version whose slip" in opener.message.object
+    assert "give 0.002 m" in opener.message.object

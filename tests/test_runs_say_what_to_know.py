@@ -82,7 +82,10 @@ def test_the_command_prints_remarks_with_the_result(capsys: pytest.CaptureFixtur
     changes = [text for name, value in TALL.items() for text in ("--set", f"{name}={value}")]
     command = ["run", "block", *changes, "--set", "friction=0.9", "--no-reference"]
     assert main(command) == 0
-    assert "\nremarks              From 0.05 s on the body tips" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "\nremarks              From top_normal_traction = -200000 Pa" in shown
+    assert "and top_tangential_displacement = 5e-6 m (0.05 times its largest value)" in shown
+    assert ", at 0.05 s, the body tips" in shown
     assert main([*command, "--json"]) == 0
     assert "tips" in json.loads(capsys.readouterr().out)["remarks"][0]
 

@@ -1,6 +1,7 @@
 """The living scene: what is drawn is there, is inside, and follows the hand."""
 
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.status import status_line
 from app.views.catalogue import CARDS
 from app.views.picture import bands
 from app.views.rope import WireSection
@@ -246,10 +248,13 @@ def test_lines_of_thrust_bring_what_presses_on_a_wall_to_the_ground() -> None:
     assert max(widths) == pytest.approx(WIDEST, rel=1e-3)
 
 
-def test_a_wall_that_collapses_says_when_and_shows_by_which_mechanism() -> None:
+def test_a_wall_that_collapses_says_its_limit_and_shows_by_which_mechanism() -> None:
     frame = frame_of(wall(top="pulled", traction=2e6, unit_weight=0.0), ends=True)
     assert frame.status is not None
-    assert "no equilibrium from" in frame.status.advice
+    assert re.search(r"no equilibrium beyond traction = \d+ Pa \(0\.\d+ times", frame.status.advice)
+    state = PageState(frame.run.settings)
+    state.frame = state.newest = frame
+    assert re.search(r"beyond Traction [\d.]+ [kM]Pa", status_line(state))
     assert 0.25 < frame.run.collapses_at < 1.0
     assert frame.run.mechanism is not None
     assert float(np.abs(frame.run.mechanism).max()) > 0.0

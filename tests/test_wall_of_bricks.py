@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,11 +12,14 @@ from solver.definitions import SettingError
 from solver.discrete.bricks import bonded, grouped, with_opening
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.latin import Ending, Latin, iterations, solve
+from solver.latin.status import collapses
 from solver.laws import OPEN, FrictionLaw, Strength
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.study.quantities.finished import known_reference
 
 TIMES = np.linspace(0.0, 1.0, 21)
 DOWN = np.minimum(TIMES / 0.25, 1.0)
@@ -196,6 +200,66 @@ def test_limit_analysis_finds_the_shear_that_no_contact_force_balances(law, limi
     assert np.abs(collapse.mechanism).max() == pytest.approx(1.0)
     safe = column(0.99 * limit * 1e6, 1, friction=0.3, friction_law=law)
     assert collapse_of(safe.discretise()) is None
+
+
+PILE = {
+    "top": "pulled",
+    "bond": "stack",
+    "bricks": 1,
+    "courses": 3,
+    "unit_weight": 0.0,
+    "elements": 4,
+    "elements_up": 2,
+}
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.6])
+@pytest.mark.parametrize("instants", [2, 12])
+def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(friction, instants):
+    """It slides at mu p, and tips at p b / (2 h), whatever the path and its instants."""
+    values = {**PILE, "friction": friction, "instants": instants, "traction": 5e5}
+    settings = CATALOGUE["wall"].checked(values)
+    limit = min(friction, 0.25 / (2.0 * 0.36)) * 1e6
+    problem = discretise(settings)
+    words = known_reference(problem).doubt
+    told = re.search(r"beyond traction = (\S+) Pa \((\S+) times its largest value\)", words)
+    assert float(told[1]) == pytest.approx(limit, rel=1e-3)
+    assert float(told[2]) == pytest.approx(limit / 5e5, rel=3e-3)
+    assert told[0] in solve(problem, method_of(settings)).status.advice
+
+
+def test_loads_of_which_no_share_is_carried_are_told_as_they_are():
+    """At its one instant the top is pulled by more than any share of what presses holds."""
+    at_once = {"pressure_load": ((0.0, 1e6),), "top_load": ((0.0, 5e5),), "instants": 1}
+    problem = discretise(CATALOGUE["wall"].checked({**PILE, **at_once}))
+    words = known_reference(problem).doubt
+    assert "no equilibrium with pressure_load = 1e6 Pa (1 times" in words
+    assert "and top_load = 500000 Pa (1 times" in words
+
+
+def test_loads_that_fall_until_nothing_holds_are_told_from_above():
+    loosened = {**PILE, "top_load": ((0.0, 2e5),), "friction": 0.6}
+    loosened["pressure_load"] = ((0.0, 1e6), (1.0, 0.0))
+    words = known_reference(discretise(CATALOGUE["wall"].checked(loosened))).doubt
+    told = re.search(r"below pressure_load = (\S+) Pa \((\S+) times its largest value\)", words)
+    exact = 2e5 * 2.0 * 0.36 / 0.25
+    assert float(told[1]) == pytest.approx(exact, rel=1e-3)
+    assert float(told[2]) == pytest.approx(exact / 1e6, rel=3e-3)
+
+
+def test_the_limit_of_a_wall_is_said_to_be_its_meshs_and_rises_with_its_elements():
+    """Towards that of rigid stones: up to 5 % more than on the coarsest mesh."""
+    found = {}
+    for elements in (2, 12):
+        size = {"elements": elements, "elements_up": max(elements // 2, 2), "instants": 2}
+        values = {**PILE, "bond": "running", "bricks": 3, "traction": 1e6, **size}
+        problem = discretise(CATALOGUE["wall"].checked({**values, "top_load": "delayed"}))
+        assert problem.has_short_joints
+        collapse = collapse_of(problem)
+        found[elements] = collapse.share
+        assert "rigid stones carry up to 5 % more" in collapses(problem, collapse).advice
+    assert 1.01 < found[12] / found[2] < 1.05
+    assert not discretise(CATALOGUE["wall"].checked(PILE)).has_short_joints
 
 
 @pytest.mark.parametrize("moved", [2e-4, 1e-3])

@@ -25,7 +25,7 @@ from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.widgets import button, changing_text, dialog, download
 from solver.definitions import title_of
-from solver.files import dump, settings_from_toml
+from solver.files import dump, read_settings
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.comparison import read_results
@@ -117,8 +117,11 @@ class TableOpener:
     def _read(self, source: str, data: bytes) -> tuple[Content, str]:
         state, axes = self._state, axes_on(self._state)
         if source.lower().endswith(".toml"):
-            settings = settings_from_toml(data.decode("utf-8-sig", "replace"), source=source)
-            return settings, f"{source}: settings of the scene {settings.scene}."
+            settings, changed = read_settings(data.decode("utf-8-sig", "replace"), source)
+            definitions = settings.definitions()
+            told = [f"{title_of(definitions[name])}: {text}." for name, text in changed.items()]
+            message = f"{source}: settings of the scene {settings.scene}."
+            return settings, " ".join([message, *told])
         table = table_of(data, source)
         if not is_a_loop(data, source):
             results = read_results(data, source, state.settings)

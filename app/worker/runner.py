@@ -142,7 +142,7 @@ class Runner:
         if reference is not None and reference.collapse is not None:
             self.sampler.collapse(reference.collapse)
             if self.status is None or self.status.ending is not Ending.CONVERGED:
-                self.status = collapses(reference.collapse)
+                self.status = collapses(problem, reference.collapse)
             return
         self.sampler.complete(reference)
         if reference is not None:

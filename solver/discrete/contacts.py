@@ -109,7 +109,7 @@ class ContactFields:
         Distance of the two sides, m; None where the bound is known.
     slip
         Tangential displacement of the body above over what is below, m; it says how far a point
-        has come, so its changes in time are the slip.
+        has come, so its changes in time are the slip. That below may be the image of the body.
     status
         -1 is slip backward, 0 stick, +1 slip forward, `OPEN` without contact.
     """
@@ -132,7 +132,8 @@ def contact_fields(
     law, places = problem.rubbing[name], problem.contact_places[name]
     scale = problem.scales.displacement
     jumps = [law.mean_by_point(one.jump(displacement)) * scale for one in law.components]
+    slip = law.slip_ratio * jumps[-1]
     if law.normal is None:
-        return ContactFields(None, force[places[0]], None, jumps[0], status)
+        return ContactFields(None, force[places[0]], None, slip, status)
     gap = law.mean_by_point(law.normal.gap[:, None]) * scale
-    return ContactFields(force[places[0]], force[places[1]], jumps[0] + gap, jumps[1], status)
+    return ContactFields(force[places[0]], force[places[1]], jumps[0] + gap, slip, status)

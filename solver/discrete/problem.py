@@ -20,6 +20,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.contacts import ContactGroup
+from solver.discrete.drives import Drive
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
 
@@ -57,6 +58,12 @@ class Problem:
     carried
         Displacement of the support that rods lie on, scaled, shape (n_dofs, n_instants), where it
         moves: all displacements of the problem are seen from it.
+    has_short_joints
+        Whether upright joints of bodies have no pair at their ends, so that these bodies carry
+        less than rigid ones.
+    drives
+        Loads and motions by the settings that give them, for words alone; none of a problem that
+        is no scene's.
     """
 
     substructures: tuple[Substructure, ...]
@@ -67,6 +74,8 @@ class Problem:
     inside: Inside | None = None
     rest: Array | None = None
     carried: Array | None = None
+    has_short_joints: bool = False
+    drives: tuple[Drive, ...] = ()
 
     def at_rest(self, displacement: Array) -> Array:
         """Displacements as who stands beside sees them, (n_dofs, n_instants), m."""

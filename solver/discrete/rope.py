@@ -15,7 +15,7 @@ from the reactions, and they are no points of the interfaces, one a wire, "wire 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -165,14 +165,22 @@ class Rope:
     def discretise(self) -> Problem:
         """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
 
-        Positions are those along the strand.
+        Positions are those along the strand. Where a wire stands for its layer, over half a turn
+        of it, so does its interface, over the strand that is drawn.
         """
-        return CutRods(
+        problem = CutRods(
             [self._rod(wire) for wire in self.wires],
             [wire.along for wire in self.wires],
             [wire.name for wire in self.wires],
             rub_at_ends=(False, False),
         ).problem()
+        if self.is_clamped:
+            return problem
+        interfaces = dict(problem.interfaces)
+        for wire in self.wires:
+            copies = wire.stands_for * self.seen_length / float(wire.along[-1])
+            interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
+        return replace(problem, interfaces=interfaces)
 
     def _rod(self, wire: RopeWire) -> Rods:
         held = End(displacement=np.zeros(len(self.instants)))

@@ -55,7 +55,7 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """A rigid rough support below the stack.
+    """A rigid rough support below the stack, or its image.
 
     Attributes
     ----------
@@ -66,11 +66,26 @@ class Support:
         Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
         support then presses as much as that takes, and adds no pressure of its own. None where
         contact decides, and may open.
+    is_image
+        Whether below lies the image of the stack, turned by half a turn, which moves along as much
+        the other way: slip is between both, twice what the stack moves, and so is that of the
+        friction law. The bound has to be known.
     """
 
     gap: Array
     friction: float | Array
     bound: Array | None = None
+    is_image: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse an image on which what presses would be an unknown."""
+        if self.is_image and self.bound is None:
+            raise RefusedError(
+                "Support.bound",
+                None,
+                "the largest friction force of an image",
+                "give it, as slip changes nothing across a plane of symmetry",
+            )
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,9 @@ def problem_of(stack: Stack) -> Problem:
         scales=scales,
         inside=inside,
         rest=_rest(stack, inside),
+        has_short_joints=any(
+            joint.is_upright and len(set(cut.bodies(joint))) > 1 for joint in cut.pairs
+        ),
     )
 
 
@@ -107,6 +110,9 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
     )
     areas = stack.length * weights
     law, scales = stack.friction_law, (stack.length, stack.young * stack.length)
+    is_image = support is not None and support.is_image
+    if is_image:
+        law = law.of_one_side()
     if support is not None and support.bound is not None:
         known = support.bound[node] / (stack.young * stack.length) * areas[:, None]
         friction = law.at(along, areas, scales, known=known)
@@ -138,6 +144,7 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
             depth=stack.height * (stack.rectangles[body].rows / stack.elements[1]),
         ),
         macro=macro,
+        slip_ratio=2.0 if is_image else 1.0,
     )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +13,7 @@ from solver.discrete.problem import Problem
 from solver.latin.cost import WAIT, Costs, costs_of
 from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
-from solver.latin.status import JUMPS, Status, collapses
+from solver.latin.status import Status, collapses, lost_jump
 from solver.latin.status_step import Certificate, states_of, status_step
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import LEAST_SHARE, VANISHING
@@ -132,10 +131,11 @@ class ErrorEstimate:
         except Interrupted:
             return
         self.ending = None
-        if solution.jumps_at is not None and solution.is_lost:
-            self.ending = replace(JUMPS, lost_from=int(np.argmin(solution.converged)))
         if solution.collapse is not None:
-            self.ending = collapses(solution.collapse)
+            self.ending = collapses(iterate.problem, solution.collapse)
+        elif solution.jumps_at is not None and solution.is_lost:
+            lost_from = int(np.argmin(solution.converged))
+            self.ending = lost_jump(iterate.problem, solution.jumps_at, lost_from)
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
 

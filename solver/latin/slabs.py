@@ -111,6 +111,7 @@ def _during(problem: Problem, some: slice, start: Mapping[str, Array] | None = N
         instants=problem.instants[some],
         rest=during(problem.rest),
         carried=during(problem.carried),
+        drives=tuple(drive.during(some) for drive in problem.drives),
     )
 
 

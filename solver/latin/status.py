@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from solver.discrete.drives import beyond, loads_at
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.latin.pgd import PGD
@@ -76,14 +77,17 @@ BELOW = Status(
     Ending.CONVERGED,
     "The LATIN indicator is below its tolerance, and the k-free indicator agrees.",
 )
-JUMPS = Status(
-    Ending.STALLED,
-    "At some instant no equilibrium goes on from the one before: friction falls with slip faster "
+OF_MESH = (
+    "This is the limit of the mesh, whose upright joints touch inside their ends alone: rigid "
+    "stones carry up to 5 % more."
+)
+_LOST_JUMP = (
+    "At {} no equilibrium goes on from the one before: friction falls with slip faster "
     "than the structure unloads, so that it jumps, and none is found beyond. Lower the load, raise "
-    "friction_ratio or slip_length, or prescribe a displacement in place of a force.",
+    "friction_ratio or slip_length, or prescribe a displacement in place of a force."
 )
 _JUMPED = (
-    " At {:.4g} s no equilibrium goes on from the one before, as friction falls with slip faster "
+    " At {} no equilibrium goes on from the one before, as friction falls with slip faster "
     "than the structure unloads: it jumps to another. Where it should not, raise friction_ratio, "
     "slip_length or the number of elements."
 )
@@ -98,17 +102,38 @@ _FEW_MODES = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
 _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
 
 
-def collapses(collapse: Collapse) -> Status:
-    """Status of a run whose loads no contact forces can balance from a time on."""
+def collapses(problem: Problem, collapse: Collapse) -> Status:
+    """Status of a run whose loads no contact forces balance from a point of a path on."""
     way, remedy = "slides away", "Lower the load, or raise friction or pressure."
     if collapse.tips:
         way, remedy = "tips over", "Lower the load, or make it wider, or press it more."
+    mesh = f" {OF_MESH}" if problem.has_short_joints else ""
     return Status(
         Ending.STALLED,
-        f"There is no equilibrium from {collapse.time:.4g} s on: no contact forces within friction "
-        f"balance the loads, and the structure {way}. {remedy}",
+        f"There is no equilibrium {limit_of(problem, collapse)}: no contact forces within friction "
+        f"balance the loads, and the structure {way}. {remedy}{mesh}",
         lost_from=collapse.instant,
     )
+
+
+def limit_of(problem: Problem, collapse: Collapse) -> str:
+    """Words on where an equilibrium ends: the loads that are carried, and when."""
+    loads = beyond(problem.drives, collapse.instant, collapse.share)
+    time = f"from {collapse.time:.4g} s on"
+    return f"{loads}, {time}" if loads else time
+
+
+def jump_of(problem: Problem, instant: int) -> str:
+    """Words on where a structure jumps: the loads at the instant after it, and when."""
+    loads = loads_at(problem.drives, instant)
+    time = f"{problem.instants[instant]:.4g} s"
+    return f"{time}, with {loads}," if loads else time
+
+
+def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
+    """Status of a run that jumps at an instant, and finds no equilibrium from another on."""
+    advice = _LOST_JUMP.format(jump_of(problem, instant))
+    return Status(Ending.STALLED, advice, lost_from=lost_from)
 
 
 def diverged(iteration: int) -> Status:
@@ -146,7 +171,7 @@ def with_jump(status: Status, problem: Problem, certificate: Certificate | None)
     """Status that also says when the certified solution jumps, if it does."""
     if certificate is None or certificate.solution.jumps_at is None:
         return status
-    message = _JUMPED.format(problem.instants[certificate.solution.jumps_at])
+    message = _JUMPED.format(jump_of(problem, certificate.solution.jumps_at))
     return replace(status, advice=status.advice + message)
 
 

@@ -103,6 +103,12 @@ class Contact(Interface):
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
         from the other is in equilibrium in the coarse problem. None on a rigid support.
+    slip_ratio
+        Slip between both sides over the displacement along the interface that the rows have: 2
+        where the image of the body lies below, which no row sees and which moves the other way.
+    copies
+        Number of interfaces that this one stands for in sums over the structure that is shown, as
+        one wire of a layer does for all: forces and energies of its points count as many times.
     """
 
     points: Indices
@@ -112,6 +118,8 @@ class Contact(Interface):
     normal: Unilateral | None = None
     around: Rod | Bodies = field(default_factory=Rod)
     macro: sparse.csr_array | None = None
+    slip_ratio: float = 1.0
+    copies: float = 1.0
 
     remembers = True
 

@@ -101,6 +101,18 @@ class FrictionLaw:
             strength=strength,
         )
 
+    def of_one_side(self) -> FrictionLaw:
+        """Law of a body on its image, which moves as much the other way.
+
+        The body moves along by half of the slip, so that over its own displacement the spring is
+        twice as stiff, and the strength has changed after half as much.
+        """
+        strength = self.strength
+        if strength is not None:
+            slips = tuple(0.5 * slip for slip in strength.slips)
+            strength = Strength(slips, strength.factors)
+        return replace(self, stiffness=2.0 * self.stiffness, strength=strength)
+
     def without_slip(self, rubbed: Array, size: float = 1.0) -> Array:
         """Largest friction force before slip, of what mu N makes, per area or of all of an area."""
         return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))

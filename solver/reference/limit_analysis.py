@@ -38,6 +38,8 @@ class Collapse:
         From when on there is no equilibrium, s.
     instant
         The first instant without one.
+    share
+        Share of the step of the loads to that instant up to which there is one.
     mechanism
         Rigid motions of all bodies in which they begin to move, shape (n_dofs,), the largest 1.
     tips
@@ -46,6 +48,7 @@ class Collapse:
 
     time: float
     instant: int
+    share: float
     mechanism: Array
     tips: bool
 
@@ -101,7 +104,7 @@ def collapse_of(problem: Problem) -> Collapse | None:
             shares = np.zeros(len(loads)) if program.status else program.eqlin.marginals
             moved = -problem.motions @ shares
             mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
-            return Collapse(time, instant, mechanism, _tips(problem, mechanism))
+            return Collapse(time, instant, share, mechanism, _tips(problem, mechanism))
         before = now
     return None
 

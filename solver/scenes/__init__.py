@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from solver.discrete.problem import Problem
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
@@ -29,5 +31,5 @@ CATALOGUE: dict[str, type[Settings]] = {
 
 
 def discretise(settings: Settings) -> Problem:
-    """Make the discrete problem that checked settings describe."""
-    return settings.structure().discretise()
+    """Make the discrete problem that checked settings describe, driven by what they give."""
+    return replace(settings.structure().discretise(), drives=settings.drives())

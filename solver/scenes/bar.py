@@ -16,7 +16,7 @@ from solver.discrete.rods import End, Rods
 from solver.discrete.structure import LoopFields
 from solver.discrete.substructure import tributary
 from solver.loads import interpolate
-from solver.profiles import harmonic_means, means
+from solver.profiles import Profile, harmonic_means, means
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
@@ -24,7 +24,12 @@ from solver.settings import Icon, Settings
 
 SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falling")}
 """Those that leave no element without a section."""
-SETTLEMENTS = {"linear": ((0.0, 0.0), (1.0, 1.0)), **shared.PROFILES}
+SETTLEMENTS = {
+    "linear": Profile(
+        "rises evenly from 0 at the left end to 1 at the right end", ((0.0, 0.0), (1.0, 1.0))
+    ),
+    **shared.PROFILES,
+}
 """The first is nothing at the left end."""
 LARGEST_CONTRAST = 1e8
 """Largest over smallest factor on the section, and the largest factor itself."""
@@ -223,7 +228,7 @@ class BarSettings(Settings):
         "the settlement",
         "the bar",
         SETTLEMENTS,
-        "a preset (linear: nothing at the left end), or points (m, factor).",
+        "a preset, or points (m, factor).",
         group=LOAD,
         applies=lambda settings: settings.acts("settlement_load"),
     )
@@ -360,7 +365,9 @@ class BarSettings(Settings):
         ends = np.linspace(0.0, self.length, self.elements + 1)
         table = self.section_profile
         if isinstance(table, str):
-            factors = interpolate(SECTIONS[table], 0.5 * (ends[:-1] + ends[1:]) / self.length)
+            factors = interpolate(
+                SECTIONS[table].points, 0.5 * (ends[:-1] + ends[1:]) / self.length
+            )
         else:
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))

@@ -9,7 +9,17 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, CONTACT, Parameter, Rows, SettingGroup, redefined
+from solver.definitions import (
+    BODY,
+    CONTACT,
+    Parameter,
+    Rows,
+    SettingGroup,
+    TablePreset,
+    about,
+    redefined,
+)
+from solver.discrete.drives import Drive, loads_at
 from solver.discrete.problem import Problem
 from solver.discrete.rigid_stack import loss_of_equilibrium
 from solver.discrete.stack import Given, Side, Spring, Stack, Support
@@ -146,7 +156,12 @@ class BlockSettings(SideSettings):
 
     gap = CONTACT.curve(
         "parabola",
-        dict.fromkeys(("flat", "parabola"), _gap_points),
+        {
+            "flat": TablePreset("no opening anywhere", _gap_points),
+            "parabola": TablePreset(
+                "that of a round body of the radius R, 0 in the middle", _gap_points
+            ),
+        },
         {"position": "m", "gap": "m"},
         "Opening between the undeformed body and its support: a preset, or points (m, m).",
     )
@@ -203,16 +218,27 @@ class BlockSettings(SideSettings):
         unit="N/m^3",
         places=("body",),
     )
-    body_load = BODY_FORCE.choice(
+    body_load = BODY_FORCE.preset(
         "hold",
         PRESETS,
-        "Path of the body force over time.",
+        "Path of the body force over time: a preset of both components.",
         title="Path of the body force",
         applies=lambda settings: settings.body_force_x != 0.0 or settings.body_force_y != 0.0,
     )
     top = redefined(SideSettings.param["top"], "displacement")
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
+
+    def drives(self) -> tuple[Drive, ...]:
+        """Loads and motions over time that are not zero, both components of the body force too."""
+        found = list(super().drives())
+        force = self._body_force()
+        if force is None:
+            return tuple(found)
+        for name, values in zip(("body_force_x", "body_force_y"), force, strict=True):
+            if np.any(values):
+                found.append(Drive(name, about(self.definitions()[name]).unit, values))
+        return tuple(found)
 
     def left_out(self) -> Iterator[str]:
         """Yield what a run does not see of its tables, the gap among them."""
@@ -241,10 +267,15 @@ class BlockSettings(SideSettings):
         super().check_together()
         loss = loss_of_equilibrium(self.structure())
         if loss is not None:
+            time, reason = loss
+            loads = loads_at(self.drives(), int(np.searchsorted(self.times(), time)))
+            when = f"from {plain(time)} s on"
+            if loads:
+                when = f"with {loads}, {when},"
             raise self.refusal(
                 "top",
                 "sides and loads that leave the body in equilibrium",
-                f"nothing but contact holds it, and from {plain(loss[0])} s on {loss[1]}: "
+                f"nothing but contact holds it, and {when} {reason}: "
                 "lower that load, press more, raise friction where it slides, take a longer or "
                 "lower body where it tips, or hold a side",
             )

@@ -6,20 +6,21 @@ it by diffusion (solver/README.md, 17).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, redefined
+from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, about, redefined
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of
+from solver.profiles import Profile
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
@@ -27,9 +28,12 @@ from solver.scenes.plane import PlaneSettings
 from solver.settings import Icon
 
 PROFILES = {
-    "uniform": ((0.0, 1.0), (1.0, 1.0)),
-    "rising": ((0.0, 1.0), (1.0, 2.0)),
-    "barrier": ((0.0, 1.0), (0.15, 1.0), (0.16, 5.0), (1.0, 5.0)),
+    "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),
+    "rising": Profile("rises evenly from 1 at the well to 2 at the end", ((0.0, 1.0), (1.0, 2.0))),
+    "barrier": Profile(
+        "1 up to 0.15 times the length, and 5 from 0.16 times the length on",
+        ((0.0, 1.0), (0.15, 1.0), (0.16, 5.0), (1.0, 5.0)),
+    ),
 }
 """Factors over shares of the length."""
 FINE = 4000
@@ -39,6 +43,14 @@ INFINITE = 0.3
 (tests/test_a_fluid_drives_slip.py)."""
 MOST_SPREAD = 300_000_000
 """Nodes times instants times points of a path, at most, as each point spreads on its own."""
+OF_BOTH_SIDES = {
+    "tangential_stiffness": 0.5,
+    "contact_stiffness": 0.5,
+    "strength": 2.0,
+    "slip_length": 2.0,
+}
+"""Settings over the slip between both sides of the fault, with the factor on the values that were
+given when they were over that of one side."""
 ROUND = 1e-9
 """Share of the strength that rounding adds to it or takes away."""
 
@@ -50,7 +62,8 @@ class Fault:
     One quarter is enough: the body above the fault, to the right of its middle. Below lies its
     image turned by half a turn, so that no pressure changes on the fault and its strength is known;
     to the left lies the other image, which moves along as much and across the other way round. The
-    fault slips by twice what this quarter moves along it.
+    fault slips by twice what this quarter moves along it: slip, and a law over it, are the fault's
+    (`Support.is_image`), while displacements are those of the quarter.
 
     The bound of the body's support is less already by what the fluid takes: shear stress far away
     and the fluid's pressure at the middle, (n_instants,), Pa, are for whoever draws them.
@@ -65,12 +78,12 @@ class Fault:
         return self.body.discretise()
 
     def loop(self, problem: Problem) -> Loop:
-        """Friction of the quarter over how far it has moved at the middle."""
+        """Friction along the quarter over the slip of the fault at the middle."""
         law = problem.rubbing["support"]
         return Loop(
-            ("Displacement at the well", "m"),
+            ("Slip at the well", "m"),
             ("Friction force", "N"),
-            Probe(problem.row_dofs[law.tangential.component.above[:1]], np.ones(1)),
+            Probe(problem.row_dofs[law.tangent.above[:1]], np.full(1, law.slip_ratio)),
             lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
         )
 
@@ -118,8 +131,6 @@ class FaultSettings(PlaneSettings):
         "Pressure p of the fluid where it is let in, above what was there before.",
         "steady",
         INJECTIONS,
-        path_doc="stopped: no more after half of the interval; what has spread goes on. rising: "
-        "from nothing. pulses: down and up again, six times. ",
         places=("left x",),
     )
     shear_stress = LOAD.quantity(
@@ -157,12 +168,53 @@ class FaultSettings(PlaneSettings):
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
     friction_profile = shared.profile("μ", "the fault", PROFILES, bounds=POSITIVE)
+    tangential_stiffness = redefined(
+        PlaneSettings.param["tangential_stiffness"],
+        0.0,
+        doc="Stiffness of the fault as a joint, in series with friction: shear stress over the "
+        "slip between both of its sides. 0: rigid.",
+    )
+    contact_stiffness = redefined(
+        PlaneSettings.param["contact_stiffness"],
+        100.0,
+        doc="Stiffness of that spring, shear stress over the slip between both sides of the fault, "
+        "as a multiple of E / L.",
+    )
+    strength = redefined(
+        PlaneSettings.param["strength"],
+        "constant",
+        doc="Factor on the largest friction force over the accumulated slip between both sides of "
+        "the fault: a preset, or points (m, factor), the first (0, 1), such as a peak, softening "
+        "and a residual; the last one stays.",
+    )
+    slip_length = redefined(
+        PlaneSettings.param["slip_length"],
+        1e-4,
+        doc="Accumulated slip between both sides of the fault at which its friction is the last.",
+    )
     length = shared.size(
         600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", BODY
     )
     height = shared.size(600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", BODY)
     young = shared.young(BODY, 6e10, (1e9, 1e12))
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
+
+    def changed_meanings(self) -> Mapping[str, str]:
+        """Describe settings over the slip, which was that of one side alone."""
+        found = {}
+        for name, factor in OF_BOTH_SIDES.items():
+            value = getattr(self, name)
+            if isinstance(value, str) or not self.has(name):
+                continue
+            unit = about(self.definitions()[name]).unit
+            remedy = "give slips twice as large"
+            if isinstance(value, float):
+                remedy = f"give {plain(factor * value)} {unit}".rstrip()
+            found[name] = (
+                "the file is of a version whose slip was that of one side of the fault; it is that "
+                f"between both sides now, for the run of then {remedy}"
+            )
+        return found
 
     def fluid(self, place: Array) -> Array:
         """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
@@ -213,7 +265,7 @@ class FaultSettings(PlaneSettings):
         moved = none + self.shear_stress / modulus * self.height
         body = replace(
             self.stack(),
-            support=Support(np.zeros(len(strength)), self.friction, strength),
+            support=Support(np.zeros(len(strength)), self.friction, strength, is_image=True),
             sides={
                 "left": Side(free, level),
                 "right": Side(free, Given(False, none + self.shear_stress)),

@@ -96,7 +96,7 @@ class InclineSettings(PlaneSettings):
         raise self.refusal(
             self.size_or_table("slope_load"),
             "slopes on which the block stays in equilibrium",
-            f"from {plain(instant)} s on, at {angle:.4g}°, {reason}: "
+            f"at {angle:.4g}°, from {plain(instant)} s on, {reason}: "
             "lower the slope, or take a longer base or a lower block",
         )
 

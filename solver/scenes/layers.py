@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, LOAD, Rows, redefined
+from solver.definitions import BODY, LOAD, Rows, TablePreset, redefined
 from solver.discrete.bricks import Brick
 from solver.discrete.cut_stack import ends_along
 from solver.discrete.problem import Problem
@@ -108,7 +108,8 @@ class LayersSettings(PlaneSettings):
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or N·m/m or N/m"},
-        "Deflection, moment or force over time: a preset, or points (s, m or N·m/m or N/m).",
+        "Deflection, moment or force over time: a preset of the largest value, or points (s, m or "
+        "N·m/m or N/m).",
         title="Path of the bending",
     )
     friction_factors = shared.friction_factors("between two layers, from the lowest on")
@@ -124,11 +125,16 @@ class LayersSettings(PlaneSettings):
     )
     layer_lengths = BODY.curve(
         "equal",
-        {"equal": lambda settings: shared.same_for(settings.layers), "graduated": _graduated},
+        {
+            "equal": TablePreset("1 of each", lambda own: shared.same_for(own.layers)),
+            "graduated": TablePreset(
+                "each is shorter than the one below it by the same step, as in a leaf spring",
+                _graduated,
+            ),
+        },
         {"layer": "", "share": ""},
         "Length of each layer, from the lowest on, as a share of the length, to the nearest "
-        "element. equal: 1. graduated: each is shorter than the one below it by the same step, as "
-        "in a leaf spring. Or points (layer, share), one for each. What is given at the right end "
+        "element: a preset, or points (layer, share), one for each. What is given at the right end "
         "holds for the longest; pressure acts on all that lies open.",
         title="Length of each layer",
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import POSITIVE, redefined
+from solver.definitions import POSITIVE, Rows, TablePreset, redefined
 from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.problem import Problem
 from solver.discrete.rope import Rope, RopeWire
@@ -22,6 +23,19 @@ from solver.settings import Icon, Settings
 
 MOST_WIRES = 1000
 """Of a construction of one's own."""
+
+
+STRANDS = {
+    "mooring": "a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire",
+    "seven-wire": "prestressing strand of 15.7 mm",
+    "conductor": "an overhead conductor of 28 mm, 26 aluminium wires on 7 of steel (Drake)",
+}
+"""A line on each of the constructions."""
+
+
+def _rows(settings: Any) -> Rows:
+    rows: Rows = settings.section.rows
+    return rows
 
 
 class RopeSettings(Settings):
@@ -45,13 +59,11 @@ class RopeSettings(Settings):
 
     construction = shared.STRAND.curve(
         "mooring",
-        dict.fromkeys(CONSTRUCTIONS, lambda settings: settings.section.rows),
+        {name: TablePreset(line, _rows) for name, line in STRANDS.items()},
         {"wires": "", "diameter": "m", "lay angle": "°", "modulus": "Pa"},
-        "mooring: a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire. "
-        "seven-wire: prestressing strand of 15.7 mm. conductor: an overhead conductor of 28 mm, 26 "
-        "aluminium wires on 7 of steel (Drake). Or rows, inside out: wires, their diameter (m), "
-        "lay angle (°, negative the other way round) and Young's modulus (Pa); the first row is "
-        "the core, 1 wire of 0°.",
+        "Wires of the strand: a preset, or rows, inside out: wires, their diameter (m), lay angle "
+        "(°, negative the other way round) and Young's modulus (Pa); the first row is the core, 1 "
+        "wire of 0°.",
         bounds=((1, 500), (1e-6, 1.0), (-75.0, 75.0), (1.0, 1e18)),
     )
     layers = shared.STRAND.count(
@@ -87,7 +99,6 @@ class RopeSettings(Settings):
         "bent without untwisting, and what friction adds to a wire's tension presses no harder.",
         "steady",
         PRESSURES,
-        path_doc=shared.OF_PRESSURES,
         bounds=POSITIVE,
         places=("right x",),
     )

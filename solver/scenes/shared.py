@@ -11,24 +11,34 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import CONTACT, LOAD, POSITIVE, CurveParameter, Rows, SettingGroup
+from solver.definitions import (
+    CONTACT,
+    LOAD,
+    POSITIVE,
+    CurveParameter,
+    Rows,
+    SettingGroup,
+    TablePreset,
+)
 from solver.loads import PRESETS, PRESSURES, Preset, interpolate
-from solver.profiles import means, shares_of
+from solver.profiles import Profile, means, shares_of
 from solver.settings import Settings
 
 STRAND = SettingGroup("Strand")
 PROFILES = {
-    "uniform": ((0.0, 1.0), (1.0, 1.0)),
-    "rising": ((0.0, 0.2), (1.0, 1.8)),
-    "falling": ((0.0, 1.8), (1.0, 0.2)),
-    "gap": ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
+    "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),
+    "rising": Profile(
+        "rises evenly from 0.2 at the left end to 1.8 at the right end", ((0.0, 0.2), (1.0, 1.8))
+    ),
+    "falling": Profile(
+        "falls evenly from 1.8 at the left end to 0.2 at the right end", ((0.0, 1.8), (1.0, 0.2))
+    ),
+    "gap": Profile(
+        "1, and 0 in the middle fifth of the length",
+        ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
+    ),
 }
-"""Factors along a body, over shares of its length."""
-OF_PRESSURES = (
-    "loosening: it stays for a quarter of the interval, and falls to a fifth, as of a bolt. "
-    "tightening: the other way. shaken: it falls to a fifth and comes back, six times. "
-)
-"""What the presets of a pressure are."""
+"""Factors along a body."""
 BY_UNIT = {
     "m": "displacement",
     "K": "temperature",
@@ -55,21 +65,23 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
 def profile(
     what: str,
     body: str,
-    presets: Mapping[str, Rows] = PROFILES,
+    presets: Mapping[str, Profile] = PROFILES,
     doc: str = "",
     group: SettingGroup = CONTACT,
     **others: Any,
 ) -> CurveParameter:
     """Define a factor on something along a body; its default is the first preset.
 
-    Presets are points over shares of the length. Help is needed of what is more than a preset or
-    points; `others` are what a curve takes.
+    Help is needed of what is more than a preset or points; `others` are what a curve takes.
     """
     name = what.removeprefix("the ")
     title = name if name == what else name.capitalize()
     return group.curve(
         next(iter(presets)),
-        {preset: partial(_over_length, points) for preset, points in presets.items()},
+        {
+            preset: TablePreset(profile.description, partial(_over_length, profile.points))
+            for preset, profile in presets.items()
+        },
         {"position": "m", "factor": ""},
         f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
         title=f"{title} along {body}",
@@ -96,9 +108,9 @@ def friction_factors(which: str) -> CurveParameter:
     """Define how mu varies from interface to interface."""
     return CONTACT.curve(
         "same",
-        {"same": lambda settings: same_for(settings.n_interfaces)},
+        {"same": TablePreset("1 of each", lambda settings: same_for(settings.n_interfaces))},
         {"interface": "", "factor": ""},
-        f"Factor on mu of each interface {which}. same: 1. Or points (interface, factor), one for "
+        f"Factor on mu of each interface {which}: a preset, or points (interface, factor), one for "
         "each, numbered from 1 on.",
         bounds=POSITIVE,
         title="μ of each interface",
@@ -116,7 +128,6 @@ def sized_path(
     preset: str,
     presets: Mapping[str, Preset] = PRESETS,
     *,
-    path_doc: str = "",
     applies: Callable[[Any], bool] = lambda settings: True,
     bounds: Sequence[tuple[float, float]] = (),
     group: SettingGroup = LOAD,
@@ -125,8 +136,7 @@ def sized_path(
     """Define the largest value that presets of a path over time reach, and the path.
 
     Where that value is 0 by default, there is no path as long as it is. `path` is the name of its
-    setting, `path_doc` what there is to say of it beside that it is one. The path starts as a
-    `preset`, with `bounds` of its columns; `record` is of the value.
+    setting. The path starts as a `preset`, with `bounds` of its columns; `record` is of the value.
     """
     record = {"title": f"{what[:1].upper()}{what[1:]}", "unit": unit, "path": path} | record
     size = group.quantity(default, ends, slider, doc, applies=applies, **record)
@@ -135,7 +145,8 @@ def sized_path(
         preset,
         presets,
         {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
-        f"{what[:1].upper()}{what[1:]} over time. {path_doc}A preset, or points (s, {unit}).",
+        f"{what[:1].upper()}{what[1:]} over time: a preset, whose value is {record['title']}, or "
+        f"points (s, {unit}).",
         bounds=bounds,
         title=f"Path of the {what}",
         applies=lambda settings: applies(settings) and bool(default or settings.acts(path)),
@@ -155,7 +166,6 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
         f"Pressure p of {which}, per length.",
         "steady",
         PRESSURES,
-        path_doc=OF_PRESSURES,
         bounds=POSITIVE,
         group=CONTACT,
         title="Pressure p",

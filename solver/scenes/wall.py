@@ -104,7 +104,8 @@ class WallSettings(PlaneSettings):
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or Pa"},
-        "Displacement or traction of the top over time: a preset, or points (s, m or Pa).",
+        "Displacement or traction of the top over time: a preset of the largest value, or points "
+        "(s, m or Pa).",
         title="Path of the top",
     )
     slope, slope_load = shared.sized_path(

@@ -181,9 +181,26 @@ def growing_strength(answer: Answer) -> Iterator[Number]:
     half_length, strength = own.normal_profile[1][0], own.friction * own.normal_stress
     stiffness = 0.5 * own.young / (1.0 - own.poisson**2)
     exact = slip_under_growing_strength(place, half_length, own.shear_stress - strength, stiffness)
-    slip, middle = 2.0 * np.abs(answer.slip[:, -1]), int(np.argmin(np.abs(place - half_length / 2)))
+    slip, middle = np.abs(answer.slip[:, -1]), int(np.argmin(np.abs(place - half_length / 2)))
     yield "slip in the middle", "m", exact[0], slip[0]
     yield "slip half-way to the end", "m", exact[middle], slip[middle]
+
+
+def joint(answer: Answer) -> Iterator[Number]:
+    """Slip at the well of a fault that gives way like a joint, and the stiffness that it shows.
+
+    Both bodies are in series with it, and their far sides stay where they are.
+    """
+    own, law = answer.settings, answer.problem.rubbing["support"]
+    height, modulus = own.height, 0.5 * own.young / (1.0 + own.poisson)
+    stiffness = own.tangential_stiffness
+    alone = own.shear_stress / stiffness
+    slip = answer.slip[:, -1]
+    held = -answer.fields.contact("support").tangential_force[:, -1]
+    areas = law.by_point(law.weights)
+    exact = alone / (1.0 + modulus / (2.0 * stiffness * height))
+    yield "slip at the well", "m", exact, float(slip[0])
+    yield "friction per area over slip", "N/m^3", stiffness, float((held / areas / slip).max())
 
 
 def _forces(answer: Answer) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from solver.files import (
     check_controls,
     check_keys,
     fields_in,
+    format_in,
     placed,
     read_toml,
     require,
@@ -48,6 +49,7 @@ def case_from_file(path: Path) -> Case:
     """
     with placed(path.name):
         values = read_toml(path, "case")
+        format_in(values)
         kind = scene_settings(values.pop("scene", None))
         entries = values.pop("case", None)
         if not isinstance(entries, dict):

@@ -52,11 +52,19 @@ def _in_the_plane(settings: Settings) -> bool:
 
 @quantity("Largest displacement", "m")
 def peak_displacement(run: FinishedRun) -> float:
-    """Largest displacement of any node at any instant, m."""
+    """Largest displacement of any node at any instant, m.
+
+    Where a body lies on its image, it is that of a point over the one across from it, which moves
+    along as much the other way, and alike across.
+    """
     inside, moved = run.problem.inside, run.problem.at_rest(run.iterate.displacement)
     if inside is None:
         return float(np.abs(moved).max())
-    return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
+    every = inside.displacement(moved, slice(None))
+    ratio = max(law.slip_ratio for law in run.problem.rubbing.values())
+    if ratio > 1.0:
+        return ratio * float(np.abs(every[:, 0]).max())
+    return float(np.linalg.norm(every, axis=1).max())
 
 
 def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
@@ -150,7 +158,11 @@ def peak_slip(run: FinishedRun) -> float:
 @quantity("Largest friction, all points", "N")
 def peak_friction(run: FinishedRun) -> float:
     """Largest sum over all points of the sizes of the friction force, N."""
-    return float(np.abs(run.iterate.friction_force).sum(axis=0).max())
+    total = np.zeros(run.problem.n_instants)
+    for name, law in run.problem.rubbing.items():
+        force = run.iterate.contact(name).tangential_force
+        total += law.copies * np.abs(force).sum(axis=0)
+    return float(total.max())
 
 
 def _pressing(run: FinishedRun, name: str) -> Array:

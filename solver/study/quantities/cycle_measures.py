@@ -154,9 +154,7 @@ def energy_per_metre(run: FinishedRun, at: float | None) -> float:
     some = instants_of(run.settings, at)
     if some is None:
         return math.nan
-    works = (work[:, some].sum() for _, _, work in slips_of(run.iterate))
-    shares = (wire.stands_for / wire.along[-1] for wire in _rope(run.settings).wires)
-    return float(sum(share * work for share, work in zip(shares, works, strict=True)))
+    return float(run.dissipated[some].sum()) / _rope(run.settings).seen_length
 
 
 @quantity("Largest stress range of a wire in the last cycle", "Pa", applies=is_rope)

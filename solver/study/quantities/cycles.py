@@ -50,7 +50,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
     moved, force = iterate.local_displacement, iterate.boundary_local_force
     for law in iterate.problem.rubbing.values():
         slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
-        slip *= scales.displacement
+        slip *= law.slip_ratio * scales.displacement
         yield law, slip, force[law.tangent.above] * slip * -scales.force
 
 
@@ -64,7 +64,8 @@ class LoadCycles:
         Instants at which they begin, and the last one ends, n_cycles + 1 of them.
     slip, net, work
         Of every point in each, shape (n_points, n_cycles): slip to and fro added up while it is in
-        contact, m; how much farther it stands at the end, m; what friction takes, J.
+        contact, m; how much farther it stands at the end, m; what friction takes, J, of all points
+        that it stands for.
     before
         Slip before the first, as `slip`, shape (n_points,), m.
     is_repeated
@@ -93,7 +94,7 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     slips, works = [], []
     for law, slip, work in slips_of(iterate):
         slips.append(law.mean_by_point(slip))
-        works.append(law.by_point(work))
+        works.append(law.copies * law.by_point(work))
     slip, work = np.concatenate(slips), np.concatenate(works)
     rubbed = np.where(np.abs(iterate.status) == 1, np.abs(slip), 0.0)
     first = ends[0] if ends else iterate.problem.n_instants - 1

@@ -18,7 +18,7 @@ from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
 from solver.latin.certified import finished
 from solver.latin.cost import costs_of
-from solver.latin.status import certified
+from solver.latin.status import certified, jump_of, limit_of
 from solver.latin.status_step import status_step
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
@@ -123,7 +123,7 @@ class FinishedRun:
     @cached_property
     def dissipated(self) -> Array:
         """Energy that friction takes between each instant and the one before, (n_instants,), J."""
-        works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
+        works = (law.copies * work.sum(axis=0) for law, _, work in slips_of(self.iterate))
         return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
 
     @cached_property
@@ -286,14 +286,14 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
         message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
         if reference.collapse is not None:
             lost_from = reference.collapse.instant
-            message += f": there is no equilibrium from {reference.collapse.time:.4g} s on"
+            message += f": there is no equilibrium {limit_of(problem, reference.collapse)}"
         elif reference.jumps_at is not None:
             # That none is found is no proof: a run may converge to one.
             message += ": friction softens until the structure jumps"
         return Known(None, message, lost_from)
     if reference.jumps_at is not None:
-        message = f"it jumps at instant {reference.jumps_at} to another equilibrium"
-        return Known(reference, message)
+        where = jump_of(problem, reference.jumps_at)
+        return Known(reference, f"at {where} it jumps to another equilibrium")
     several = np.count_nonzero(reference.ambiguous)
     message = f"there are several solutions at {several} instants" if several else ""
     return Known(reference, message)
