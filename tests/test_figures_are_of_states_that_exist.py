@@ -209,4 +209,4 @@ def test_the_page_tells_no_figures_of_a_wall_that_falls() -> None:
     line = figures_line(frame, Selection(phase=1.0))
     assert line.count("<b>–</b>") == 4
     assert "no solution" in line
-    assert "largest" not in details(frame)
+    assert ", last " not in details(frame)
