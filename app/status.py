@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from html import escape
 
+import numpy as np
+
 from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import number, percent, unit_for
@@ -86,7 +88,10 @@ def _said(state: PageState) -> list[str]:
 def figures_line(frame: Frame, selection: Selection) -> str:
     """What became of the thing at the selected instant, as key figures in a line (HTML)."""
     run, column = frame.run, frame.run.column(selection.phase)
-    axes, status = (run.across, run.up), frame.deformed.status
+    axes = run.across, run.up
+    # Springs stand beside the surfaces, and neither stick nor slip.
+    springs = [number for number, one in enumerate(run.interfaces.values()) if one.is_spring]
+    status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
     figures = {
         figure.title: unit_for(figure.largest, figure.unit)(figure.value)
         if figure.unit

@@ -103,6 +103,8 @@ class Contact(Interface):
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
         from the other is in equilibrium in the coarse problem. None on a rigid support.
+    is_spring
+        Whether it is a spring that pulls at a point: no surface on which bodies touch.
     """
 
     points: Indices
@@ -112,6 +114,7 @@ class Contact(Interface):
     normal: Unilateral | None = None
     around: Rod | Bodies = field(default_factory=Rod)
     macro: sparse.csr_array | None = None
+    is_spring: bool = False
 
     remembers = True
 

@@ -81,8 +81,8 @@ def _force_at(side: str) -> Quantity:
             end = structure.end_force(problem, "right" if side == "right" else "left")
             values = end.of(run.iterate)
             return float(values[np.abs(values).argmax()])
-        moved = run.iterate.displacement
-        return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
+        along, up = (reaction(problem, side, axis).of(run.iterate) for axis in (0, 1))
+        return float(np.hypot(along, up).max())
 
     title, applies = f"Largest force at the {side}", lambda own: side in holding_sides(own)
     return Quantity(f"{side}_force", title, "N", force, applies=applies)
@@ -106,7 +106,7 @@ left_force, right_force, top_force, bottom_force = map(
 @quantity("Largest slip", "m")
 def peak_slip(run: FinishedRun) -> float:
     """Farthest that any point in contact has come along what it rubs on, m."""
-    contacts = map(run.iterate.contact, run.problem.rubbing)
+    contacts = map(run.iterate.contact, run.problem.surfaces)
     return float(max(np.abs(part.slip * (part.status != OPEN)).max() for part in contacts))
 
 
@@ -126,7 +126,7 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
-    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing]
+    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.surfaces]
     return float(np.sum(forces, axis=0).max())
 
 
@@ -134,8 +134,8 @@ def peak_pressing(run: FinishedRun) -> float:
 def peak_pressure(run: FinishedRun) -> float:
     """Largest pressure at any point of an interface, Pa.
 
-    Force of a point over its tributary length, one metre thick. A single point, as that under a
-    spring, has a force and no pressure.
+    Force of a point over its tributary length, one metre thick. A spring has a force and no
+    pressure.
     """
     lengths = _lengths(run).items()
     peaks = (float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths)
@@ -150,9 +150,8 @@ def contact_width(run: FinishedRun) -> float:
 
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
-    """Tributary lengths of all interfaces that are more than a point, m."""
-    lengths = {name: law.by_point(law.weights) for name, law in run.problem.rubbing.items()}
-    return {name: length for name, length in lengths.items() if len(length) > 1}
+    """Tributary lengths of the points of all surfaces, m."""
+    return {name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()}
 
 
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
@@ -175,7 +174,7 @@ peak_stress_y = _peak_stress("peak_stress_y", "y of the largest stress", "m", 2)
 @quantity("Largest force in the spring", "N", applies=lambda settings: settings.has("spring"))
 def spring_force(run: FinishedRun) -> float:
     """Largest force in the spring, N."""
-    return float(run.force.max())
+    return float(_pressing(run, "spring").max())
 
 
 @quantity("Smallest friction that holds", applies=_rubs_by_mu)
@@ -189,7 +188,7 @@ def holding_friction(run: FinishedRun) -> float:
         return math.nan
     # A point that a clamp holds, too, never slips.
     determinate = determinate_forces(run.problem)
-    for name in run.problem.rubbing:
+    for name in run.problem.surfaces:
         status = run.iterate.contact(name).status
         *_, tangential = run.problem.contact_places[name]
         is_free = (status == OPEN) | ~determinate[tangential]
@@ -213,7 +212,7 @@ def holding_force(run: FinishedRun) -> float:
 def _nearest_to_sliding(run: FinishedRun) -> tuple[float, float]:
     """Largest share of all friction at an interface in all that presses it, and the latter, N."""
     friction, every = run.settings.friction, [np.zeros((2, 0))]
-    for name, law in run.problem.rubbing.items():
+    for name, law in run.problem.surfaces.items():
         contact = run.iterate.contact(name)
         if contact.normal_force is None:
             bound = law.tangential.bound.sum(axis=0) * run.problem.scales.force
@@ -274,8 +273,9 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
 
 
 def _has_slipped(run: FinishedRun) -> NDArray[np.bool_]:
-    """Which points have slipped by every instant, shape (n_points, n_instants)."""
-    return np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
+    """Which points of surfaces have slipped by every instant, shape (n_points, n_instants)."""
+    slips = np.abs(run.iterate.status[run.problem.on_surfaces]) == 1
+    return np.logical_or.accumulate(slips, axis=1)
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:

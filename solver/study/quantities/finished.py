@@ -142,8 +142,8 @@ def key_figures(
 ) -> list[KeyFigure]:
     """Key figures at an instant.
 
-    Of the axes of the loop and both of its sides, shape (2, n_instants), the status of all contact
-    points, shape (n_points, n_instants), and the energy that friction takes in the whole run, J.
+    Of the axes of the loop and both of its sides, shape (2, n_instants), the status of all points
+    of surfaces, shape (n_points, n_instants), and the energy that friction takes in all, J.
     """
     figures = []
     for name, (title, unit), values in zip(("displacement", "force"), axes, loop, strict=True):
@@ -159,7 +159,8 @@ def key_figures(
 def figures_of(run: FinishedRun) -> tuple[list[KeyFigure], float]:
     """Key figures of a run where its force first is largest, and when that is, s."""
     instant = largest_load(run)
-    status, energy = run.iterate.status, float(run.dissipated.sum())
+    status = run.iterate.status[run.problem.on_surfaces]
+    energy = float(run.dissipated.sum())
     figures = key_figures(run.loop.axes, (run.displacement, run.force), status, energy, instant)
     return figures, float(run.problem.instants[instant])
 

@@ -1,0 +1,136 @@
+"""Friction of points whose slip prescribed displacements alone make.
+
+At such a point only the sum of friction and reaction is determinate, and a method that searches for
+both shares it out by its own parameters. Friction is taken as that of a slider on a spring that is
+ever stiffer: against the slip while the point slips, and where it stands still, what it was before,
+as far as the bound allows; so it is nothing where a point has never slipped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array, Indices
+from solver.laws import Contact, Friction
+from solver.laws.play import follow, play
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenFriction:
+    """The friction of the driven points of one interface.
+
+    Attributes
+    ----------
+    along
+        Law of the driven points, a pair each; its component is that of their first pairs.
+    jump
+        Tangential displacement over what is below, as it is prescribed, shape (n_points,
+        n_instants), scaled.
+    start
+        Position of the sliders before the first instant, (n_points,), scaled.
+    places, pressing
+        Places in a stack of contact forces, (n_points,), of the friction forces and of the
+        pressing ones; None for the latter where the pressure is known.
+    normal_rows, gap
+        Rows of the first pairs across, of one or both sides, and opening of the undeformed bodies,
+        (n_points,), scaled, where the pressure is not known.
+    """
+
+    along: Friction
+    jump: Array
+    start: Array
+    places: Indices
+    pressing: Indices | None = None
+    normal_rows: tuple[Indices, ...] = ()
+    gap: Array | None = None
+
+    def force(self, forces: Array, displacement: Array) -> Array:
+        """Friction force on the body above, shape (n_points, n_instants), scaled.
+
+        By all contact forces, (n_forces, n_instants), and W of all rows, (n_rows, n_instants).
+        """
+        along = self.along
+        pressing = None if self.pressing is None else forces[self.pressing]
+        opening = self._opening(displacement)
+        if along.softness is not None:
+            return self._on_springs(pressing, opening)
+        slip = np.diff(self.jump, axis=1, prepend=self.start[:, None])
+        bound = along.allowed(pressing, slip, opening)
+        return _held_against(slip, bound)
+
+    def _opening(self, displacement: Array) -> Array | None:
+        """Distance of the sides, (n_points, n_instants), scaled, where it may break a bond."""
+        if self.gap is None or not self.along.bound.any():
+            return None
+        above, *below = (displacement[rows] for rows in self.normal_rows)
+        jump = above - below[0] if below else above
+        return np.asarray(jump + self.gap[:, None])
+
+    def _on_springs(self, pressing: Array | None, opening: Array | None) -> Array:
+        """The same where a spring is in series, which leaves no choice."""
+        along = self.along
+        assert along.softness is not None
+        softness = along.softness[:, None]
+        reach = softness * np.broadcast_to(along.without_slip(pressing, opening), self.jump.shape)
+        if along.strength is None:
+            slider = play(self.jump, reach)
+        else:
+            slider = follow(self.jump, reach, along.strength)
+        return np.asarray((slider - self.jump) / softness)
+
+
+def driven_friction(
+    law: Contact, places: tuple[slice, ...], row_dofs: Indices, prescribed: tuple[Indices, Array]
+) -> DrivenFriction | None:
+    """The driven points of an interface; None where it has none.
+
+    `places` are those of its components in a stack of contact forces, `row_dofs` the degrees of
+    freedom of all rows, (n_rows,), and `prescribed` those whose displacement is, (n,), with their
+    values, (n, n_instants), scaled.
+    """
+    dofs, values = prescribed
+    _, pairs = np.unique(law.points, return_index=True)
+    sides = [row_dofs[rows[pairs]] for rows in law.tangent.sides]
+    is_driven: NDArray[np.bool_] = np.all([np.isin(own, dofs) for own in sides], axis=0)
+    points = np.flatnonzero(is_driven)
+    if not points.size:
+        return None
+    above, *below = (values[np.searchsorted(dofs, own[points])] for own in sides)
+    own, start = law.tangential, law.tangential.start
+    cap = None if own.cap is None else law.by_point(own.cap)[points]
+    softness = None if own.softness is None else law.in_parallel(own.softness)[points]
+    driven = DrivenFriction(
+        along=replace(
+            own,
+            bound=law.by_point(own.bound)[points],
+            friction=law.mean_by_point(own.friction)[points],
+            cap=cap,
+            softness=softness,
+            start=None,
+        ),
+        jump=above - below[0] if below else above,
+        start=np.zeros(len(points)) if start is None else law.mean_by_point(start)[points],
+        places=places[-1].start + points,
+    )
+    if law.normal is None:
+        return driven
+    return replace(
+        driven,
+        pressing=places[0].start + points,
+        normal_rows=tuple(rows[pairs[points]] for rows in law.normal.component.sides),
+        gap=law.mean_by_point(law.normal.gap)[points],
+    )
+
+
+def _held_against(slip: Array, bound: Array) -> Array:
+    """Friction forces against slip, or as before within the bound, all (n_points, n_instants)."""
+    force = np.empty_like(bound)
+    before = np.zeros(len(bound))
+    for after, moved, most in zip(force.T, slip.T, bound.T, strict=True):
+        kept = np.clip(before, -most, most)
+        before = np.where(moved == 0.0, kept, -most * np.sign(moved))
+        after[:] = before
+    return force
