@@ -1,14 +1,16 @@
 """Friction of points whose slip prescribed displacements alone make.
 
-At such a point only the sum of friction and reaction is determinate, and a method that searches for
-both shares it out by its own parameters. Friction is taken as that of a slider on a spring that is
-ever stiffer: against the slip while the point slips, and where it stands still, what it was before,
-as far as the bound allows; so it is nothing where a point has never slipped.
+At such a point only the sum of friction and reaction is determinate, and a method that
+searches for both shares it out by its own parameters. Friction is taken as that of a
+slider on a spring that is ever stiffer: against the slip while the point slips, and where
+it stands still, what it was before, as far as the bound allows; so it is nothing where a
+point has never slipped.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,18 +27,18 @@ class DrivenFriction:
     Attributes
     ----------
     along
-        Law of the driven points, a pair each; its component is that of their first pairs.
+        Law of the driven points, a pair each; its component is that of all pairs.
     jump
-        Tangential displacement over what is below, as it is prescribed, shape (n_points,
-        n_instants), scaled.
+        Tangential displacement over what is below, as it is prescribed, shape
+        (n_points, n_instants), scaled.
     start
         Position of the sliders before the first instant, (n_points,), scaled.
     places, pressing
-        Places in a stack of contact forces, (n_points,), of the friction forces and of the
-        pressing ones; None for the latter where the pressure is known.
+        Places in a stack of contact forces, (n_points,), of the friction forces and of
+        the pressing ones; None for the latter where the pressure is known.
     normal_rows, gap
-        Rows of the first pairs across, of one or both sides, and opening of the undeformed bodies,
-        (n_points,), scaled, where the pressure is not known.
+        Rows of the first pairs across, of one or both sides, and opening of the
+        undeformed bodies, (n_points,), scaled, where the pressure is not known.
     """
 
     along: Friction
@@ -50,19 +52,26 @@ class DrivenFriction:
     def force(self, forces: Array, displacement: Array) -> Array:
         """Friction force on the body above, shape (n_points, n_instants), scaled.
 
-        By all contact forces, (n_forces, n_instants), and W of all rows, (n_rows, n_instants).
+        By all contact forces, (n_forces, n_instants), and W of all rows, (n_rows,
+        n_instants), both scaled.
         """
         along = self.along
+        slip = self._slip
+        if not slip.any():
+            return np.zeros_like(slip)
         pressing = None if self.pressing is None else forces[self.pressing]
         opening = self._opening(displacement)
         if along.softness is not None:
             return self._on_springs(pressing, opening)
-        slip = np.diff(self.jump, axis=1, prepend=self.start[:, None])
-        bound = along.allowed(pressing, slip, opening)
-        return _held_against(slip, bound)
+        return _held_against(slip, along.allowed(pressing, slip, opening))
+
+    @cached_property
+    def _slip(self) -> Array:
+        """Growth of the jump from each instant to the next, as `jump`."""
+        return np.diff(self.jump, axis=1, prepend=self.start[:, None])
 
     def _opening(self, displacement: Array) -> Array | None:
-        """Distance of the sides, (n_points, n_instants), scaled, where it may break a bond."""
+        """Distance of the sides, as `jump`, where it may break a bond; else None."""
         if self.gap is None or not self.along.bound.any():
             return None
         above, *below = (displacement[rows] for rows in self.normal_rows)
@@ -70,7 +79,7 @@ class DrivenFriction:
         return np.asarray(jump + self.gap[:, None])
 
     def _on_springs(self, pressing: Array | None, opening: Array | None) -> Array:
-        """The same where a spring is in series, which leaves no choice."""
+        """Friction force where a spring is in series, which leaves no choice."""
         along = self.along
         assert along.softness is not None
         softness = along.softness[:, None]
@@ -87,9 +96,9 @@ def driven_friction(
 ) -> DrivenFriction | None:
     """The driven points of an interface; None where it has none.
 
-    `places` are those of its components in a stack of contact forces, `row_dofs` the degrees of
-    freedom of all rows, (n_rows,), and `prescribed` those whose displacement is, (n,), with their
-    values, (n, n_instants), scaled.
+    `places` are those of its components in a stack of contact forces, `row_dofs` the
+    degrees of freedom of all rows, (n_rows,), and `prescribed` those whose displacement
+    is, (n,), with their values, (n, n_instants), scaled.
     """
     dofs, values = prescribed
     _, pairs = np.unique(law.points, return_index=True)
@@ -126,11 +135,13 @@ def driven_friction(
 
 
 def _held_against(slip: Array, bound: Array) -> Array:
-    """Friction forces against slip, or as before within the bound, all (n_points, n_instants)."""
-    force = np.empty_like(bound)
-    before = np.zeros(len(bound))
-    for after, moved, most in zip(force.T, slip.T, bound.T, strict=True):
-        kept = np.clip(before, -most, most)
-        before = np.where(moved == 0.0, kept, -most * np.sign(moved))
-        after[:] = before
-    return force
+    """Friction forces against slip, or as before within the bound.
+
+    They are what a slider of this bound leaves of steps that are too long for it. All
+    have shape (n_points, n_instants).
+    """
+    against = np.sign(slip)
+    steps = 2.0 * bound.max(axis=1, initial=0.0)
+    target = steps[:, None] * np.cumsum(against, axis=1)
+    kept = play(target, bound) - target
+    return np.where(against == 0.0, kept, -bound * against)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from operator import attrgetter
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantit
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
+ENDS: tuple[Literal["left"], Literal["right"]] = "left", "right"
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
 _opens = attrgetter("opens")
@@ -48,7 +50,14 @@ def peak_displacement(run: FinishedRun) -> float:
 
 
 def _axial_force(run: FinishedRun) -> Array:
-    return AxialForce(run.problem)(run.iterate.displacement)
+    """Axial force in all elements, and at both ends, pull positive, (n_places, n_instants), N.
+
+    In the middle of the last element friction has taken its part of the force at the end.
+    """
+    rods = run.settings.structure()
+    assert isinstance(rods, Rods)
+    left, right = (rods.end_force(run.problem, side).of(run.iterate) for side in ENDS)
+    return np.vstack([AxialForce(run.problem)(run.iterate.displacement), -left, right])
 
 
 def _most_axial_force(run: FinishedRun, at: float | None) -> int:
@@ -67,7 +76,7 @@ def _most_axial_force(run: FinishedRun, at: float | None) -> int:
     when=_most_axial_force,
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
-    """Largest axial force in any element at an instant, N, pull positive."""
+    """Largest axial force along rods at an instant, their ends included, N, pull positive."""
     force = _axial_force(run)[:, instant]
     return float(force[np.abs(force).argmax()])
 
