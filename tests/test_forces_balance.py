@@ -19,11 +19,13 @@ from app.status import figures_line
 from app.units import percent
 from app.worker.sampling import Sampler
 from solver.arrays import Array
+from solver.discrete import Given, Side, Stack, Support
+from solver.discrete.bricks import Brick
 from solver.discrete.probes import reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import LoopFields
-from solver.latin import iterations
+from solver.latin import Latin, iterations
 from solver.reference.assembly import external_force
 from solver.reference.distance import kkt_residual
 from solver.reference.incremental import reference_of
@@ -387,3 +389,37 @@ def test_friction_fitted_to_the_closed_form_of_a_moved_end_is_that_of_the_form()
     )
     found = fit(settings, measured, ["friction"])
     assert found.nearest.values[0] == pytest.approx(0.1, rel=2e-3)
+
+
+def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> None:
+    """Their ends move alike in the end: what rounding leaves of that is no slip."""
+    times = np.linspace(0.0, 1.0, 9)
+    free = Given(False, 0.0 * times)
+    turned = Given(True, 1e-5 * np.sin(6.0 * times), 1e-5 * np.minimum(3.0 * times, 1.0))
+    stack = Stack(
+        length=0.2,
+        height=0.1,
+        elements=(8, 4),
+        substructures=(2, 1),
+        young=1e9,
+        poisson=0.3,
+        instants=times,
+        duration=1.0,
+        friction=0.3,
+        bricks=[Brick(0, 0, 8, 4), Brick(0, 4, 8, 4)],
+        support=Support(gap=np.zeros(9), friction=0.2),
+        sides={
+            "left": Side(turned, free),
+            "top": Side(free, Given(False, -1e6 * np.minimum(4.0 * times, 1.0))),
+        },
+    )
+    problem = stack.discretise()
+    reference = reference_of(problem)
+    iterate = next(islice(iterations(problem, Latin()), 200, None))
+    for fields in (reference, iterate):
+        between = fields.contact("contact 1-2")
+        friction, bound = between.tangential_force[0], 0.3 * between.normal_force[0]
+        np.testing.assert_allclose(friction[1:3], bound[1:3], rtol=1e-6)
+        assert (np.abs(friction) <= (1.0 + 1e-9) * bound).all()
+        np.testing.assert_allclose(friction[6:], friction[5], rtol=1e-2)
+    assert_bodies_balance(problem, reference)

@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array, Indices
+from solver.arrays import ROUNDING, Array, Indices
 from solver.laws import Contact, Friction
-from solver.laws.play import follow, play
+from solver.laws.play import Play, follow, play
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +33,8 @@ class DrivenFriction:
         (n_points, n_instants), scaled.
     start
         Position of the sliders before the first instant, (n_points,), scaled.
+    noise
+        Growth of the jump that is but rounding, scaled.
     places, pressing
         Places in a stack of contact forces, (n_points,), of the friction forces and of
         the pressing ones; None for the latter where the pressure is known.
@@ -44,6 +46,7 @@ class DrivenFriction:
     along: Friction
     jump: Array
     start: Array
+    noise: float
     places: Indices
     pressing: Indices | None = None
     normal_rows: tuple[Indices, ...] = ()
@@ -68,7 +71,8 @@ class DrivenFriction:
     @cached_property
     def _slip(self) -> Array:
         """Growth of the jump from each instant to the next, as `jump`."""
-        return np.diff(self.jump, axis=1, prepend=self.start[:, None])
+        slip = np.diff(self.jump, axis=1, prepend=self.start[:, None])
+        return np.where(np.abs(slip) > self.noise, slip, 0.0)
 
     def _opening(self, displacement: Array) -> Array | None:
         """Distance of the sides, as `jump`, where it may break a bond; else None."""
@@ -85,20 +89,26 @@ class DrivenFriction:
         softness = along.softness[:, None]
         reach = softness * np.broadcast_to(along.without_slip(pressing, opening), self.jump.shape)
         if along.strength is None:
-            slider = play(self.jump, reach)
+            n_points, n_instants = self.jump.shape
+            slider = Play(n_points, n_instants, self.start)(self.jump, reach)
         else:
             slider = follow(self.jump, reach, along.strength)
         return np.asarray((slider - self.jump) / softness)
 
 
 def driven_friction(
-    law: Contact, places: tuple[slice, ...], row_dofs: Indices, prescribed: tuple[Indices, Array]
+    law: Contact,
+    places: tuple[slice, ...],
+    row_dofs: Indices,
+    prescribed: tuple[Indices, Array],
+    largest: float,
 ) -> DrivenFriction | None:
     """The driven points of an interface; None where it has none.
 
     `places` are those of its components in a stack of contact forces, `row_dofs` the
     degrees of freedom of all rows, (n_rows,), and `prescribed` those whose displacement
-    is, (n,), with their values, (n, n_instants), scaled.
+    is, (n,), with their values, (n, n_instants), scaled. `largest` is the largest
+    displacement that any of these values is a difference of, scaled.
     """
     dofs, values = prescribed
     _, pairs = np.unique(law.points, return_index=True)
@@ -122,6 +132,7 @@ def driven_friction(
         ),
         jump=above - below[0] if below else above,
         start=np.zeros(len(points)) if start is None else law.mean_by_point(start)[points],
+        noise=ROUNDING * largest,
         places=places[-1].start + points,
     )
     if law.normal is None:

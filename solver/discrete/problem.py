@@ -270,8 +270,10 @@ class Problem:
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
         """Points whose slip prescribed displacements alone make, interface by interface."""
+        given = [self.prescribed[1], np.zeros(1) if self.carried is None else self.carried]
+        largest = max(float(np.abs(values).max(initial=0.0)) for values in given)
         each = (
-            driven_friction(law, self.contact_places[name], self.row_dofs, self.prescribed)
+            driven_friction(law, self.contact_places[name], self.row_dofs, self.prescribed, largest)
             for name, law in self.rubbing.items()
         )
         return [driven for driven in each if driven is not None]
