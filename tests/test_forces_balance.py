@@ -147,20 +147,31 @@ def assert_balance(settings: Settings, fields: LoopFields, problem: Problem) -> 
         assert_vanish(np.sum(terms, axis=0), [*terms, np.abs(external_force(problem)).sum(axis=0)])
 
 
-@pytest.mark.parametrize("law", [*LAWS, "general"])
-@pytest.mark.parametrize("scene", SMALL)
-def test_every_scene_balances_under_every_law(scene: str, law: str) -> None:
+def small(scene: str, law: str) -> Settings:
     kind = "plane" if CATALOGUE[scene].kind == "plane" else "rod"
     sizes = SMALL[scene] | {"instants": 7, "substructures": 2}
     if scene == "rope":
         sizes = {**SMALL_ROPE, "elements": 6, "instants": 7}
     if scene == "wall":
         del sizes["substructures"]
-    settings = CATALOGUE[scene].checked({**sizes, **law_of(kind, law)})
+    return CATALOGUE[scene].checked({**sizes, **law_of(kind, law)})
+
+
+@pytest.mark.parametrize("law", [*LAWS, "general"])
+@pytest.mark.parametrize("scene", SMALL)
+def test_every_scene_balances_under_every_law(scene: str, law: str) -> None:
+    settings = small(scene, law)
     problem = discretise(settings)
     reference = reference_of(problem)
     assert reference.converged.all()
     assert_balance(settings, reference, problem)
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_the_answer_of_a_run_balances(scene: str) -> None:
+    run = finished_run(small(scene, "coulomb"), errors=False, indicators=False)
+    assert run.solution.is_certified
+    assert_balance(run.settings, run.iterate, run.problem)
 
 
 LAW = st.sampled_from([*LAWS, "general"])
