@@ -1,10 +1,10 @@
 """Friction of points whose slip prescribed displacements alone make.
 
 At such a point only the sum of friction and reaction is determinate, and a method that
-searches for both shares it out by its own parameters. Friction is taken as that of a
-slider on a spring that is ever stiffer: against the slip while the point slips, and where
-it stands still, what it was before, as far as the bound allows; so it is nothing where a
-point has never slipped.
+searches for both shares it out by its own parameters. While the point slips, its friction
+is its bound against the slip. While it stands still, as at a clamp, it is per area what
+the nearest point carries that is free to slip, as far as its own bound allows: friction
+goes on evenly up to what holds a body, so that no half element of it is missing there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.laws import Contact, Friction
-from solver.laws.play import Play, follow, play
+from solver.laws.play import Play, follow
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,9 @@ class DrivenFriction:
         Position of the sliders before the first instant, (n_points,), scaled.
     noise
         Growth of the jump that is but rounding, scaled.
+    beside, share
+        Place in a stack of contact forces of the friction of the nearest point that is
+        free to slip, (n_points,), and area of a point over that one's; 0 without one.
     places, pressing
         Places in a stack of contact forces, (n_points,), of the friction forces and of
         the pressing ones; None for the latter where the pressure is known.
@@ -47,6 +50,8 @@ class DrivenFriction:
     jump: Array
     start: Array
     noise: float
+    beside: Indices
+    share: Array
     places: Indices
     pressing: Indices | None = None
     normal_rows: tuple[Indices, ...] = ()
@@ -58,15 +63,14 @@ class DrivenFriction:
         By all contact forces, (n_forces, n_instants), and W of all rows, (n_rows,
         n_instants), both scaled.
         """
-        along = self.along
-        slip = self._slip
-        if not slip.any():
-            return np.zeros_like(slip)
+        along, slip = self.along, self._slip
         pressing = None if self.pressing is None else forces[self.pressing]
         opening = self._opening(displacement)
         if along.softness is not None:
             return self._on_springs(pressing, opening)
-        return _held_against(slip, along.allowed(pressing, slip, opening))
+        bound = along.allowed(pressing, slip, opening)
+        even = np.clip(self.share[:, None] * forces[self.beside], -bound, bound)
+        return np.where(slip == 0.0, even, -bound * np.sign(slip))
 
     @cached_property
     def _slip(self) -> Array:
@@ -119,6 +123,7 @@ def driven_friction(
         return None
     above, *below = (values[np.searchsorted(dofs, own[points])] for own in sides)
     own, start = law.tangential, law.tangential.start
+    nearest, share = _nearest_free(law, points)
     cap = None if own.cap is None else law.by_point(own.cap)[points]
     softness = None if own.softness is None else law.in_parallel(own.softness)[points]
     driven = DrivenFriction(
@@ -133,6 +138,8 @@ def driven_friction(
         jump=above - below[0] if below else above,
         start=np.zeros(len(points)) if start is None else law.mean_by_point(start)[points],
         noise=ROUNDING * largest,
+        beside=places[-1].start + nearest,
+        share=share,
         places=places[-1].start + points,
     )
     if law.normal is None:
@@ -145,14 +152,11 @@ def driven_friction(
     )
 
 
-def _held_against(slip: Array, bound: Array) -> Array:
-    """Friction forces against slip, or as before within the bound.
-
-    They are what a slider of this bound leaves of steps that are too long for it. All
-    have shape (n_points, n_instants).
-    """
-    against = np.sign(slip)
-    steps = 2.0 * bound.max(axis=1, initial=0.0)
-    target = steps[:, None] * np.cumsum(against, axis=1)
-    kept = play(target, bound) - target
-    return np.where(against == 0.0, kept, -bound * against)
+def _nearest_free(law: Contact, points: Indices) -> tuple[Indices, Array]:
+    """Nearest point beside each of the driven ones, and the ratio of their areas."""
+    free = np.setdiff1d(np.arange(len(law.positions)), points)
+    if not free.size:
+        return points, np.zeros(len(points))
+    away = np.abs(np.subtract.outer(law.positions[points], law.positions[free]))
+    nearest, areas = free[away.argmin(axis=1)], law.by_point(law.weights)
+    return nearest, areas[points] / areas[nearest]
