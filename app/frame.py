@@ -37,6 +37,8 @@ class FrictionInterface:
     not change; None where it depends on the pressure."""
     coefficient: Floats | None
     """Coefficient of friction, shape (n_points, 1), where the bound depends on the pressure."""
+    is_spring: bool = False
+    """Whether it is a spring that pulls at a point, and no surface on which bodies touch."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from html import escape
 
+import numpy as np
+
 from app.frame import Frame, Selection
 from app.refusals import amounts_in_titles
 from app.state import PageState
@@ -100,12 +102,16 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     Its largest and last values appear over each of them. Nothing is told of a run some of whose
     instants are known to have no solution.
     """
-    column = frame.run.column(selection.phase)
+    run = frame.run
+    column = run.column(selection.phase)
     figures, hints = {}, {}
     for figure in _of_loop(frame):
         figures[figure.title] = _unit_of(figure)(figure.at(column))
         hints[figure.title] = _over_time(frame, figure)
-    figures["Slips"] = percent(float(slipping_shares(frame.deformed.status)[column]))
+    # Springs stand beside the surfaces, and neither stick nor slip.
+    springs = [number for number, one in enumerate(run.interfaces.values()) if one.is_spring]
+    status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
+    figures["Slips"] = percent(float(slipping_shares(status)[column]))
     figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
     beside = frame.extras.get("beside")
     if beside is not None:

@@ -68,7 +68,7 @@ def test_reaction_is_the_force_that_holds_the_prescribed_end() -> None:
     problem = iterate.problem
     law: Any = problem.interfaces["right"]
     expected = iterate.boundary_force[law.rows].sum(axis=0) * problem.scales.force
-    found = reaction(problem, "right")(iterate.displacement)
+    found = reaction(problem, "right").of(iterate)
     assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
 
 

@@ -132,7 +132,8 @@ class Sampler:
             highest = highest[:, self.columns] if highest.shape[1] > 1 else highest
             bound = floats(highest * self.problem.scales.force / self._lengths(name)[:, None])
         cuts = law.positions[np.bincount(law.points) > 1]
-        return FrictionInterface(floats(law.positions[rows]), floats(cuts), bound, coefficient)
+        positions = floats(law.positions[rows])
+        return FrictionInterface(positions, floats(cuts), bound, coefficient, law.is_spring)
 
     def _lengths(self, name: str) -> Array:
         """Length or area that each shown point of an interface stands for."""

@@ -6,6 +6,7 @@ problem once, by the transpose of their recovery; then a probe costs as much as 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,9 +37,13 @@ class Probe:
 
     def __call__(self, displacement: Array) -> Array:
         """Evaluate it, shape (n_instants,), for displacements (n_dofs, n_instants), m."""
+        return without_residue(*self.sum_of(displacement))
+
+    def sum_of(self, displacement: Array) -> tuple[Array, Array]:
+        """The sum as rounding leaves it, and that of the sizes of its terms, (n_instants,) each."""
         moved = displacement[self.dofs]
         terms = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
-        return without_residue(self.weights @ moved + self.constant, terms)
+        return np.asarray(self.weights @ moved + self.constant), np.asarray(terms)
 
     def times(self, factor: float) -> Probe:
         """It, so many times as large."""
@@ -82,26 +87,98 @@ def end_rotation(problem: Problem) -> Probe:
     return _integral(inside, ends, 0, -12.0 / count / ((high - low) ** 3)[bodies] * lever)
 
 
-def reaction(problem: Problem, name: str, component: int | None = None) -> Probe:
+@dataclass(frozen=True, eq=False)
+class Reaction:
+    """A weighted sum of the forces that hold degrees of freedom whose displacement is given.
+
+    They are what the elements there need beyond all that acts there: loads, and the contact forces
+    of the same nodes (solver/README.md, 6).
+
+    Attributes
+    ----------
+    elements
+        Forces of the elements less the loads, N.
+    contacts
+        Weights of the normal and the tangential forces that act there, by interface, (n_points,)
+        each, None where there are no normal ones.
+    """
+
+    elements: Probe
+    contacts: Mapping[str, tuple[Array | None, Array]]
+
+    def of(self, fields: LoopFields) -> Array:
+        """Sum for an iterate, or a reference, shape (n_instants,), in the unit of the elements."""
+        values, terms = self.elements.sum_of(fields.displacement)
+        for name, weights in self.contacts.items():
+            contact = fields.contact(name)
+            carried = contact.normal_force, contact.tangential_force
+            for weight, force in zip(weights, carried, strict=True):
+                if weight is not None and force is not None:
+                    values = values - weight @ force
+                    terms = terms + np.abs(weight) @ np.abs(force)
+        return without_residue(values, terms)
+
+    def times(self, factor: float) -> Reaction:
+        """The sum times a factor."""
+        contacts = {
+            name: (None if across is None else factor * across, factor * along)
+            for name, (across, along) in self.contacts.items()
+        }
+        return Reaction(self.elements.times(factor), contacts)
+
+
+def reaction(problem: Problem, name: str, component: int | None = None) -> Reaction:
     """Sum of the forces that hold an interface of prescribed displacements, N.
 
     In the plane those of one component are counted, 0 along x and 1 along y, or of both.
     """
-    law = problem.interfaces[name]
     held = np.zeros(problem.n_dofs)
-    held[problem.row_dofs[law.rows]] = 1.0
+    held[problem.held_dofs[name]] = 1.0
     if component is not None:
         held[_inside(problem).components != component] = 0.0
-    weights, constant = np.zeros(problem.n_dofs), np.zeros(problem.n_instants)
+    return _weighted_reaction(problem, held)
+
+
+def reaction_moment(problem: Problem, name: str) -> Reaction:
+    """Moment about the origin of the forces that hold an interface in the plane, N m.
+
+    Counter-clockwise, for a metre of thickness.
+    """
+    (x, y), components = problem.positions.T, _inside(problem).components
+    held = np.zeros(problem.n_dofs)
+    dofs = problem.held_dofs[name]
+    held[dofs] = np.where(components == 0, -y, x)[dofs]
+    return _weighted_reaction(problem, held)
+
+
+def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
+    """The sum of reactions with weights of their degrees of freedom, (n_dofs,)."""
+    weights, loads = np.zeros(problem.n_dofs), np.zeros(problem.n_instants)
     for part in problem.substructures:
         own = held[part.dofs]
         if own.any():
             np.add.at(weights, part.dofs, part.elasticity.stiffness @ own)
             if part.body_force is not None:
-                constant -= own @ part.body_force
-    scales = problem.scales
-    dofs = np.flatnonzero(weights)
-    return Probe(dofs, weights[dofs] * scales.force / scales.displacement, constant * scales.force)
+                loads += own @ part.body_force
+    for given in problem.given_forces:
+        loads += held[problem.row_dofs[given.rows]] @ given.values
+    scales, dofs = problem.scales, np.flatnonzero(weights)
+    elastic = weights[dofs] * scales.force / scales.displacement
+    return Reaction(Probe(dofs, elastic, -loads * scales.force), _contacts_at(problem, held))
+
+
+def _contacts_at(problem: Problem, held: Array) -> dict[str, tuple[Array | None, Array]]:
+    """Weights of the contact forces in a weighted sum of all forces on degrees of freedom."""
+    contacts: dict[str, tuple[Array | None, Array]] = {}
+    for name, law in problem.rubbing.items():
+        _, pairs = np.unique(law.points, return_index=True)
+        weights = []
+        for component in law.components:
+            above, *below = (held[problem.row_dofs[rows[pairs]]] for rows in component.sides)
+            weights.append(above - below[0] if below else above)
+        if any(weight.any() for weight in weights):
+            contacts[name] = (weights[0] if law.opens else None, weights[-1])
+    return contacts
 
 
 class AxialForce:

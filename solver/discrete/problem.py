@@ -20,6 +20,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.contacts import ContactGroup
+from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
@@ -195,6 +196,17 @@ class Problem:
         return {name: law for name, law in self.interfaces.items() if isinstance(law, Contact)}
 
     @cached_property
+    def surfaces(self) -> dict[str, Contact]:
+        """The interfaces with friction along which bodies touch, by name: springs are none."""
+        return {name: law for name, law in self.rubbing.items() if not law.is_spring}
+
+    @cached_property
+    def on_surfaces(self) -> NDArray[np.bool_]:
+        """Which points of all interfaces with friction are on surfaces, shape (n_points,)."""
+        laws = self.rubbing.values()
+        return np.repeat([not law.is_spring for law in laws], [len(law.positions) for law in laws])
+
+    @cached_property
     def opens(self) -> bool:
         """Whether any interface may open."""
         return any(law.opens for law in self.rubbing.values())
@@ -265,6 +277,31 @@ class Problem:
         return places
 
     @cached_property
+    def _driven(self) -> list[DrivenFriction]:
+        """Points whose slip prescribed displacements alone make, interface by interface."""
+        given = [self.prescribed[1], np.zeros(1) if self.carried is None else self.carried]
+        largest = max(float(np.abs(values).max(initial=0.0)) for values in given)
+        each = (
+            driven_friction(law, self.contact_places[name], self.row_dofs, self.prescribed, largest)
+            for name, law in self.rubbing.items()
+        )
+        return [driven for driven in each if driven is not None]
+
+    def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
+        """Contact forces whose friction is as the law says where it cannot be found.
+
+        That is where prescribed displacements alone make the slip, see
+        `solver.discrete.driven_friction`. All are scaled: forces stacked as `sum_of_contact` says,
+        shape (n_forces, n_instants), and W of all rows, (n_rows, n_instants).
+        """
+        if not self._driven:
+            return forces
+        settled = forces.copy()
+        for driven in self._driven:
+            settled[driven.places] = driven.force(forces, displacement)
+        return settled
+
+    @cached_property
     def motions(self) -> Array | None:
         """Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent.
 
@@ -280,6 +317,20 @@ class Problem:
         values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
         return dofs, np.concatenate(values)[first]
+
+    @cached_property
+    def held_dofs(self) -> dict[str, Indices]:
+        """Degrees of freedom that each interface of prescribed displacements holds, by its name.
+
+        One that several prescribe, as in a corner, is held by the first of them.
+        """
+        held: dict[str, Indices] = {}
+        before = np.zeros(0, dtype=np.intp)
+        for name, law in self.interfaces.items():
+            if isinstance(law, Dirichlet):
+                held[name] = np.setdiff1d(self.row_dofs[law.rows], before)
+                before = np.concatenate([before, held[name]])
+        return held
 
 
 def nothing_acts(problem: Problem) -> bool:

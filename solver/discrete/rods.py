@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.cut_rods import SIDES, CutRods
-from solver.discrete.probes import Probe, constant, reaction
+from solver.discrete.probes import Probe, Reaction, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
@@ -226,7 +226,7 @@ class Rods:
         of, what = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
         return Loop((f"{of} displacement", "m"), (what, "N"), moved, force)
 
-    def end_force(self, problem: Problem, side: Side) -> Probe:
+    def end_force(self, problem: Problem, side: Side) -> Probe | Reaction:
         """Mean axial force at the ends of a side, N, positive to the right."""
         end = self.ends[side]
         if end.displacement is None:

@@ -92,7 +92,9 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
         rows_above, rows_below = _rows_of(cut, [joint])
         macro = np.asarray(np.kron(cut.basis(joint, 1), np.eye(2)))
         yield cut.name(joint), Perfect(rows_below.ravel(), rows_above.ravel(), macro)
-    for side, given in stack.sides.items():
+    # A corner that two sides prescribe is held by the first: as `_prescribed` moves it.
+    for side in ("top", "bottom", "left", "right"):
+        given = stack.sides[side]
         if any(one.prescribed for one in given):
             yield from _prescribed(cut, side, given)
 
@@ -172,6 +174,7 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
         positions=np.array([stack.length]),
         weights=stack.length * sides[:1],
         around=Bodies(moduli=(stack.modulus(0), np.inf)),
+        is_spring=True,
     )
 
 

@@ -166,10 +166,12 @@ class Iterate:
     def contact_force(self) -> Array:
         """Nodal forces of all interfaces with friction on the bodies above, linear stage, N.
 
-        Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says.
+        Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says; friction is as the
+        law says where only its sum with a reaction can be found.
         """
-        force = self.problem.sum_of_contact @ self.boundary_force
-        return np.asarray(force) * self.problem.scales.force
+        force = np.asarray(self.problem.sum_of_contact @ self.boundary_force)
+        force = self.problem.with_driven_friction(force, self.boundary_displacement)
+        return force * self.problem.scales.force
 
     @property
     def friction_force(self) -> Array:

@@ -107,7 +107,7 @@ class Bodies:
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d.
         """
-        if len(law.positions) == 1:
+        if law.is_spring:
             k[law.rows] = AT_A_POINT * self.moduli[0]
             return
         length = law.weights.sum()

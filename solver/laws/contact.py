@@ -109,6 +109,8 @@ class Contact(Interface):
     copies
         Number of interfaces that this one stands for in sums over the structure that is shown, as
         one wire of a layer does for all: forces and energies of its points count as many times.
+    is_spring
+        Whether it is a spring that pulls at a point: no surface on which bodies touch.
     """
 
     points: Indices
@@ -120,6 +122,7 @@ class Contact(Interface):
     macro: sparse.csr_array | None = None
     slip_ratio: float = 1.0
     copies: float = 1.0
+    is_spring: bool = False
 
     remembers = True
 

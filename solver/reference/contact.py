@@ -13,7 +13,6 @@ import numpy as np
 from solver.arrays import Array, Flags
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
-from solver.laws.play import follow, play
 from solver.reference.condensation import Condensation, NoReferenceError
 from solver.reference.distance import broken_laws
 from solver.reference.instants import Instants
@@ -34,8 +33,8 @@ class IncrementalContact:
     `converged` is False, and the contacts stay where they were, by forces that break the laws.
 
     Where the normal jump is prescribed, contact shares its force with the support in any way: it
-    is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
-    its motion; at rest it is taken as zero.
+    is taken as zero, and so is the friction there. Where the tangential jump is, friction is as
+    `Problem.with_driven_friction` says.
 
     NoReferenceError is raised if there are more than `MOST_JUMPS` jumps, or the structure can move
     with all contacts closed and stuck.
@@ -106,7 +105,10 @@ class IncrementalContact:
         deformation = condensed.deformation(np.cumsum(done.strained, axis=1))
         rigid = condensed.motions @ motion
         moved = condensed.jump(deformation)
-        forces = _all_forces(condensed, rules, moved, done.force)
+        forces = np.zeros_like(moved)
+        forces[condensed.moving] = done.force
+        rows = (deformation + rigid)[problem.row_dofs]
+        forces = problem.with_driven_friction(forces, rows)
         moved += rules.compliance[:, None] * forces
         slip = np.diff(moved, axis=1, prepend=0.0)
         slip += condensed.jump(condensed.motions @ done.motion)
@@ -144,24 +146,6 @@ def jumps_in(problem: Problem) -> int:
     """Number of components of contact that `IncrementalContact` condenses."""
     laws = problem.rubbing.values()
     return sum(len(component.above) for law in laws for component in law.components)
-
-
-def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:
-    """Add the friction at jumps that follow from prescribed displacements, all instants."""
-    forces = np.zeros_like(jumps)
-    forces[condensed.moving] = force
-    given = ~rules.normal
-    given[condensed.moving] = False
-    slip = np.diff(jumps, axis=1, prepend=0.0)
-    bound = rules.bounds(forces, slip)
-    forces[given] = (-bound * np.sign(slip))[given]
-    springy = given & (rules.compliance > 0.0)
-    if springy.any():
-        soft, jump = rules.compliance[springy, None], jumps[springy]
-        reach = soft * np.broadcast_to(rules.before_slip(rules.bound, forces), jumps.shape)[springy]
-        slider = follow(jump, reach, rules.strength) if rules.ages else play(jump, reach)
-        forces[springy] = (slider - jump) / soft
-    return forces
 
 
 def _status(rules: Rules, slip: Array, forces: Array) -> States:

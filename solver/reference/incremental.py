@@ -49,9 +49,8 @@ def rubs_on_supports(problem: Problem) -> bool:
 class IncrementalRod:
     """The incremental solver of rods for which `rubs_on_supports`, ready to march through time.
 
-    A point whose displacement is prescribed may rub too. Where it moves, its friction force is
-    -r sign(v). Where it stands still, only the sum of friction force and reaction is determinate:
-    the friction force is taken as zero.
+    A point whose displacement is prescribed may rub too: only the sum of friction force and
+    reaction is determinate there, and friction is as `Problem.with_driven_friction` says.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -140,10 +139,6 @@ class IncrementalRod:
             self._systems += search.solutions - done
         if least is not None:
             least.increment[self._fixed] = move
-            if rules.ages:
-                slipped = gone + np.abs(least.increment)
-                bound *= self._on_dofs(rules.strength(slipped[self._dofs]))
-            least.pull[self._fixed] = bound[self._fixed] * np.sign(move)
         return least
 
     def _with_changing_bound(
@@ -192,11 +187,12 @@ class IncrementalRod:
         moved = np.cumsum(increments, axis=0).T
         inside = self._stiffness.largest_row * float(np.abs(moved).max(initial=0.0))
         displacement = moved * problem.scales.displacement
+        friction = problem.with_driven_friction(0.0 - pulls.T[dofs], moved[problem.row_dofs])
         return Reference(
             problem=problem,
             displacement=displacement,
             deformation=displacement,
-            contact_force=0.0 - pulls.T[dofs] * problem.scales.force,
+            contact_force=friction * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
             residual=max([0.0, *(least.residual for least in minima)]),
             unbalanced=max([0.0, *(least.violation for least in minima)]) * problem.scales.force,

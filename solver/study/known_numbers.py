@@ -11,6 +11,7 @@ from scipy.special import erfc
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
+from solver.discrete.probes import reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.structure import Loop, LoopFields
@@ -229,3 +230,36 @@ def weighed_wall(answer: Answer) -> Iterator[Number]:
     across = [answer.fields.contact(name).normal_force for name in grounds]
     force = sum(float(own[:, -1].sum()) for own in across if own is not None)
     yield "force on the ground", "N/m", 4.0 * (pressed + 4.0 * brick), force
+
+
+def moved_end(answer: Answer) -> Iterator[Number]:
+    """Force that moves an end of a rod whose other end is free: sqrt(2 E S mu p u)."""
+    rods = answer.settings.structure()
+    assert isinstance(rods, Rods)
+    assert rods.right.displacement is not None
+    bound = float(rods.bound.max())
+    known = np.sqrt(2.0 * rods.stiffness * bound * float(rods.right.displacement[-1]))
+    found = rods.end_force(answer.problem, "right").of(answer.fields)
+    yield "force at the moved end", "N", float(known), float(found[-1])
+
+
+def on_slope(answer: Answer) -> Iterator[Number]:
+    """Part of the weight that presses on a slope where it is steepest, whatever a spring pulls."""
+    own = answer.settings
+    angle = np.radians(own.path("slope_load"))
+    steepest = int(angle.argmax())
+    known = own.weight * float(np.cos(angle[steepest]))
+    yield "pressing force", "N/m", known, float(answer.support[0][:, steepest].sum())
+
+
+def pushed_block(answer: Answer) -> Iterator[Number]:
+    """Forces and moments of the side that pushes a block under pressure, and of its support."""
+    own, problem, fields = answer.settings, answer.problem, answer.fields
+    load = -own.top_normal_traction * own.length
+    pressing = answer.support[0][:, -1]
+    push = reaction(problem, "left", 0).of(fields)
+    moment = reaction_moment(problem, "left").of(fields)
+    around_foot = float(moment[-1] + problem.rubbing["support"].positions @ pressing)
+    yield "force at the pushed side", "N/m", own.friction * load, float(push[-1])
+    yield "pressing force", "N/m", load, float(pressing.sum())
+    yield "moment of both about the foot", "N", 0.5 * load * own.length, around_foot

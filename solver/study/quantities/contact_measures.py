@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass
 from operator import attrgetter
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantit
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
+ENDS: tuple[Literal["left"], Literal["right"]] = "left", "right"
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
 _opens = attrgetter("opens")
@@ -88,7 +90,14 @@ def force(run: FinishedRun, at: float | None) -> float:
 
 
 def _axial_force(run: FinishedRun) -> Array:
-    return AxialForce(run.problem)(run.iterate.displacement)
+    """Axial force in all elements, and at both ends, pull positive, (n_places, n_instants), N.
+
+    In the middle of the last element friction has taken its part of the force at the end.
+    """
+    rods = run.settings.structure()
+    assert isinstance(rods, Rods)
+    left, right = (rods.end_force(run.problem, side).of(run.iterate) for side in ENDS)
+    return np.vstack([AxialForce(run.problem)(run.iterate.displacement), -left, right])
 
 
 def _most_axial_force(run: FinishedRun, at: float | None) -> int:
@@ -112,7 +121,7 @@ def _instant_at(run: FinishedRun, share: float) -> int:
     when=_most_axial_force,
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
-    """Largest axial force in any element at an instant, N, pull positive."""
+    """Largest axial force along rods at an instant, their ends included, N, pull positive."""
     force = _axial_force(run)[:, instant]
     return float(force[first_largest(force)])
 
@@ -126,8 +135,8 @@ def _force_at(side: str) -> Quantity:
             end = structure.end_force(problem, "right" if side == "right" else "left")
             values = end.of(run.iterate)
             return float(values[first_largest(values)])
-        moved = run.iterate.displacement
-        return float(np.hypot(*(reaction(problem, side, axis)(moved) for axis in (0, 1))).max())
+        along, up = (reaction(problem, side, axis).of(run.iterate) for axis in (0, 1))
+        return float(np.hypot(along, up).max())
 
     title, applies = f"Largest force at the {side}", lambda own: side in holding_sides(own)
     return Quantity(f"{side}_force", title, "N", force, applies=applies)
@@ -151,7 +160,7 @@ left_force, right_force, top_force, bottom_force = map(
 @quantity("Largest slip", "m")
 def peak_slip(run: FinishedRun) -> float:
     """Farthest that any point in contact has come along what it rubs on, m."""
-    contacts = map(run.iterate.contact, run.problem.rubbing)
+    contacts = map(run.iterate.contact, run.problem.surfaces)
     return float(max(np.abs(part.slip * (part.status != OPEN)).max() for part in contacts))
 
 
@@ -175,7 +184,7 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
-    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing]
+    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.surfaces]
     return float(np.sum(forces, axis=0).max())
 
 
@@ -183,8 +192,8 @@ def peak_pressing(run: FinishedRun) -> float:
 def peak_pressure(run: FinishedRun) -> float:
     """Largest pressure at any point of an interface, Pa.
 
-    Force of a point over its tributary length, one metre thick. A single point, as that under a
-    spring, has a force and no pressure.
+    Force of a point over its tributary length, one metre thick. A spring has a force and no
+    pressure.
     """
     lengths = _lengths(run).items()
     peaks = (float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths)
@@ -199,9 +208,8 @@ def contact_width(run: FinishedRun) -> float:
 
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
-    """Tributary lengths of all interfaces that are more than a point, m."""
-    lengths = {name: law.by_point(law.weights) for name, law in run.problem.rubbing.items()}
-    return {name: length for name, length in lengths.items() if len(length) > 1}
+    """Tributary lengths of the points of all surfaces, m."""
+    return {name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()}
 
 
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
@@ -224,7 +232,7 @@ peak_stress_y = _peak_stress("peak_stress_y", "y of the largest stress", "m", 2)
 @quantity("Largest force in the spring", "N", applies=lambda settings: settings.has("spring"))
 def spring_force(run: FinishedRun) -> float:
     """Largest force in the spring, N."""
-    return float(run.force.max())
+    return float(_pressing(run, "spring").max())
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,7 +286,7 @@ def _holds(run: FinishedRun) -> list[_Hold]:
     # A point that a clamp holds, too, never slips.
     determinate = determinate_forces(problem)
     holds = []
-    for name, law in problem.rubbing.items():
+    for name, law in problem.surfaces.items():
         contact = run.iterate.contact(name)
         *_, tangential = problem.contact_places[name]
         if contact.normal_force is None:
@@ -382,9 +390,14 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
 
 
 def _slipped_shares(run: FinishedRun) -> Array:
-    """Share of the points that have slipped by every instant, of those that can, (n_instants,)."""
+    """Share of the points of surfaces that have slipped by every instant, (n_instants,).
+
+    Of those that can slip.
+    """
+    problem = run.problem
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
-    counted = slipped[~np.concatenate(list(_stand_still(run).values()))]
+    still = np.concatenate(list(_stand_still(run).values()))
+    counted = slipped[problem.on_surfaces & ~still]
     return counted.mean(axis=0) if len(counted) else np.zeros(slipped.shape[1])
 
 

@@ -75,10 +75,11 @@ def sliding_share(run: FinishedRun) -> float:
     held = run.problem.is_held
     lengths = [
         law.by_point(law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0))
-        for law in run.problem.rubbing.values()
+        for law in run.problem.surfaces.values()
     ]
     length = np.concatenate(lengths)[:, None]
-    status = run.iterate.status[:, instants_of(run.settings, cycles_in(run.settings))]
+    status = run.iterate.status[run.problem.on_surfaces]
+    status = status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
     shares = slipping[touching > 0.0] / touching[touching > 0.0]

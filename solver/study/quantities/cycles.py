@@ -45,10 +45,11 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
 
     Both from each instant to the next, shape (n_pairs, n_instants), and both of the local stage,
     whose laws hold at every iterate. A point slips at the bound of the instant that it slips to.
+    Springs do not rub.
     """
     scales = iterate.problem.scales
     moved, force = iterate.local_displacement, iterate.boundary_local_force
-    for law in iterate.problem.rubbing.values():
+    for law in iterate.problem.surfaces.values():
         slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
         slip *= law.slip_ratio * scales.displacement
         yield law, slip, force[law.tangent.above] * slip * -scales.force
@@ -96,7 +97,8 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
         slips.append(law.mean_by_point(slip))
         works.append(law.copies * law.by_point(work))
     slip, work = np.concatenate(slips), np.concatenate(works)
-    rubbed = np.where(np.abs(iterate.status) == 1, np.abs(slip), 0.0)
+    status = iterate.status[iterate.problem.on_surfaces]
+    rubbed = np.where(np.abs(status) == 1, np.abs(slip), 0.0)
     first = ends[0] if ends else iterate.problem.n_instants - 1
     return LoadCycles(
         ends=ends,
