@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from solver.discrete import Problem
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference, fingerprint
 from solver.settings import Settings

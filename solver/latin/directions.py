@@ -120,6 +120,8 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     load paths). Where friction softens it is more than the slope by which it falls.
     """
     laws = list(problem.rubbing.values())
+    if not laws:
+        return problem.direction
     around = laws[0].around
     k = problem.direction * around.elsewhere
     for first, second in problem.cuts:

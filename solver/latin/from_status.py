@@ -54,8 +54,8 @@ class FromStatus:
         return self.first.of(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """As `SearchDirection.begin`."""
-        return UpdateProgress("first", self.of(problem))
+        """As `SearchDirection.begin`; without contact there is no status to follow."""
+        return UpdateProgress("first" if problem.rubbing else "returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """Progress by what sticks and slips in the local stage, or by what an update has made."""

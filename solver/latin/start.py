@@ -14,7 +14,7 @@ from solver.discrete.problem import Problem
 from solver.latin.certified import balance_of_rows, known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import incremental_solver
 from solver.reference.solution import Interrupted, Reference
 

@@ -67,6 +67,10 @@ EXPECTED = Status(
     "Accurate enough by estimate: the contact force hardly changes any more. Proof by a status "
     "step would take half as long again, or longer.",
 )
+UNPROVABLE = Status(
+    Ending.CONVERGED,
+    "Accurate enough by estimate: the contact force hardly changes any more. Nothing can prove it.",
+)
 BELOW = Status(
     Ending.CONVERGED,
     "The LATIN indicator is below its tolerance, and the k-free indicator agrees.",
@@ -134,6 +138,13 @@ def certified(
             message += _FOUND.format(before, f"{away:g}")
         message += f" {advice}" * bool(advice)
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
+
+
+def unprovable(status: Status, problem: Problem) -> Status:
+    """Status that also says why there is no proof, where none can be had."""
+    if not problem.no_reference:
+        return status
+    return replace(status, advice=f"{status.advice} {problem.no_reference}")
 
 
 def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:

@@ -18,6 +18,7 @@ from solver.latin.status import (
     BELOW,
     EXPECTED,
     PROVEN,
+    UNPROVABLE,
     Decision,
     Ending,
     Status,
@@ -25,6 +26,7 @@ from solver.latin.status import (
     diverged,
     exhausted,
     stalled,
+    unprovable,
     with_jump,
 )
 from solver.refusal import check_range
@@ -164,7 +166,10 @@ class StopState:
             return error, estimate.ending
         if status is None and is_last:
             status = exhausted(self._latin, iterate, is_proven=estimate.is_proven)
-        return error, status and with_jump(status, iterate.problem, estimate.certificate)
+        if status is not None:
+            status = with_jump(status, iterate.problem, estimate.certificate)
+            status = unprovable(status, iterate.problem)
+        return error, status
 
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
         """Status of a run that is accurate enough, at a low indicator, as far as both are asked."""
@@ -185,7 +190,9 @@ class StopState:
             return PROVEN
         # An estimate counts for nothing on bases, or where a step is worth its cost.
         counts = not (estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT))
-        return EXPECTED if counts else None
+        if not counts:
+            return None
+        return UNPROVABLE if iterate.problem.no_reference else EXPECTED
 
     def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
         """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.

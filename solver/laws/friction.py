@@ -186,8 +186,8 @@ class Friction:
             if opening is not None and bound.any():
                 bound = bound * is_intact(opening, pressing)
             bound = bound + self.friction[:, None] * np.maximum(pressing, 0.0)
-            if self.cap is not None:
-                bound = np.minimum(bound, self.cap[:, None])
+        if self.cap is not None:
+            bound = np.minimum(bound, self.cap[:, None])
         return bound
 
     def allowed(self, pressing: Array | None, slip: Array, opening: Array | None = None) -> Array:

@@ -9,7 +9,18 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array, Indices, as_slice
-from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, joined, squared
+from solver.laws.interface import (
+    Gaps,
+    Given,
+    Glued,
+    IncrementalForm,
+    Interface,
+    MacroPart,
+    Rule,
+    beyond,
+    joined,
+    squared,
+)
 
 
 @dataclass(frozen=True)
@@ -24,14 +35,18 @@ class _Given(Interface):
         return replace(self, values=self.values[:, instants])
 
     @property
-    def acts(self) -> bool:
-        """Whether anything moves, or pulls."""
-        return bool(self.values.any())
+    def n_instants(self) -> int:
+        """Number of instants that the values are for."""
+        return int(self.values.shape[1])
 
 
 @dataclass(frozen=True)
 class Dirichlet(_Given):
     """Prescribed displacement."""
+
+    def incremental_form(self) -> IncrementalForm:
+        """Displacements that are given."""
+        return IncrementalForm(displacement=Given(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """W^ is the displacement that is prescribed."""
@@ -42,7 +57,7 @@ class Dirichlet(_Given):
 
         return prescribe
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare the displacement with that prescribed."""
         return Gaps(displacement=squared(beyond(displacement[self.rows] - self.values, noise)))
 
@@ -52,6 +67,10 @@ class Neumann(_Given):
     """Prescribed nodal forces on the body, with a macro basis of shape (n_rows, n_macro)."""
 
     macro: Array
+
+    def incremental_form(self) -> IncrementalForm:
+        """Forces that are given."""
+        return IncrementalForm(force=Given(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Move by F_d / k."""
@@ -63,7 +82,7 @@ class Neumann(_Given):
 
         return push
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare the force with that prescribed."""
         return Gaps(force=squared(beyond(force[self.rows] - self.values, noise)))
 
@@ -85,6 +104,14 @@ class Perfect(Interface):
         """Rows of both sides."""
         return np.concatenate([self.first, self.second])
 
+    def incremental_form(self) -> IncrementalForm:
+        """Both sides as one."""
+        return IncrementalForm(glued=Glued(self.first, self.second))
+
+    def during(self, _instants: slice) -> Self:
+        """Law of some instants alone, which is that of all."""
+        return self
+
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
         """Join all cuts; the macro bases stay behind."""
@@ -104,7 +131,7 @@ class Perfect(Interface):
 
         return glue
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare both sides."""
         apart = _at(displacement, self.first) - _at(displacement, self.second)
         unbalanced = _at(force, self.first) + _at(force, self.second)

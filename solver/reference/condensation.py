@@ -29,7 +29,13 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force, jumps, separated
+from solver.reference.assembly import (
+    NoReferenceError,
+    assembled_stiffness,
+    external_force,
+    jumps,
+    separated,
+)
 from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of
 
@@ -51,10 +57,6 @@ TIE = 1e3
 
 BLOCK = 500
 """Columns of a dense matrix at a time, where more would fill the memory."""
-
-
-class NoReferenceError(ValueError):
-    """No reference can be found; the message says why."""
 
 
 class Condensation:

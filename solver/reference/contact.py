@@ -14,7 +14,8 @@ from solver.arrays import Array, Flags
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.laws.play import follow, play
-from solver.reference.condensation import Condensation, NoReferenceError
+from solver.reference.assembly import NoReferenceError
+from solver.reference.condensation import Condensation
 from solver.reference.distance import broken_laws
 from solver.reference.instants import Instants
 from solver.reference.limit_analysis import Collapse, collapse_of
