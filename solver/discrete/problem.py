@@ -20,11 +20,22 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices, as_slice
+from solver.checks import (
+    ALIKE,
+    INSTANTS,
+    POSITIVE,
+    Each,
+    Named,
+    Numbers,
+    Part,
+    check,
+)
 from solver.discrete.contacts import ContactGroup
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, Strength
 from solver.laws.interface import Given, Glued, IncrementalForm
 from solver.laws.play import PLAIN
+from solver.refusal import RefusedError, Words
 
 if TYPE_CHECKING:
     from solver.discrete.plane_parts import Inside
@@ -37,6 +48,9 @@ class Scales:
     displacement: float
     force: float
     time: float
+
+    def __post_init__(self) -> None:
+        check(self, displacement=POSITIVE, force=POSITIVE, time=POSITIVE)
 
 
 @dataclass(frozen=True)
@@ -60,6 +74,12 @@ class Problem:
     carried
         Displacement of the support that rods lie on, scaled, shape (n_dofs, n_instants), where it
         moves: all displacements of the problem are seen from it.
+
+    Raises
+    ------
+    RefusedError
+        For rows or degrees of freedom that are not covered, fields of another shape, instants that
+        do not increase, or prescribed displacements that contradict each other.
     """
 
     substructures: tuple[Substructure, ...]
@@ -70,6 +90,54 @@ class Problem:
     inside: Inside | None = None
     rest: Array | None = None
     carried: Array | None = None
+
+    def __post_init__(self) -> None:
+        check(
+            self,
+            substructures=Each(Part(Substructure)),
+            interfaces=Named(Part(Interface)),
+            instants=INSTANTS,
+            scales=Part(Scales),
+            positions=Numbers(((None,), (None, 2))),
+        )
+        field = Numbers(((self.n_dofs, self.n_instants),))
+        check(self, rest=field, carried=field)
+        parts, laws = self.substructures, self.interfaces.values()
+        _check_cover("substructures", "degree of freedom", self.n_dofs, [p.dofs for p in parts])
+        _check_cover("substructures", "row", self.n_rows, [p.rows for p in parts], once=True)
+        _check_cover("interfaces", "row", self.n_rows, [law.rows for law in laws], once=True)
+        self._check_instants()
+        self._check_prescribed()
+
+    def _check_instants(self) -> None:
+        """Refuse what has values for other instants."""
+        counts = {f"interfaces[{name!r}]": law.n_instants for name, law in self.interfaces.items()}
+        for number, part in enumerate(self.substructures):
+            if part.body_force is not None:
+                counts[f"substructures[{number}].body_force"] = part.body_force.shape[1]
+        for name, count in counts.items():
+            if count not in (None, self.n_instants):
+                allowed = f"as many as Problem.instants has, {self.n_instants}"
+                shown = Words(f"of {count} instants")
+                raise RefusedError(f"Problem.{name}", shown, allowed, "give one value an instant")
+
+    def _check_prescribed(self) -> None:
+        """Refuse displacements that differ at one degree of freedom."""
+        given = self.given_displacements
+        if len(given) < 2:
+            return
+        dofs = np.concatenate([self.row_dofs[one.rows] for one in given])
+        values = np.concatenate([one.values for one in given])
+        _, first, place = np.unique(dofs, return_index=True, return_inverse=True)
+        apart = np.abs(values - values[first][place])
+        if float(apart.max(initial=0.0)) > ALIKE * float(np.abs(values).max(initial=0.0)):
+            number = int(apart.max(axis=1).argmax())
+            raise RefusedError(
+                "Problem.interfaces",
+                Words(f"two displacements of degree of freedom {dofs[number]}"),
+                "one displacement of each",
+                "prescribe it once, or both alike",
+            )
 
     def at_rest(self, displacement: Array) -> Array:
         """Displacements as who stands beside sees them, (n_dofs, n_instants), m."""
@@ -381,6 +449,22 @@ class Problem:
         values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
         return dofs, np.concatenate(values)[first]
+
+
+def _check_cover(
+    owners: str, what: str, count: int, parts: list[Indices], *, once: bool = False
+) -> None:
+    """Refuse parts that do not have all of so many numbers, or one of them more than once."""
+    numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
+    largest = int(numbers.max(initial=-1))
+    times = np.bincount(numbers, minlength=count)
+    wrong = (times != 1) if once else (times == 0)
+    if largest < count and not wrong.any():
+        return
+    place = largest if largest >= count else int(np.argmax(wrong))
+    allowed = f"each {what} from 0 to {count - 1} {'once' if once else 'at least once'}"
+    shown = Words(f"{what} {place}, {times[place]} times")
+    raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
 
 
 def nothing_acts(problem: Problem) -> bool:

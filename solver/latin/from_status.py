@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, read_only
+from solver.checks import Part, check
 from solver.discrete.problem import Problem
 from solver.latin.directions import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
@@ -43,6 +44,9 @@ class FromStatus:
     """
 
     first: SearchDirection = Auto()
+
+    def __post_init__(self) -> None:
+        check(self, first=Part(SearchDirection))
 
     @property
     def scale(self) -> float:

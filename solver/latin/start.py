@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.checks import FUNCTION, check
 from solver.discrete.problem import Problem
 from solver.latin.certified import balance_of_rows, known_forces
 from solver.latin.iterate import Checkpoint
@@ -36,6 +37,9 @@ class Nested:
     """
 
     coarser: Callable[[], Iterable[Problem]]
+
+    def __post_init__(self) -> None:
+        check(self, coarser=FUNCTION)
 
     def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
         """Where a problem starts with a search direction: from the finest mesh that has a solution.

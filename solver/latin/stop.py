@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solver.checks import Number, check
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
@@ -29,7 +30,6 @@ from solver.latin.status import (
     unprovable,
     with_jump,
 )
-from solver.refusal import check_range
 
 if TYPE_CHECKING:
     from solver.latin.method import Latin
@@ -85,12 +85,15 @@ class Stop:
     sufficient: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("accuracy", "tolerance"):
-            if getattr(self, name) != math.inf:
-                check_range(self, name, 0.0, 1.0, above=True)
-        check_range(self, "iterations", 1, math.inf)
-        check_range(self, "seconds", 0.0, math.inf, above=True)
-        check_range(self, "sufficient", 0.0, 1.0)
+        share = Number(0.0, 1.0, above=True, endless=True)
+        check(
+            self,
+            accuracy=share,
+            tolerance=share,
+            iterations=Number(1, endless=True),
+            seconds=Number(0.0, above=True, endless=True),
+            sufficient=Number(0.0, 1.0),
+        )
 
 
 class StopState:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.checks import Numbers, Part, check
 from solver.laws.around import Bodies, Rod
 from solver.laws.friction import Friction
 from solver.laws.interface import (
@@ -33,6 +34,7 @@ from solver.laws.interface import (
 )
 from solver.laws.play import Strength
 from solver.laws.unilateral import ContactRule, Unilateral
+from solver.refusal import RefusedError, Words
 
 OPEN = 2
 """Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
@@ -117,6 +119,32 @@ class Contact(Interface):
     macro: sparse.csr_array | None = None
 
     remembers = True
+
+    def __post_init__(self) -> None:
+        check(
+            self,
+            tangential=Part(Friction),
+            normal=Part(Unilateral),
+            around=Part(Rod, Bodies),
+            positions=Numbers(((None,),)),
+        )
+        size, most = len(self.tangential.component.above), len(self.positions) - 1
+        check(
+            self,
+            points=Numbers(((size,),), low=0, high=most, whole=True),
+            weights=Numbers(((size,),), low=0.0, above=True),
+        )
+        if self.normal is None and self.tangential.friction.any():
+            raise RefusedError(
+                "Contact.tangential.friction",
+                float(self.tangential.friction.max()),
+                "0 where there is no normal law",
+                "give the bound mu times the pressure, or a normal law",
+            )
+        if self.normal is not None and len(self.normal.gap) != size:
+            remedy = "give both components the same pairs"
+            shown = Words(f"of {len(self.normal.gap)} pairs")
+            raise RefusedError("Contact.normal", shown, f"a law of {size} pairs", remedy)
 
     def incremental_form(self) -> IncrementalForm | None:
         """The law itself, where its parts are those that solvers read, and none derived of them."""

@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array, Indices, as_slice
+from solver.checks import ROWS, Numbers, check
 from solver.laws.interface import (
     Gaps,
     Given,
@@ -29,6 +30,10 @@ class _Given(Interface):
 
     rows: Indices
     values: Array
+
+    def __post_init__(self) -> None:
+        check(self, rows=ROWS)
+        check(self, values=Numbers(((len(self.rows), None),)))
 
     def during(self, instants: slice) -> Self:
         """Law of some instants alone."""
@@ -68,6 +73,10 @@ class Neumann(_Given):
 
     macro: Array
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check(self, macro=Numbers(((len(self.rows), None),)))
+
     def incremental_form(self) -> IncrementalForm:
         """Forces that are given."""
         return IncrementalForm(force=Given(self.rows, self.values))
@@ -98,6 +107,12 @@ class Perfect(Interface):
     first: Indices
     second: Indices
     macro: Array
+
+    def __post_init__(self) -> None:
+        check(self, first=ROWS)
+        size = len(self.first)
+        opposite = Numbers(((size,),), low=0, whole=True)
+        check(self, second=opposite, macro=Numbers(((size, None),)))
 
     @property
     def rows(self) -> Indices:  # type: ignore[override]  # others are given them
