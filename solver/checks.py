@@ -246,7 +246,7 @@ class Function:
 
 
 class Either:
-    """A value of one kind or of another; the last says what is wrong with a value of neither."""
+    """A value of one kind or of another; the last one says what is wrong with a value of none."""
 
     def __init__(self, *kinds: Kind) -> None:
         self._kinds = kinds
@@ -258,12 +258,12 @@ class Either:
 
     def flaw(self, value: Any) -> Flaw | None:
         """What is wrong with a value."""
-        flaws = [kind.flaw(value) for kind in self._kinds]
-        if None in flaws:
-            return None
-        is_array = isinstance(value, np.ndarray)
-        of_value = next((flaw for flaw in flaws[is_array:] if flaw is not None), None)
-        return None if of_value is None else of_value._replace(allowed=self.allowed)
+        flaw = None
+        for kind in self._kinds:
+            flaw = kind.flaw(value)
+            if flaw is None:
+                return None
+        return None if flaw is None else Flaw(flaw.shown, self.allowed, flaw.remedy)
 
 
 @dataclass(frozen=True)

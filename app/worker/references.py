@@ -40,7 +40,7 @@ class ReferenceCache:
         Interrupted
             As soon as `stop` gives True.
         """
-        if not has_reference(settings):
+        if problem.no_reference or not has_reference(settings):
             return None
         key = fingerprint(problem)
         reference = self._kept.pop(key, None)
