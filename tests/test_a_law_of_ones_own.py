@@ -340,17 +340,20 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
         with pytest.raises(NoReferenceError, match=words) as refused:
             judge(of)
         assert "judge the run by its estimate" in str(refused.value)
-    assert is_honest(solve(of, Latin(stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=60))))
+    solution = solve(of, Latin(stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=60)))
+    assert is_honest(solution)
+    assert solution.iterate.friction_force.shape[1] == of.n_instants
     assert run_cost(of, Latin(), 100, with_reference=True).reference == 0.0
 
 
 def test_bases_that_nothing_can_prove_do_not_converge() -> None:
     """What is converged on a few modes need not be near the answer."""
-    method = Latin(linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=200))
+    method = Latin(linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40))
     solution = solve(damped(Dashpot), method)
     assert is_honest(solution)
     assert solution.status.ending is not Ending.CONVERGED
     assert "Dashpot" in solution.status.advice
+    assert "linear to Full()" in solution.status.advice
 
 
 def test_a_residual_of_fields_is_not_claimed_where_a_law_is_not_read() -> None:
@@ -429,6 +432,16 @@ def test_a_body_that_slides_as_a_whole_is_not_shifted_where_something_else_pulls
     spring: Any = of.interfaces["spring"]
     law = HalfContact(**fields_of(spring))
     assert slide_of(with_law(of, "spring", law), k) is None
+
+
+@pytest.mark.parametrize("stop", [Stop(accuracy=0.01), Stop(accuracy=0.01, tolerance=1e-3)])
+def test_without_contact_an_estimate_is_no_smaller_than_the_error(stop: Stop) -> None:
+    """All that acts is a force at the end: u = F x / ES."""
+    solution = solve(without_contact(), Latin(stop=stop))
+    expected = np.outer(np.linspace(0.0, 1.0, 9), PULL) / 1e6
+    shown = solution.iterate.displacement
+    assert solution.status.ending is Ending.CONVERGED
+    assert np.linalg.norm(shown - expected) <= 0.01 * np.linalg.norm(expected)
 
 
 def test_random_contacts_are_read_in_full() -> None:

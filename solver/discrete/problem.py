@@ -252,7 +252,8 @@ class Problem:
         """Rows whose forces nothing but a solution tells, and their kinds, none of which is empty.
 
         They are all components of the bodies above at interfaces with friction, those along the
-        normal as one kind and the others as another; and all rows of laws of one's own.
+        normal as one kind and the others as another; and all rows of laws of one's own. Where there
+        are neither, all rows are sought.
         """
         kind_of = np.full(self.n_rows, -1)
         for law in self.own_laws.values():
@@ -261,6 +262,8 @@ class Problem:
             kind_of[law.tangent.above] = 1
             if law.normal is not None:
                 kind_of[law.normal.component.above] = 0
+        if np.all(kind_of < 0):
+            kind_of[:] = 2
         rows = np.flatnonzero(kind_of >= 0)
         kinds = [kind_of[rows] == kind for kind in range(3)]
         return as_slice(rows), [kind for kind in kinds if kind.any()]

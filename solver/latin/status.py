@@ -140,11 +140,14 @@ def certified(
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
 
 
-def unprovable(status: Status, problem: Problem) -> Status:
+def unprovable(status: Status, problem: Problem, latin: Latin) -> Status:
     """Status that also says why there is no proof, where none can be had."""
     if not problem.no_reference:
         return status
-    return replace(status, advice=f"{status.advice} {problem.no_reference}")
+    advice = f"{status.advice} {problem.no_reference}"
+    if isinstance(latin.linear, PGD):
+        advice += " On separated bases no estimate counts: set linear to Full()."
+    return replace(status, advice=advice)
 
 
 def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:

@@ -171,7 +171,7 @@ class StopState:
             status = exhausted(self._latin, iterate, is_proven=estimate.is_proven)
         if status is not None:
             status = with_jump(status, iterate.problem, estimate.certificate)
-            status = unprovable(status, iterate.problem)
+            status = unprovable(status, iterate.problem, self._latin)
         return error, status
 
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
