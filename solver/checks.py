@@ -20,7 +20,7 @@ ALIKE = 1e-9
 
 
 class Flaw(NamedTuple):
-    """What is wrong with a value: what is shown of it, what is allowed, and what to do."""
+    """Flaw of a value: what is shown of it, what is allowed, and what to do."""
 
     shown: object
     allowed: str
@@ -35,7 +35,7 @@ class Kind(Protocol):
         """Words on these values."""
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value; None if nothing is."""
+        """Find the flaw of a value; None if there is none."""
 
 
 def check(part: object, **kinds: Kind) -> None:
@@ -80,7 +80,7 @@ class Number:
         return f"{words}, or infinity" if self.endless else words
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         if is_number(value):
             is_in = self.low <= value <= self.high and not (self.above and value == self.low)
             if (is_in and math.isfinite(value)) or (self.endless and value == math.inf):
@@ -101,7 +101,7 @@ class Count:
         return f"a whole number{_range(self.low, self.high)}"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         is_whole = isinstance(value, Integral) and not isinstance(value, bool)
         if is_whole and self.low <= int(value) <= self.high:
             return None
@@ -129,7 +129,7 @@ class Numbers:
         return f"an array of {kind}{_range(self.low, self.high, above=self.above)}, shape {shapes}"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value; of an array the shape, or the first number that is."""
+        """Find the flaw of a value: its kind, its shape, or the first number that is refused."""
         if not isinstance(value, np.ndarray):
             return Flaw(value, self.allowed, "make an array of it, as np.array does")
         if value.dtype.kind not in ("iu" if self.whole else "iuf"):
@@ -172,7 +172,7 @@ class Instants:
     allowed = "an array of instants that increase, s, shape [n_instants], one or more"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         flaw = Numbers(((None,),)).flaw(value)
         if flaw is not None:
             return Flaw(flaw.shown, self.allowed, flaw.remedy)
@@ -199,7 +199,7 @@ class Part:
         return " or ".join("None" if one is type(None) else one.__name__ for one in self._types)
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         if isinstance(value, self._types):
             return None
         return Flaw(_described(value), self.allowed, f"make one, as {self._types[0].__name__}(...)")
@@ -217,7 +217,7 @@ class Choice:
         return ", ".join(self.names)
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         if isinstance(value, str) and value in self.names:
             return None
         return Flaw(value, self.allowed, "correct the name")
@@ -229,19 +229,19 @@ class Flag:
     allowed = "True or False"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         if isinstance(value, bool | np.bool_):
             return None
         return Flaw(value, self.allowed, "give one of both")
 
 
 class Function:
-    """What can be called."""
+    """A function, or anything else that can be called."""
 
     allowed = "a function"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         return None if callable(value) else Flaw(value, self.allowed, "give what makes it")
 
 
@@ -257,7 +257,7 @@ class Either:
         return ", or ".join(kind.allowed for kind in self._kinds)
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         flaw = None
         for kind in self._kinds:
             flaw = kind.flaw(value)
@@ -280,7 +280,7 @@ class Each:
         return f"a sequence of {count}, each {self.kind.allowed}"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         if not isinstance(value, Sequence) or isinstance(value, str):
             return Flaw(_described(value), self.allowed, "give a tuple")
         if len(value) == 0 or self.length not in (None, len(value)):
@@ -306,7 +306,7 @@ class Named:
         return f"a mapping of names{names} to {self.kind.allowed}"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """What is wrong with a value."""
+        """Find the flaw of a value."""
         if not isinstance(value, Mapping):
             return Flaw(_described(value), self.allowed, "give a dictionary")
         for name, one in value.items():

@@ -16,7 +16,7 @@ from solver.discrete import Given, Rope, Side, Spring, Support
 from solver.discrete.bricks import Brick
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity
-from solver.latin import PGD, Anderson, Auto, FromStatus, Nested, Stop
+from solver.latin import PGD, Anderson, Auto, Checkpoint, FromStatus, Nested, Stop
 from solver.latin.status_step import StatusStep
 from solver.laws import Dirichlet, FrictionLaw, Neumann, Strength
 from solver.refusal import RefusedError
@@ -329,10 +329,16 @@ def test_two_displacements_of_one_point_contradict_each_other() -> None:
 
 @pytest.mark.parametrize(
     ("arguments", "name"),
-    [((ROD, Latin()), "problem"), ((PROBLEM, None), "latin"), ((PROBLEM, "fast"), "latin")],
+    [
+        ((ROD, Latin()), "problem"),
+        ((PROBLEM, None), "latin"),
+        ((PROBLEM, "fast"), "latin"),
+        ((PROBLEM, Latin(), PROBLEM), "start"),
+        ((PROBLEM, Latin(), Checkpoint(3, 0.1, np.zeros((5, 5)))), r"start\.outgoing"),
+    ],
 )
-def test_what_is_no_problem_or_no_method_does_not_run(
-    arguments: tuple[Any, Any], name: str
+def test_what_is_no_problem_no_method_or_no_start_does_not_run(
+    arguments: tuple[Any, ...], name: str
 ) -> None:
     with pytest.raises(RefusedError, match=f"^{name} = "):
         next(iterations(*arguments))

@@ -214,7 +214,7 @@ class Problem:
 
     @cached_property
     def incremental_forms(self) -> dict[str, IncrementalForm]:
-        """How interfaces enter the incremental problem, by name; those alone that say it."""
+        """Forms in which interfaces enter the incremental problem, by name, where they have one."""
         forms = {name: law.incremental_form() for name, law in self.interfaces.items()}
         return {name: form for name, form in forms.items() if form is not None}
 
@@ -270,7 +270,7 @@ class Problem:
 
     @cached_property
     def no_reference(self) -> str:
-        """Why no incremental solver can judge the problem, and what to do; empty where one can.
+        """Reason that no incremental solver can judge the problem, with a remedy; empty without.
 
         They read the forms of all laws, one degree of freedom where rows are glued, and the mean of
         the pairs of a point: whatever else there is they would leave out.

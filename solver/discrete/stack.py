@@ -188,7 +188,7 @@ class Stack:
     groups: Indices | None = None
 
     def __post_init__(self) -> None:
-        """Leave free what is not given."""
+        """Check all that is given, and leave free what is not."""
         check(
             self,
             length=POSITIVE,

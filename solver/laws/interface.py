@@ -93,7 +93,7 @@ class Gaps(NamedTuple):
 
 
 class Given(NamedTuple):
-    """What is given at rows, (n_rows,): values of shape (n_rows, n_instants), scaled."""
+    """Values that are given at rows, (n_rows,): shape (n_rows, n_instants), scaled."""
 
     rows: Indices
     values: Array
@@ -108,7 +108,7 @@ class Glued(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class IncrementalForm:
-    """How a law enters the incremental problem: all that its solvers read of it.
+    """Form in which a law enters the incremental problem: all that its solvers read of it.
 
     With nothing given the interface is free.
 
@@ -156,7 +156,7 @@ class Interface(ABC):
                 setattr(cls, name, vars(Interface)[name])
 
     def incremental_form(self) -> IncrementalForm | None:
-        """How the law enters the incremental problem; None where that is not known."""
+        """The form in which the law enters the incremental problem; None where it has none."""
         return None
 
     @property
@@ -203,7 +203,7 @@ class Interface(ABC):
 
 
 OF_ONE_LAW = "incremental_form", "together", "gaps", "during", "macro_parts"
-"""What a law says beside its local stage: of this one alone."""
+"""Methods that belong to one local stage, and to no other that a subclass may have."""
 
 
 def gaps_of_rule(law: Interface, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
