@@ -21,7 +21,7 @@ from solver.discrete.problem import nothing_acts
 from solver.disk import check_place, why
 from solver.files import save_result, scene_settings, summary
 from solver.latin import Ending, solve, solve_in_slabs
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to, held_instants
 from solver.refusal import RefusedError
 from solver.report_commands import add_reports

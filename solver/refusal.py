@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from numbers import Real
 from typing import Any, TypeGuard
+
+
+class Words(str):
+    """Words on a value that is too large to show; they stand without quotation marks."""
+
+    __slots__ = ()
 
 
 class RefusedError(ValueError):
     """A refused value: the message names it, its value, the allowed range and the remedy."""
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
-        shown = json.dumps(value, default=str)
+        shown = _shown(value)
         shown = shown if len(shown) <= 60 else shown[:57] + "..."
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
         self.name, self.value = name, value
@@ -22,6 +27,16 @@ class RefusedError(ValueError):
     def __reduce__(self) -> tuple[type[RefusedError], tuple[Any, ...]]:
         """What another process makes it of again."""
         return type(self), (self.name, self.value, self.allowed, self.remedy)
+
+
+def _shown(value: object) -> str:
+    """A value as one types it."""
+    if isinstance(value, Words):
+        return value
+    try:
+        return json.dumps(value, default=str)
+    except (TypeError, ValueError):  # names that are no text, and what contains itself
+        return str(value)
 
 
 def plain(value: float) -> str:
@@ -33,18 +48,3 @@ def plain(value: float) -> str:
 def is_number(value: object) -> TypeGuard[float]:
     """Whether it is a number, and no truth value."""
     return isinstance(value, Real) and not isinstance(value, bool)
-
-
-def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:
-    """Refuse a number of a part of the method that is no number, or out of range.
-
-    With `above` the lower end itself is refused, too.
-    """
-    value = getattr(part, name)
-    if is_number(value) and low <= value <= high and not (above and value == low):
-        return
-    bounds = f"a number {'above' if above else 'from'} {plain(low)}"
-    allowed = bounds + (f" to {plain(high)}" if math.isfinite(high) else "")
-    raise RefusedError(
-        f"{type(part).__name__}.{name}", value, allowed, "give a number in this range"
-    )

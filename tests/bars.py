@@ -26,8 +26,9 @@ def table(forces):
 
 
 def pulled(bar, load, **changes):
-    """The same bar, held at its left end and pulled at its right one."""
+    """The same bar, held at its left end and pulled at its right one, at any instants."""
     load = np.asarray(load, dtype=float)
+    changes = {"pressure": None, **changes}
     ends = {"left": End(displacement=np.zeros_like(load)), "right": End(force=load)}
     return replace(bar, **ends, **changes)
 

@@ -30,11 +30,11 @@ def course(rng, name, size, instants):
     return steps
 
 
-def substructure(matrix, first, force, extra_rows=0):
-    """A body whose every degree of freedom has a row, and the first ones a second."""
+def substructure(matrix, first, force, rows_of_each=1):
+    """A body whose every degree of freedom has a row, or several."""
     size = len(matrix)
-    trace = np.concatenate([np.arange(size), np.arange(extra_rows)])
-    dofs, rows = first[0] + np.arange(size), first[1] + np.arange(size + extra_rows)
+    trace = np.tile(np.arange(size), rows_of_each)
+    dofs, rows = first[0] + np.arange(size), first[1] + np.arange(len(trace))
     return Substructure(Elasticity(matrix, trace, np.ones(len(trace))), dofs, rows, force)
 
 
@@ -112,41 +112,41 @@ def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
 def two_bodies(rng, points, friction, *, load="random", instants=6):
     """A body on another that is clamped at its first two degrees of freedom."""
     size = 2 * points
-    below = substructure(stiffness(rng, size + 2), (0, 0), None, extra_rows=2)
+    below = substructure(stiffness(rng, size + 2), (0, 0), None)
     force = course(rng, load, size, instants)
-    above = substructure(stiffness(rng, size), (size + 2, size + 4), force)
+    above = substructure(stiffness(rng, size), (size + 2, size + 2), force)
     normal, tangent = np.arange(1, size, 2), np.arange(0, size, 2)
     law = contact(
-        normal + size + 4, tangent + size + 4, (normal + 2, tangent + 2), np.zeros(points), friction
+        normal + size + 2, tangent + size + 2, (normal + 2, tangent + 2), np.zeros(points), friction
     )
-    clamp = Dirichlet(size + 2 + np.arange(2), np.zeros((2, instants)))
+    clamp = Dirichlet(np.arange(2), np.zeros((2, instants)))
     return problem([below, above], {"contact 1-2": law, "clamp": clamp}, instants)
 
 
 def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
     """Bodies that rub on their neighbours with a known bound; the ring closes it."""
+    pairs = [(one + 1, one) for one in range(strands - 1)] + [(0, strands - 1)] * ring
+    met = np.bincount(np.ravel(pairs), minlength=strands)
+    first = points * np.concatenate([[0], np.cumsum(met)])
     parts = [
         substructure(
             stiffness(rng, points),
-            (points * one, points * one),
+            (points * one, first[one]),
             rng.normal(size=(points, instants)),
+            rows_of_each=met[one],
         )
         for one in range(strands)
     ]
-    pairs = [(one + 1, one) for one in range(strands - 1)] + [(0, strands - 1)] * ring
-    along = np.arange(points)
-    laws = {
-        f"strand {above}-{below}": Contact(
-            tangential=friction_of(
-                Component(points * above + along, points * below + along),
-                bound=rng.uniform(0.0, 0.5, size=points),
-            ),
+    along, taken, laws = np.arange(points), first[:-1].copy(), {}
+    for above, below in pairs:
+        component = Component(taken[above] + along, taken[below] + along)
+        taken[[above, below]] += points
+        laws[f"strand {above}-{below}"] = Contact(
+            tangential=friction_of(component, bound=rng.uniform(0.0, 0.5, size=points)),
             points=along,
             positions=1.0 * along,
             weights=np.ones(points),
         )
-        for above, below in pairs
-    }
     return problem(parts, laws, instants)
 
 

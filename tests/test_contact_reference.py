@@ -15,8 +15,7 @@ from contact_problems import (
     two_bodies,
 )
 
-from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError, assembled_stiffness, external_force
 from solver.reference.distance import determinate_forces
 from solver.reference.incremental import Interrupted, reference_of
 

@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAYERS = [
     ["arrays"],
     ["refusal"],
+    ["checks"],
     ["laws"],
     ["discrete"],
     ["reference"],

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import (
     MOST_POINTS,
     largest_swing,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import cycles_of, ends_of

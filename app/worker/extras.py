@@ -18,7 +18,7 @@ from solver.definitions import SettingError
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop

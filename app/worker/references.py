@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from solver.discrete import Problem
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference, fingerprint
 from solver.settings import Settings
@@ -40,7 +40,7 @@ class ReferenceCache:
         Interrupted
             As soon as `stop` gives True.
         """
-        if not has_reference(settings):
+        if problem.no_reference or not has_reference(settings):
             return None
         key = fingerprint(problem)
         reference = self._kept.pop(key, None)

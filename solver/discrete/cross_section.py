@@ -88,7 +88,7 @@ class CrossSection:
         if not self.layers:
             return "it has a core alone: add a row for a layer of wires around it"
         for row, (count, diameter, lay, young) in enumerate(self.rows, start=1):
-            if min(count, diameter, young) <= 0.0:
+            if not all(0.0 < size < np.inf for size in (count, diameter, young)):
                 return f"row {row}: give one wire or more, a diameter and a modulus above 0"
             if row > 1 and not LEAST_LAY <= abs(lay) < 90.0:
                 least = plain(LEAST_LAY)

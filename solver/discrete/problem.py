@@ -12,18 +12,32 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices, as_slice
+from solver.checks import (
+    ALIKE,
+    INSTANTS,
+    POSITIVE,
+    Each,
+    Named,
+    Numbers,
+    Part,
+    check,
+)
 from solver.discrete.contacts import ContactGroup
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive
 from solver.discrete.substructure import Substructure
-from solver.laws import Contact, Dirichlet, Interface, Neumann, Perfect
+from solver.laws import Contact, Interface, Strength
+from solver.laws.interface import Given, Glued, IncrementalForm
+from solver.laws.play import PLAIN
+from solver.refusal import RefusedError, Words
 
 if TYPE_CHECKING:
     from solver.discrete.plane_parts import Inside
@@ -36,6 +50,9 @@ class Scales:
     displacement: float
     force: float
     time: float
+
+    def __post_init__(self) -> None:
+        check(self, displacement=POSITIVE, force=POSITIVE, time=POSITIVE)
 
 
 @dataclass(frozen=True)
@@ -65,6 +82,12 @@ class Problem:
     drives
         Loads and motions by the settings that give them, for words alone; none of a problem that
         is no scene's.
+
+    Raises
+    ------
+    RefusedError
+        For rows or degrees of freedom that are not covered, fields of another shape, instants that
+        do not increase, or prescribed displacements that contradict each other.
     """
 
     substructures: tuple[Substructure, ...]
@@ -77,6 +100,54 @@ class Problem:
     carried: Array | None = None
     has_short_joints: bool = False
     drives: tuple[Drive, ...] = ()
+
+    def __post_init__(self) -> None:
+        check(
+            self,
+            substructures=Each(Part(Substructure)),
+            interfaces=Named(Part(Interface)),
+            instants=INSTANTS,
+            scales=Part(Scales),
+            positions=Numbers(((None,), (None, 2))),
+        )
+        field = Numbers(((self.n_dofs, self.n_instants),))
+        check(self, rest=field, carried=field)
+        parts, laws = self.substructures, self.interfaces.values()
+        _check_cover("substructures", "degree of freedom", self.n_dofs, [p.dofs for p in parts])
+        _check_cover("substructures", "row", self.n_rows, [p.rows for p in parts], once=True)
+        _check_cover("interfaces", "row", self.n_rows, [law.rows for law in laws], once=True)
+        self._check_instants()
+        self._check_prescribed()
+
+    def _check_instants(self) -> None:
+        """Refuse what has values for other instants."""
+        counts = {f"interfaces[{name!r}]": law.n_instants for name, law in self.interfaces.items()}
+        for number, part in enumerate(self.substructures):
+            if part.body_force is not None:
+                counts[f"substructures[{number}].body_force"] = part.body_force.shape[1]
+        for name, count in counts.items():
+            if count not in (None, self.n_instants):
+                allowed = f"as many as Problem.instants has, {self.n_instants}"
+                shown = Words(f"of {count} instants")
+                raise RefusedError(f"Problem.{name}", shown, allowed, "give one value an instant")
+
+    def _check_prescribed(self) -> None:
+        """Refuse displacements that differ at one degree of freedom."""
+        given = self.given_displacements
+        if len(given) < 2:
+            return
+        dofs = np.concatenate([self.row_dofs[one.rows] for one in given])
+        values = np.concatenate([one.values for one in given])
+        _, first, place = np.unique(dofs, return_index=True, return_inverse=True)
+        apart = np.abs(values - values[first][place])
+        if float(apart.max(initial=0.0)) > ALIKE * float(np.abs(values).max(initial=0.0)):
+            number = int(apart.max(axis=1).argmax())
+            raise RefusedError(
+                "Problem.interfaces",
+                Words(f"two displacements of degree of freedom {dofs[number]}"),
+                "one displacement of each",
+                "prescribe it once, or both alike",
+            )
 
     def at_rest(self, displacement: Array) -> Array:
         """Displacements as who stands beside sees them, (n_dofs, n_instants), m."""
@@ -129,8 +200,8 @@ class Problem:
     def laws(self) -> list[Interface]:
         """All interfaces, those of one kind that may be treated as one joined: no macro bases."""
         kinds: dict[type[Interface], list[Interface]] = {}
-        for law in self.interfaces.values():
-            if not isinstance(law, Contact):
+        for name, law in self.interfaces.items():
+            if name not in self.rubbing:
                 kinds.setdefault(type(law), []).append(law)
         others = [law for kind, laws in kinds.items() for law in kind.together(laws)]
         return [*(group.law for group in self.contact_groups), *others]
@@ -139,8 +210,10 @@ class Problem:
     def contact_groups(self) -> list[ContactGroup]:
         """Interfaces with friction, those of one law as one."""
         every, alike = list(self.rubbing.values()), dict[Hashable, list[int]]()
-        for number, law in enumerate(every):
-            alike.setdefault(law.kind, []).append(number)
+        for number, (name, law) in enumerate(self.rubbing.items()):
+            # A law of its own may have more than its fields to tell it from others.
+            key = law.kind if name in self.incremental_forms else name
+            alike.setdefault(key, []).append(number)
         return [ContactGroup(every, numbers) for numbers in alike.values()]
 
     @cached_property
@@ -150,14 +223,28 @@ class Problem:
         return {name: slice(*span) for name, span in zip(self.rubbing, pairwise(ends), strict=True)}
 
     @cached_property
-    def given_forces(self) -> list[Neumann]:
-        """Interfaces whose force is prescribed."""
-        return [law for law in self.interfaces.values() if isinstance(law, Neumann)]
+    def incremental_forms(self) -> dict[str, IncrementalForm]:
+        """Forms in which interfaces enter the incremental problem, by name, where they have one."""
+        forms = {name: law.incremental_form() for name, law in self.interfaces.items()}
+        return {name: form for name, form in forms.items() if form is not None}
 
     @cached_property
-    def given_displacements(self) -> list[Dirichlet]:
-        """Interfaces whose displacement is prescribed."""
-        return [law for law in self.interfaces.values() if isinstance(law, Dirichlet)]
+    def own_laws(self) -> dict[str, Interface]:
+        """Interfaces that do not say how they enter the incremental problem, by name."""
+        interfaces, forms = self.interfaces.items(), self.incremental_forms
+        return {name: law for name, law in interfaces if name not in forms}
+
+    @cached_property
+    def given_forces(self) -> list[Given]:
+        """Forces that are prescribed, interface by interface."""
+        forms = self.incremental_forms.values()
+        return [form.force for form in forms if form.force is not None]
+
+    @cached_property
+    def given_displacements(self) -> list[Given]:
+        """Displacements that are prescribed, interface by interface."""
+        forms = self.incremental_forms.values()
+        return [form.displacement for form in forms if form.displacement is not None]
 
     @cached_property
     def is_held(self) -> NDArray[np.bool_]:
@@ -165,24 +252,107 @@ class Problem:
         return np.isin(self.row_dofs, self.prescribed[0])
 
     @cached_property
-    def cuts(self) -> list[tuple[Indices, Indices]]:
+    def cuts(self) -> list[Glued]:
         """Rows of both sides of the glued cuts, interface by interface."""
-        glued = [law for law in self.interfaces.values() if isinstance(law, Perfect)]
-        return [(law.first, law.second) for law in glued]
+        forms = self.incremental_forms.values()
+        return [form.glued for form in forms if form.glued is not None]
 
     @cached_property
-    def rubbing_rows(self) -> tuple[slice | Indices, NDArray[np.bool_]]:
-        """Rows of all components of the bodies above at interfaces with friction.
+    def sought_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
+        """Rows whose forces nothing but a solution tells, and their kinds, none of which is empty.
 
-        And which of them are along the normal of their interface.
+        They are all components of the bodies above at interfaces with friction, those along the
+        normal as one kind and the others as another; and all rows of laws of one's own. Where there
+        are neither, all rows are sought.
         """
-        is_normal = np.zeros(self.n_rows, dtype=bool)
-        laws = self.rubbing.values()
-        for law in laws:
+        kind_of = np.full(self.n_rows, -1)
+        for law in self.own_laws.values():
+            kind_of[law.rows] = 2
+        for law in self.rubbing.values():
+            kind_of[law.tangent.above] = 1
             if law.normal is not None:
-                is_normal[law.normal.component.above] = True
-        rows = np.unique(np.concatenate([one.above for law in laws for one in law.components]))
-        return as_slice(rows), is_normal[rows]
+                kind_of[law.normal.component.above] = 0
+        if np.all(kind_of < 0):
+            kind_of[:] = 2
+        rows = np.flatnonzero(kind_of >= 0)
+        kinds = [kind_of[rows] == kind for kind in range(3)]
+        return as_slice(rows), [kind for kind in kinds if kind.any()]
+
+    @cached_property
+    def no_reference(self) -> str:
+        """Reason that no incremental solver can judge the problem, with a remedy; empty without.
+
+        They read the forms of all laws, one degree of freedom where rows are glued, and the mean of
+        the pairs of a point: whatever else there is they would leave out.
+        """
+        for name, law in self.own_laws.items():
+            return (
+                f'The law {type(law).__name__} of the interface "{name}" does not say how it '
+                f"enters the incremental problem, so that there is no reference: {_OF_ONES_OWN}."
+            )
+        for name, form in self.incremental_forms.items():
+            if form.contact is not None and form.contact is not self.interfaces[name]:
+                return f'The interface "{name}" enters as a contact that it is not: {_OF_ONES_OWN}.'
+        if not self.rubbing:
+            return (
+                "No interface is one of contact, so that there is nothing to solve instant by "
+                f"instant: add a contact, or {_BY_ESTIMATE}."
+            )
+        if not self._is_glued_as_numbered:
+            return (
+                "Rows of one degree of freedom are not glued, or glued rows have two, so that no "
+                f"matrix of the whole structure says what holds: number them alike, or "
+                f"{_BY_ESTIMATE}."
+            )
+        for name, contact in self.rubbing.items():
+            if not self._has_points(contact):
+                return (
+                    f'Pairs of one point of the interface "{name}" differ in their degrees of '
+                    f"freedom, gap or friction: give each a point of its own, or {_BY_ESTIMATE}."
+                )
+        if len(self._strengths) > 1:
+            return (
+                "Slip changes friction otherwise on one interface than on another: give all of "
+                f"them the same strength, or {_BY_ESTIMATE}."
+            )
+        return ""
+
+    @property
+    def _is_glued_as_numbered(self) -> bool:
+        """Whether degrees of freedom are those of the rows, glued as their laws say."""
+        owner = np.empty(self.n_rows, dtype=np.intp)
+        for number, part in enumerate(self.substructures):
+            owner[part.rows] = number
+        # What a substructure has at a degree of freedom, whatever its rows there, is one point.
+        points = np.unique(owner * self.n_dofs + self.row_dofs, return_inverse=True)
+        sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *self.cuts], axis=1)
+        first, second = points[1][sides]
+        size = len(points[0])
+        links = sparse.coo_array((np.ones(len(first)), (first, second)), shape=(size, size))
+        n_glued, glued = connected_components(links, directed=False)
+        dofs = points[0] % self.n_dofs
+        n_pairs = len(np.unique(glued * self.n_dofs + dofs))
+        return bool(n_pairs == n_glued == len(np.unique(dofs)))
+
+    def _has_points(self, law: Contact) -> bool:
+        """Whether all pairs of each point of a contact stand for one and the same."""
+        if len(law.points) == len(law.positions):
+            return True
+        sides = [rows for one in law.components for rows in one.sides]
+        fields: list[NDArray[Any]] = [self.row_dofs[rows] for rows in sides]
+        fields.append(law.tangential.friction)
+        if law.normal is not None:
+            fields.append(law.normal.gap)
+        _, first = np.unique(law.points, return_index=True)
+        same = first[law.points]
+        return all(np.array_equal(field, field[same]) for field in fields)
+
+    @property
+    def _strengths(self) -> set[Strength]:
+        """Factors that slip makes of friction, of all interfaces that have any."""
+        laws = [law.tangential for law in self.rubbing.values()]
+        rubs = [law for law in laws if law.bound.any() or law.friction.any()]
+        return {law.strength or PLAIN for law in rubs}
 
     @cached_property
     def friction(self) -> Contact:
@@ -264,7 +434,8 @@ class Problem:
             for law in self.rubbing.values()
             for component in law.components
         ]
-        return sparse.csr_array(sparse.vstack(blocks))
+        nothing = sparse.csr_array((0, self.n_rows))
+        return sparse.csr_array(sparse.vstack([nothing, *blocks]))
 
     @cached_property
     def contact_places(self) -> dict[str, tuple[slice, ...]]:
@@ -302,6 +473,16 @@ class Problem:
         return settled
 
     @cached_property
+    def is_chain(self) -> bool:
+        """Whether every degree of freedom is tied to the one before and the one behind alone."""
+        operators = {id(part.elasticity): part.elasticity for part in self.substructures}
+        for operator in operators.values():
+            entries = sparse.coo_array(operator.stiffness)
+            if np.abs(entries.coords[0] - entries.coords[1]).max(initial=0) > 1:
+                return False
+        return all(np.all(np.diff(part.dofs) == 1) for part in self.substructures)
+
+    @cached_property
     def motions(self) -> Array | None:
         """Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent.
 
@@ -326,16 +507,40 @@ class Problem:
         """
         held: dict[str, Indices] = {}
         before = np.zeros(0, dtype=np.intp)
-        for name, law in self.interfaces.items():
-            if isinstance(law, Dirichlet):
-                held[name] = np.setdiff1d(self.row_dofs[law.rows], before)
+        for name, form in self.incremental_forms.items():
+            if form.displacement is not None:
+                held[name] = np.setdiff1d(self.row_dofs[form.displacement.rows], before)
                 before = np.concatenate([before, held[name]])
         return held
 
 
+def _check_cover(
+    owners: str, what: str, count: int, parts: list[Indices], *, once: bool = False
+) -> None:
+    """Refuse parts that do not have all of so many numbers, or one of them more than once."""
+    numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
+    largest = int(numbers.max(initial=-1))
+    times = np.bincount(numbers, minlength=count)
+    wrong = (times != 1) if once else (times == 0)
+    if largest < count and not wrong.any():
+        return
+    place = largest if largest >= count else int(np.argmax(wrong))
+    allowed = f"each {what} from 0 to {count - 1} {'once' if once else 'at least once'}"
+    shown = Words(f"{what} {place}, {times[place]} times")
+    raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
+
+
 def nothing_acts(problem: Problem) -> bool:
-    """Whether all that is given is zero: loads, displacements, overlaps; so is the answer."""
-    if any(law.acts for law in problem.interfaces.values()):
+    """Whether all that is given is zero: loads, displacements, overlaps; so is the answer.
+
+    Of a law that does not say how it enters the incremental problem nobody knows.
+    """
+    if problem.own_laws or any(law.is_moved for law in problem.rubbing.values()):
         return False
-    forces = (part.body_force for part in problem.substructures if part.body_force is not None)
-    return not any(force.any() for force in forces)
+    fields = [given.values for given in problem.given_forces + problem.given_displacements]
+    fields += [part.body_force for part in problem.substructures if part.body_force is not None]
+    return not any(field.any() for field in fields)
+
+
+_BY_ESTIMATE = "judge the run by its estimate alone"
+_OF_ONES_OWN = f"define its incremental_form, or {_BY_ESTIMATE}"

@@ -9,12 +9,26 @@ from typing import Literal
 import numpy as np
 
 from solver.arrays import Array
+from solver.checks import (
+    COUNT,
+    INSTANTS,
+    NON_NEGATIVE,
+    POSITIVE,
+    Count,
+    Each,
+    Either,
+    Number,
+    Numbers,
+    Part,
+    check,
+    check_value,
+)
 from solver.discrete.cut_rods import SIDES, CutRods
 from solver.discrete.probes import Probe, Reaction, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
-from solver.refusal import RefusedError, check_range
+from solver.refusal import RefusedError
 
 SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Where a body force that changes along the rods is shown, and the pressure where anything rubs."""
@@ -39,7 +53,7 @@ class End:
     Raises
     ------
     RefusedError
-        For a force and a displacement, or a spring that is not stiffer than zero.
+        For a force and a displacement, a spring that is not stiffer than zero, or no numbers.
     """
 
     force: Array | None = None
@@ -47,7 +61,9 @@ class End:
     spring: float = np.inf
 
     def __post_init__(self) -> None:
-        check_range(self, "spring", 0.0, np.inf, above=True)
+        over_time = Numbers(((None,),))
+        spring = Number(0.0, above=True, endless=True)
+        check(self, spring=spring, force=over_time, displacement=over_time)
         if self.force is not None and self.displacement is not None:
             raise RefusedError(
                 "End.force", "given, with a displacement", "either of them", "leave out the other"
@@ -107,8 +123,8 @@ class Rods:
     Raises
     ------
     RefusedError
-        For a number that is not above zero, a field of another shape, a bound below zero, or a
-        settlement under several rods.
+        For a number that is not above zero or none, a field of another shape, instants that do not
+        increase, a bound below zero, a settlement under several rods, or a break of a single one.
     """
 
     length: float
@@ -131,32 +147,49 @@ class Rods:
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
 
     def __post_init__(self) -> None:
-        for name in ("length", "stiffness", "duration"):
-            check_range(self, name, 0.0, np.inf, above=True)
-        nodes, instants = self.elements + 1, len(self.instants)
-        shapes: dict[str, list[tuple[int, ...]]] = {
-            "bound": [(nodes,), (nodes, instants)],
-            "body_force": [(instants,), (nodes, instants)],
-            "strain": [(self.elements, instants)],
-            "settlement": [(nodes, instants)],
-        }
-        for name, allowed in shapes.items():
-            values: Array | None = getattr(self, name)
-            if values is not None and values.shape not in allowed:
-                raise RefusedError(
-                    f"Rods.{name}",
-                    list(values.shape),
-                    "shape " + " or ".join(str(list(shape)) for shape in allowed),
-                    "space comes first, then time",
-                )
-        if self.bound.min() < 0.0:
-            raise RefusedError(
-                "Rods.bound", float(self.bound.min()), "0 or more", "give no bound below zero"
-            )
+        check(
+            self,
+            length=POSITIVE,
+            stiffness=POSITIVE,
+            elements=COUNT,
+            wires=COUNT,
+            instants=INSTANTS,
+            duration=POSITIVE,
+            left=Part(End),
+            right=Part(End),
+            friction_law=Part(FrictionLaw),
+        )
+        self._check_fields()
         if self.wires > 1 and self.settlement is not None:
             raise RefusedError(
                 "Rods.settlement", self.wires, "a single rod", "several rods rub on each other"
             )
+
+    def _check_fields(self) -> None:
+        """Refuse what does not fit the numbers of elements, rods and instants."""
+        nodes, instants = self.elements + 1, len(self.instants)
+        over_time = Numbers(((instants,),))
+        contacts = max(self.wires - 1, 1)
+        check(
+            self,
+            substructures=Count(1, self.elements),
+            bound=Numbers(((nodes,), (nodes, instants)), low=0.0),
+            body_force=Numbers(((instants,), (nodes, instants))),
+            strain=Numbers(((self.elements, instants),)),
+            settlement=Numbers(((nodes, instants),)),
+            factors=Either(NON_NEGATIVE, Numbers(((contacts,),), low=0.0)),
+            section=Numbers(((self.elements,),), low=0.0, above=True),
+            pressure=over_time,
+            broken=Each(COUNT, 2),
+        )
+        for side, end in self.ends.items():
+            for what, values in (("force", end.force), ("displacement", end.displacement)):
+                if values is not None:
+                    check_value(f"Rods.{side}.{what}", values, over_time)
+        if self.broken is not None:
+            check_value("Rods.wires", self.wires, Count(2))
+            check_value("Rods.broken[0]", self.broken[0], Count(1, self.wires))
+            check_value("Rods.broken[1]", self.broken[1], Count(1, self.elements - 1))
 
     @property
     def nodes(self) -> Array:

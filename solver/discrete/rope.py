@@ -20,6 +20,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.checks import (
+    ANY_NUMBER,
+    COUNT,
+    FLAG,
+    INSTANTS,
+    NON_NEGATIVE,
+    POSITIVE,
+    Count,
+    Each,
+    Either,
+    Numbers,
+    Part,
+    check,
+    check_value,
+)
 from solver.discrete.cross_section import CrossSection, WireLayer
 from solver.discrete.cut_rods import CutRods
 from solver.discrete.probes import Probe, constant
@@ -62,6 +77,22 @@ class RopeWire:
     curvature: Array
     tension: Array
     stands_for: int = 1
+
+    def __post_init__(self) -> None:
+        over_time = Numbers(((None,),))
+        check(
+            self,
+            layer=Count(0),
+            number=Count(0),
+            made=Part(WireLayer),
+            radius=POSITIVE,
+            start=ANY_NUMBER,
+            length=POSITIVE,
+            bound=Either(NON_NEGATIVE, Numbers(over_time.shapes, low=0.0)),
+            curvature=Numbers(((None, None),)),
+            tension=over_time,
+            stands_for=COUNT,
+        )
 
     @property
     def name(self) -> str:
@@ -139,6 +170,11 @@ class Rope:
         same all along, and the wires of a layer differ by their phase alone.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
+
+    Raises
+    ------
+    RefusedError
+        For no wires, fields of another shape, or instants that do not increase.
     """
 
     wires: Sequence[RopeWire]
@@ -150,6 +186,28 @@ class Rope:
     instants: Array
     duration: float
     friction_law: FrictionLaw = field(default_factory=FrictionLaw)
+
+    def __post_init__(self) -> None:
+        check(
+            self,
+            wires=Each(Part(RopeWire)),
+            is_clamped=FLAG,
+            section=Part(CrossSection),
+            instants=INSTANTS,
+            duration=POSITIVE,
+            friction_law=Part(FrictionLaw),
+        )
+        instants = len(self.instants)
+        over_time = Numbers(((instants,),))
+        elements = Count(1, self.elements)
+        check(self, substructures=elements, tension=over_time, curvature=over_time)
+        along = Numbers(((self.elements + 1, instants),))
+        bound = Either(NON_NEGATIVE, over_time)
+        for number, wire in enumerate(self.wires):
+            name = f"Rope.wires[{number}]"
+            check_value(f"{name}.curvature", wire.curvature, along)
+            check_value(f"{name}.tension", wire.tension, over_time)
+            check_value(f"{name}.bound", wire.bound, bound)
 
     @property
     def elements(self) -> int:

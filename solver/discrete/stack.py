@@ -10,15 +10,34 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices, without_residue
+from solver.checks import (
+    ANY_NUMBER,
+    FLAG,
+    INSTANTS,
+    NON_NEGATIVE,
+    POSITIVE,
+    Choice,
+    Count,
+    Each,
+    Either,
+    Named,
+    Number,
+    Numbers,
+    Part,
+    check,
+    check_value,
+)
 from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import problem_of
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
 from solver.laws import FrictionLaw
-from solver.refusal import RefusedError, check_range
+from solver.refusal import RefusedError
 
 SIDES = "left", "right", "top", "bottom"
+MOST_POISSON = 0.4999
+"""Poisson's ratio from which on a body keeps its volume to the digits of its strains."""
 DRIVEN = "top", "left", "right"
 """Sides of a body on a support, in the order in which one looks for what drives it."""
 
@@ -39,6 +58,10 @@ class Given:
     prescribed: bool
     mean: Array
     slope: Array | float = 0.0
+
+    def __post_init__(self) -> None:
+        over_time = Numbers(((None,),))
+        check(self, prescribed=FLAG, mean=over_time, slope=Either(ANY_NUMBER, over_time))
 
     @property
     def is_zero(self) -> bool:
@@ -78,7 +101,9 @@ class Support:
     is_image: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse an image on which what presses would be an unknown."""
+        along = Numbers(((None,),))
+        friction = Either(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
+        check(self, gap=along, friction=friction, bound=Numbers(((None, None),), low=0.0))
         if self.is_image and self.bound is None:
             raise RefusedError(
                 "Support.bound",
@@ -97,6 +122,9 @@ class Spring:
 
     slack: float
     stiffness: float
+
+    def __post_init__(self) -> None:
+        check(self, slack=NON_NEGATIVE, stiffness=POSITIVE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +174,8 @@ class Stack:
     Raises
     ------
     RefusedError
-        For a number that is not above zero, or a side that there is not.
+        For a number that is not above zero or none, a field of another shape, instants that do not
+        increase, bodies that overlap, or a side that there is not.
     """
 
     length: float
@@ -171,14 +200,77 @@ class Stack:
     groups: Indices | None = None
 
     def __post_init__(self) -> None:
-        """Leave free what is not given."""
-        for name in ("length", "height", "young", "duration"):
-            check_range(self, name, 0.0, np.inf, above=True)
-        for name in set(self.sides) - set(SIDES):
-            raise RefusedError("Stack.sides", name, ", ".join(SIDES), "correct the name")
+        """Check all that is given, and leave free what is not."""
+        check(
+            self,
+            length=POSITIVE,
+            height=POSITIVE,
+            elements=Each(Count(1), 2),
+            substructures=Each(Count(1), 2),
+            young=POSITIVE,
+            state=Choice(("strain", "stress")),
+            poisson=Number(-1.0, MOST_POISSON, above=True),
+            macro_degree=Count(0),
+            instants=INSTANTS,
+            duration=POSITIVE,
+            support=Part(Support),
+            sides=Named(Part(Side), SIDES),
+            spring=Part(Spring),
+            friction_law=Part(FrictionLaw),
+            bricks=Each(Part(Brick)),
+        )
+        self._check_bodies()
+        self._check_fields()
         free = Given(False, np.zeros_like(self.instants))
         others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
         object.__setattr__(self, "sides", {**self.sides, **others})
+
+    def _check_bodies(self) -> None:
+        """Refuse parts without elements, and bodies that overlap or lie beside the grid."""
+        for axis, elements in enumerate(self.elements):
+            parts = self.substructures[axis]
+            check_value(f"Stack.substructures[{axis}]", parts, Count(1, elements))
+        for number, brick in enumerate(self.rectangles):
+            check_value(f"Stack.bricks[{number}]", brick[:2], Each(Count(0), 2))
+            check_value(f"Stack.bricks[{number}]", brick[2:], Each(Count(1), 2))
+        taken = np.zeros(self.grid, dtype=bool)
+        for number, (x, y, columns, rows) in enumerate(self.rectangles):
+            own = taken[x : x + columns, y : y + rows]
+            if own.any():
+                raise RefusedError(
+                    f"Stack.bricks[{number}]",
+                    [x, y, columns, rows],
+                    "bodies that lie beside each other",
+                    "it overlaps one before, move it",
+                )
+            own[:] = True
+
+    def _check_fields(self) -> None:
+        """Refuse what does not fit the numbers of bodies, nodes and instants."""
+        instants, bodies, nodes = len(self.instants), len(self.rectangles), self.grid[0] + 1
+        over_time, along = Numbers(((instants,),)), Numbers(((nodes,),))
+        joints = (bodies - 1, 1), (bodies - 1, nodes)
+        check(
+            self,
+            friction=Either(NON_NEGATIVE, Numbers(((nodes,), *joints), low=0.0)),
+            stiffness=Numbers(((bodies,),), low=0.0, above=True),
+            groups=Numbers(((bodies,),), whole=True),
+            body_force=Numbers(((2, instants),)),
+            tilt=over_time,
+        )
+        for side, components in self.sides.items():
+            for component, given in zip("xy", components, strict=True):
+                where = f"Stack.sides[{side!r}].{component}"
+                check_value(where, given, Part(Given))
+                check_value(f"{where}.mean", given.mean, over_time)
+                check_value(f"{where}.slope", given.slope, Either(ANY_NUMBER, over_time))
+        support = self.support
+        if support is not None:
+            check_value("Stack.support.gap", support.gap, along)
+            check_value("Stack.support.friction", support.friction, Either(NON_NEGATIVE, along))
+            if support.bound is not None:
+                by_time = Numbers(((nodes, instants),), low=0.0)
+                check_value("Stack.support.bound", support.bound, by_time)
 
     @cached_property
     def rectangles(self) -> Sequence[Brick]:

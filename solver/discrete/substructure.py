@@ -9,6 +9,8 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.checks import ALIKE, Numbers, Part, check, check_value
+from solver.refusal import RefusedError, Words
 
 
 @dataclass(frozen=True)
@@ -25,11 +27,49 @@ class Elasticity:
         meet at a point share a degree of freedom.
     direction
         The paper's search direction k of each boundary row, shape (n_boundary,), positive.
+
+    Raises
+    ------
+    RefusedError
+        For a stiffness that is not symmetric, or fields of another shape.
     """
 
     stiffness: sparse.csr_array | Array
     trace: Indices
     direction: Array
+
+    def __post_init__(self) -> None:
+        check(self, stiffness=Part(sparse.sparray, np.ndarray))
+        matrix = self.stiffness
+        entries = matrix.data if isinstance(matrix, sparse.csr_array) else matrix
+        check_value("Elasticity.stiffness", entries, Numbers(((None,) * entries.ndim,)))
+        if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
+            shown = Words(f"of shape {list(matrix.shape)}")
+            raise RefusedError("Elasticity.stiffness", shown, "a square matrix", "correct it")
+        if not self._is_symmetric:
+            raise RefusedError(
+                "Elasticity.stiffness",
+                Words("not symmetric"),
+                "that of an elastic body, which is symmetric",
+                "take its symmetric part, if it is so up to rounding",
+            )
+        check(
+            self,
+            trace=Numbers(((None,),), low=0, high=matrix.shape[0] - 1, whole=True),
+            direction=Numbers(((len(self.trace),),), low=0.0, above=True),
+        )
+
+    @property
+    def _is_symmetric(self) -> bool:
+        """Whether the work of one displacement on the forces of another is that the other way.
+
+        Two displacements that no structure has for its own tell it for all, in two products.
+        """
+        numbers = np.arange(self.stiffness.shape[0])
+        one, other = np.cos(numbers), np.sin(numbers)
+        there = self.stiffness @ other
+        apart = float(one @ there - other @ (self.stiffness @ one))
+        return abs(apart) <= ALIKE * float(np.abs(one) @ np.abs(there))
 
     @cached_property
     def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:
@@ -59,6 +99,11 @@ class Substructure:
         Axial force of each element of a rod, scaled, that would strain it as much as it is strained
         without any, shape (n_elements, n_instants); None where that is nothing. Its nodal forces
         are among `body_force`.
+
+    Raises
+    ------
+    RefusedError
+        For fields that do not fit its elasticity.
     """
 
     elasticity: Elasticity
@@ -66,6 +111,19 @@ class Substructure:
     rows: Indices
     body_force: Array | None
     free_force: Array | None = None
+
+    def __post_init__(self) -> None:
+        check(self, elasticity=Part(Elasticity))
+        n_dofs, n_rows = self.elasticity.stiffness.shape[0], len(self.elasticity.trace)
+        check(
+            self,
+            dofs=Numbers(((n_dofs,),), low=0, whole=True),
+            rows=Numbers(((n_rows,),), low=0, whole=True),
+            free_force=Numbers(((None, None),)),
+        )
+        if self.body_force is not None:
+            fits = Numbers(((n_dofs, None),))
+            check_value("Substructure.body_force", self.body_force, fits)
 
 
 def tributary(elements: int) -> Array:

@@ -142,6 +142,8 @@ def _expected_share(problem: Problem) -> float:
     """The share of jumps that may move at an instant before any iterate tells it."""
     if problem.opens:
         return MOVING
+    if not problem.rubbing:
+        return 0.0
     return min(MOVING, NEXT * sliding_share(problem) / len(problem.rubbing))
 
 
@@ -168,7 +170,8 @@ def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool)
     `with_reference` says whether the incremental reference is solved before, where there is one.
     """
     costs, n_jumps = costs_of(problem), jumps_in(problem)
-    has_solver = rubs_on_supports(problem) or n_jumps <= MOST_JUMPS
+    is_small = rubs_on_supports(problem) or n_jumps <= MOST_JUMPS
+    has_solver = is_small and not problem.no_reference
     incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
     # Without cuts the coarse problem carries loads through all bodies, however many there are.
     coupled = len(problem.rubbing) - 1 if problem.cuts and not rubs_on_supports(problem) else 0

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array, read_only
+from solver.checks import POSITIVE, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 from solver.laws import Bodies
-from solver.refusal import check_range
 
 LOOK = 3
 """The iteration that tells whether bodies slip on each other anywhere. In the second what will
@@ -42,7 +42,7 @@ class SearchDirection(ABC):
     scale: float = 1.0
 
     def __post_init__(self) -> None:
-        check_range(self, "scale", 0.0, np.inf, above=True)
+        check(self, scale=POSITIVE)
 
     @abstractmethod
     def rule(self, problem: Problem) -> Array:
@@ -120,6 +120,8 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     load paths). Where friction softens it is more than the slope by which it falls.
     """
     laws = list(problem.rubbing.values())
+    if not laws:
+        return problem.direction
     around = laws[0].around
     k = problem.direction * around.elsewhere
     for first, second in problem.cuts:

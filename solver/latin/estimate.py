@@ -15,7 +15,7 @@ from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
 from solver.latin.status import Status, collapses, lost_jump
 from solver.latin.status_step import Certificate, states_of, status_step
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import LEAST_SHARE, VANISHING
 from solver.reference.incremental import Incremental, incremental_solver
 from solver.reference.solution import Interrupted
@@ -55,9 +55,9 @@ class ErrorEstimate:
 
     With `needs_proof` a certified solution alone counts, whatever it costs: bases that are too
     small converge to something else, which no change shows. The `certificate` is None until it is
-    known. A status step is given up at the `deadline`, by `time.perf_counter`, and none begins that
-    would take longer. The `ending` is that of a run whose last status step came to where no
-    equilibrium goes on.
+    known; for ever, where the problem has no reference. A status step is given up at the
+    `deadline`, by `time.perf_counter`, and none begins that would take longer. The `ending` is that
+    of a run whose last status step came to where no equilibrium goes on.
     """
 
     def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
@@ -80,7 +80,7 @@ class ErrorEstimate:
             # A run may begin with its solution, so that no change shows it.
             is_near = self._changes.last.whole <= SETTLED or number >= LONG
             is_near |= number == 1 and iterate.indicator <= SOLVED
-            is_due = number >= self._next_trial
+            is_due = number >= self._next_trial and not iterate.problem.no_reference
             if is_due and (is_near or number >= self._costs_of(iterate).small_from):
                 self.try_step(iterate, least=WAIT if ends_soon else 0.0)
         if self.certificate is None:
@@ -105,8 +105,10 @@ class ErrorEstimate:
 
         It may cost `patience` times more than usual, and in any case `least` seconds.
         """
+        if iterate.problem.no_reference or not self._has_solver:
+            return False
         costs = self._costs_of(iterate)
-        if not self._has_solver or costs.step > self._left():
+        if costs.step > self._left():
             return False
         return self.needs_proof or costs.afford(patience * iterate.number, least)
 
@@ -151,14 +153,17 @@ class ErrorEstimate:
 
 
 class Change(NamedTuple):
-    """Relative change of friction or of pressure, whichever is larger, and of both as one field."""
+    """Relative changes of the forces that are sought: of one kind, the largest, and of all.
+
+    Kinds are friction, pressure, and what laws of one's own carry.
+    """
 
     worst: float = math.nan
     whole: float = math.nan
 
 
 class _Past(NamedTuple):
-    """Forces on the rows that rub, (n_instants, n_rows), and how they had changed by then."""
+    """Forces on `Problem.sought_rows`, (n_instants, n_rows), and how they had changed by then."""
 
     number: int
     force: Array
@@ -175,7 +180,7 @@ class ForceChanges:
 
     def left(self, iterate: Iterate) -> Change:
         """The relative error that is left, if changes go on to fall as they did, or NaN."""
-        number, (rows, _) = iterate.number, iterate.problem.rubbing_rows
+        number, (rows, _) = iterate.number, iterate.problem.sought_rows
         outgoing, incoming = iterate.outgoing.T[:, rows], iterate.incoming.T[:, rows]
         force = np.ascontiguousarray(outgoing - incoming)
         force *= 0.5 * iterate.k[rows]
@@ -210,7 +215,7 @@ def _left(last: float, before: float, earlier: float) -> float:
 
 def _change(problem: Problem, change: Array, force: Array, least: float) -> Change:
     """A change relative to what `solver.reference.distance` divides an error by."""
-    _, normal = problem.rubbing_rows
+    _, kinds = problem.sought_rows
     changes, squares = (np.einsum("ij,ij->j", field, field) for field in (change, force))
 
     def share(kind: Flags | slice, least: float) -> float:
@@ -218,4 +223,5 @@ def _change(problem: Problem, change: Array, force: Array, least: float) -> Chan
         return math.sqrt(float(changes[kind].sum())) / size if size > 0.0 else 0.0
 
     hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
-    return Change(max(share(normal, hidden), share(~normal, hidden)), share(slice(None), least))
+    worst = max((share(kind, hidden) for kind in kinds), default=0.0)
+    return Change(worst, share(slice(None), least))

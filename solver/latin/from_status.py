@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, read_only
+from solver.checks import Part, check
 from solver.discrete.problem import Problem
 from solver.latin.directions import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
@@ -44,6 +45,9 @@ class FromStatus:
 
     first: SearchDirection = Auto()
 
+    def __post_init__(self) -> None:
+        check(self, first=Part(SearchDirection))
+
     @property
     def scale(self) -> float:
         """Factor on k of all rows."""
@@ -54,8 +58,8 @@ class FromStatus:
         return self.first.of(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """As `SearchDirection.begin`."""
-        return UpdateProgress("first", self.of(problem))
+        """As `SearchDirection.begin`; without contact there is no status to follow."""
+        return UpdateProgress("first" if problem.rubbing else "returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """Progress by what sticks and slips in the local stage, or by what an update has made."""

@@ -89,7 +89,7 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
     to the same standard. Zero if and only if all laws hold, up to the rounding of the fields.
     """
     noise = _rounding(displacement, force)
-    groups = problem.contact_groups
+    groups = _known_groups(problem)
     behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]
     energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
         float(behaviour.dissipated.sum()) for behaviour in behaviours
@@ -97,12 +97,18 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
     allowance = sum(float(behaviour.bound.sum()) for behaviour in behaviours)
     allowance = allowance or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
-    worst = max(map(partial(_worst, mean_slip=mean_slip), groups, behaviours))
+    worst = max(map(partial(_worst, mean_slip=mean_slip), groups, behaviours), default=0.0)
     # Against the mean energy per interface, so that many that hold do not hide one that does not.
     total = ratio(len(problem.rubbing) * worst, energy) + _gap_of_bonds(
         problem, displacement, force, noise
     )
     return total / _share_of_friction(problem, force)
+
+
+def _known_groups(problem: Problem) -> list[ContactGroup]:
+    """Groups of contacts whose laws are those that `Contact.behaviour` says."""
+    groups = problem.contact_groups
+    return [group for group in groups if group.law.incremental_form() is not None]
 
 
 def _worst(group: ContactGroup, behaviour: Behaviour, mean_slip: float) -> float:
@@ -137,13 +143,14 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     """Share of the largest force that friction, or contact that may open, can carry; at most 1."""
     largest = float(np.abs(force).max())
     laws = [group.law for group in problem.contact_groups]
-    carried = max(law.carried(force) for law in laws)
+    carried = max((law.carried(force) for law in laws), default=0.0)
     capacity = max(sum(law.capacity(problem.is_held) for law in laws), SMALL_CONTACT * carried)
     return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0
 
 
 def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: float) -> float:
-    gaps_of_laws = [law.gaps(displacement, force, noise) for law in problem.laws]
+    k = problem.direction
+    gaps_of_laws = [law.gaps(displacement, force, noise, k) for law in problem.laws]
     apart = sum(gaps.displacement for gaps in gaps_of_laws)
     unbalanced = sum(gaps.force for gaps in gaps_of_laws)
     return float(

@@ -179,8 +179,9 @@ class Iterate:
 
         Points of all interfaces with friction, one interface after the other.
         """
-        places = self.problem.contact_places.values()
-        return np.concatenate([self.contact_force[own[-1]] for own in places])
+        places = [own[-1] for own in self.problem.contact_places.values()]
+        nothing = np.zeros((0, self.problem.n_instants))
+        return np.concatenate([nothing, *(self.contact_force[own] for own in places)])
 
     def contact(self, name: str) -> ContactFields:
         """One interface with friction: forces of the linear stage, status of the local one."""

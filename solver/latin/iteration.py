@@ -9,6 +9,7 @@ from itertools import count
 from numpy.linalg import LinAlgError
 
 from solver.arrays import read_only
+from solver.checks import Numbers, Part, check_value
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
 from solver.latin.blocks import Blocks, one_blas_thread
@@ -41,6 +42,12 @@ def iterations(
     ------
     Snapshots, one per iteration; their seconds stand still while the consumer has one.
     """
+    check_value("problem", problem, Part(Problem))
+    check_value("latin", latin, Part(Latin))
+    if start is not None:
+        shape = problem.n_rows, problem.n_instants
+        check_value("start", start, Part(Checkpoint))
+        check_value("start.outgoing", start.outgoing, Numbers((shape,)))
     began, seconds = time.perf_counter(), start.seconds if start else 0.0
     with one_blas_thread:
         iteration = Iteration(problem, latin, start)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import NoneType
 
+from solver.checks import FLAG, Count, Number, Part, check
 from solver.latin.anderson import Anderson
 from solver.latin.directions import Auto, SearchDirection
 from solver.latin.from_status import FromStatus
@@ -12,7 +14,6 @@ from solver.latin.pgd import PGD
 from solver.latin.start import Nested
 from solver.latin.status_step import StatusStep
 from solver.latin.stop import Stop
-from solver.refusal import check_range
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Latin:
     Raises
     ------
     RefusedError
-        For a number out of its range.
+        For a number out of its range, or what is no such part.
 
     Examples
     --------
@@ -63,5 +64,15 @@ class Latin:
     threads: int = 1
 
     def __post_init__(self) -> None:
-        check_range(self, "relaxation", 0.0, 1.0, above=True)
-        check_range(self, "threads", 1, 64)
+        check(
+            self,
+            direction=Part(SearchDirection, FromStatus),
+            linear=Part(Full, PGD),
+            multiscale=FLAG,
+            relaxation=Number(0.0, 1.0, above=True),
+            acceleration=Part(Anderson, NoneType),
+            start=Part(Nested),
+            finish=Part(StatusStep, NoneType),
+            stop=Part(Stop),
+            threads=Count(1, 64),
+        )

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array
+from solver.checks import Count, Number, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear_stage import Group
 from solver.reduction.basis import SeparatedBasis, SharedBasis, nearest_mode
-from solver.refusal import check_range
 
 SHARE_EVERY = 10
 """Iterations between two looks for bases that can be shared."""
@@ -51,10 +51,8 @@ class PGD:
     sharing: float = 1e-5
 
     def __post_init__(self) -> None:
-        for name in ("modes", "pairs"):
-            check_range(self, name, 1, 1000)
-        for name in ("tolerance", "sharing"):
-            check_range(self, name, 0.0, 1.0)
+        count, share = Count(1, 1000), Number(0.0, 1.0)
+        check(self, modes=count, tolerance=share, pairs=count, sharing=share)
 
     def group(self, problem: Problem, numbers: list[int], k: Array) -> PGDGroup:
         """Group of identical substructures with the same k, shape (n_rows,)."""

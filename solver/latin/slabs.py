@@ -72,6 +72,14 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
         raise RefusedError(
             "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
         )
+    for name, law in problem.own_laws.items():
+        if law.remembers:
+            raise RefusedError(
+                f"the law of {name}",
+                type(law).__name__,
+                "laws that remember nothing but where sliders stand",
+                "solve the whole interval at once",
+            )
     instants = slice(0, min(1 + length, problem.n_instants))
     start, nested, stop = None, latin.start, latin.stop
     if nested is not None:

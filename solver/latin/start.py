@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.checks import FUNCTION, check
 from solver.discrete.problem import Problem
 from solver.latin.certified import balance_of_rows, known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import incremental_solver
 from solver.reference.solution import Interrupted, Reference
 
@@ -36,6 +37,9 @@ class Nested:
     """
 
     coarser: Callable[[], Iterable[Problem]]
+
+    def __post_init__(self) -> None:
+        check(self, coarser=FUNCTION)
 
     def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
         """Where a problem starts with a search direction: from the finest mesh that has a solution.

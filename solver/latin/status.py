@@ -73,6 +73,10 @@ EXPECTED = Status(
     "Accurate enough by estimate: the contact force hardly changes any more. Proof by a status "
     "step would take half as long again, or longer.",
 )
+UNPROVABLE = Status(
+    Ending.CONVERGED,
+    "Accurate enough by estimate: the contact force hardly changes any more. Nothing can prove it.",
+)
 BELOW = Status(
     Ending.CONVERGED,
     "The LATIN indicator is below its tolerance, and the k-free indicator agrees.",
@@ -165,6 +169,16 @@ def certified(
             message += _FOUND.format(before, f"{away:g}")
         message += f" {advice}" * bool(advice)
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
+
+
+def unprovable(status: Status, problem: Problem, latin: Latin) -> Status:
+    """Status that also says why there is no proof, where none can be had."""
+    if not problem.no_reference:
+        return status
+    advice = f"{status.advice} {problem.no_reference}"
+    if isinstance(latin.linear, PGD):
+        advice += " On separated bases no estimate counts: set linear to Full()."
+    return replace(status, advice=advice)
 
 
 def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:

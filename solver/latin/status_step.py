@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.checks import FLAG, check
 from solver.discrete.problem import Problem
 from solver.latin.indicators import contact_status
 from solver.latin.iterate import Iterate
@@ -59,6 +60,9 @@ class StatusStep:
     """
 
     at_once: bool = True
+
+    def __post_init__(self) -> None:
+        check(self, at_once=FLAG)
 
 
 def status_step(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solver.checks import Number, check
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
 from solver.latin.estimate import LAST, ErrorEstimate
@@ -18,6 +19,7 @@ from solver.latin.status import (
     BELOW,
     EXPECTED,
     PROVEN,
+    UNPROVABLE,
     Decision,
     Ending,
     Status,
@@ -25,9 +27,9 @@ from solver.latin.status import (
     diverged,
     exhausted,
     stalled,
+    unprovable,
     with_jump,
 )
-from solver.refusal import check_range
 
 if TYPE_CHECKING:
     from solver.latin.method import Latin
@@ -83,12 +85,15 @@ class Stop:
     sufficient: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("accuracy", "tolerance"):
-            if getattr(self, name) != math.inf:
-                check_range(self, name, 0.0, 1.0, above=True)
-        check_range(self, "iterations", 1, math.inf)
-        check_range(self, "seconds", 0.0, math.inf, above=True)
-        check_range(self, "sufficient", 0.0, 1.0)
+        share = Number(0.0, 1.0, above=True, endless=True)
+        check(
+            self,
+            accuracy=share,
+            tolerance=share,
+            iterations=Number(1, endless=True),
+            seconds=Number(0.0, above=True, endless=True),
+            sufficient=Number(0.0, 1.0),
+        )
 
 
 class StopState:
@@ -164,7 +169,10 @@ class StopState:
             return error, estimate.ending
         if status is None and is_last:
             status = exhausted(self._latin, iterate, is_proven=estimate.is_proven)
-        return error, status and with_jump(status, iterate.problem, estimate.certificate)
+        if status is not None:
+            status = with_jump(status, iterate.problem, estimate.certificate)
+            status = unprovable(status, iterate.problem, self._latin)
+        return error, status
 
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
         """Status of a run that is accurate enough, at a low indicator, as far as both are asked."""
@@ -185,7 +193,9 @@ class StopState:
             return PROVEN
         # An estimate counts for nothing on bases, or where a step is worth its cost.
         counts = not (estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT))
-        return EXPECTED if counts else None
+        if not counts:
+            return None
+        return UNPROVABLE if iterate.problem.no_reference else EXPECTED
 
     def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
         """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.

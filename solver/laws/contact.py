@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import NoneType
 from typing import Self
 
 import numpy as np
@@ -17,11 +18,13 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.checks import Numbers, Part, check
 from solver.laws.around import Bodies, Rod
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
     Gaps,
+    IncrementalForm,
     Interface,
     MacroPart,
     Rule,
@@ -29,7 +32,9 @@ from solver.laws.interface import (
     joined,
     squared,
 )
+from solver.laws.play import Strength
 from solver.laws.unilateral import ContactRule, Unilateral
+from solver.refusal import RefusedError, Words
 
 OPEN = 2
 """Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
@@ -126,6 +131,46 @@ class Contact(Interface):
 
     remembers = True
 
+    def __post_init__(self) -> None:
+        check(
+            self,
+            tangential=Part(Friction),
+            normal=Part(Unilateral),
+            around=Part(Rod, Bodies),
+            positions=Numbers(((None,),)),
+        )
+        size, most = len(self.tangential.component.above), len(self.positions) - 1
+        check(
+            self,
+            points=Numbers(((size,),), low=0, high=most, whole=True),
+            weights=Numbers(((size,),), low=0.0, above=True),
+        )
+        if self.normal is None and self.tangential.friction.any():
+            raise RefusedError(
+                "Contact.tangential.friction",
+                float(self.tangential.friction.max()),
+                "0 where there is no normal law",
+                "give the bound mu times the pressure, or a normal law",
+            )
+        if self.normal is not None and len(self.normal.gap) != size:
+            remedy = "give both components the same pairs"
+            shown = Words(f"of {len(self.normal.gap)} pairs")
+            raise RefusedError("Contact.normal", shown, f"a law of {size} pairs", remedy)
+
+    def incremental_form(self) -> IncrementalForm | None:
+        """The law itself, where its parts are those that solvers read, and none derived of them."""
+        along, across = self.tangential, self.normal
+        is_known = type(along) is Friction and type(along.strength) in (Strength, NoneType)
+        if not is_known or type(across) not in (Unilateral, NoneType):
+            return None
+        return IncrementalForm(contact=self)
+
+    @property
+    def n_instants(self) -> int | None:
+        """Number of instants that the bound is for; None where it stays the same."""
+        count = self.tangential.bound.shape[1]
+        return None if count == 1 else count
+
     @cached_property
     def components(self) -> tuple[Component, ...]:
         """All components, the tangential one last."""
@@ -155,8 +200,9 @@ class Contact(Interface):
     @property
     def is_plain(self) -> bool:
         """Whether it is a rod's, of known bound, on a support, and nothing but slip moves there."""
-        on_support = self.is_on_support and isinstance(self.around, Rod)
-        return on_support and not self.opens and self.tangential.softness is None
+        if not self.is_on_support or not isinstance(self.around, Rod) or self.opens:
+            return False
+        return self.tangential.softness is None and self.tangential.cap is None
 
     def begun(self, start: Array) -> Self:
         """Law whose sliders begin elsewhere, as `Friction.begun`."""
@@ -227,8 +273,13 @@ class Contact(Interface):
         for component in self.components:
             yield MacroPart(np.concatenate(component.sides), basis)
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
-        """Compare the forces of both sides; where they move is what the law is about."""
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
+        """Compare the forces of both sides; where they move is what the law is about.
+
+        Where a part of it is none that is known here, its local stage alone says what it is about.
+        """
+        if self.incremental_form() is None:
+            return super().gaps(displacement, force, noise, k)
         if self.is_on_support:
             return Gaps()
         sums = (sum(force[rows] for rows in component.sides) for component in self.components)
@@ -262,6 +313,8 @@ class Contact(Interface):
         return max((float(np.abs(force[above]).max()) for above in rows), default=0.0)
 
     @property
-    def acts(self) -> bool:
-        """Whether the bodies overlap."""
-        return self.normal is not None and bool(self.normal.gap.min(initial=0.0) < 0.0)
+    def is_moved(self) -> bool:
+        """Whether the bodies overlap, or sliders stand elsewhere, before anything is given."""
+        overlaps = self.normal is not None and bool(self.normal.gap.min(initial=0.0) < 0.0)
+        start = self.tangential.start
+        return overlaps or (start is not None and bool(start.any()))

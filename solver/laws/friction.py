@@ -21,9 +21,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array
+from solver.checks import NON_NEGATIVE, Number, Numbers, Part, check
 from solver.laws.interface import Component
 from solver.laws.play import Strength
-from solver.refusal import RefusedError, check_range
+from solver.refusal import RefusedError
 
 OPENED = 1e-9
 """Opening, as a share of the largest normal jump, from which on a bond is broken."""
@@ -62,9 +63,15 @@ class FrictionLaw:
     strength: Strength | None = None
 
     def __post_init__(self) -> None:
-        for name in ("stiffness", "normal_stiffness", "cap"):
-            check_range(self, name, 0.0, np.inf, above=True)
-        check_range(self, "cohesion", 0.0, np.inf)
+        above = Number(0.0, above=True, endless=True)
+        check(
+            self,
+            stiffness=above,
+            normal_stiffness=above,
+            cohesion=NON_NEGATIVE,
+            cap=above,
+            strength=Part(Strength),
+        )
 
     def at(
         self,
@@ -160,6 +167,19 @@ class Friction:
     strength: Strength | None = None
     start: Array | None = None
 
+    def __post_init__(self) -> None:
+        size = len(self.component.above)
+        positive = Numbers(((size,),), low=0.0, above=True)
+        check(
+            self,
+            bound=Numbers(((size, None),), low=0.0),
+            friction=Numbers(((size,),), low=0.0),
+            cap=Numbers(((size,),), low=0.0),
+            softness=positive,
+            strength=Part(Strength),
+            start=Numbers(((size,),)),
+        )
+
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Position of the slider of every pair, shape (n_pairs, n_instants), scaled.
 
@@ -198,8 +218,8 @@ class Friction:
             if opening is not None and bound.any():
                 bound = bound * is_intact(opening, pressing)
             bound = bound + self.friction[:, None] * np.maximum(pressing, 0.0)
-            if self.cap is not None:
-                bound = np.minimum(bound, self.cap[:, None])
+        if self.cap is not None:
+            bound = np.minimum(bound, self.cap[:, None])
         return bound
 
     def allowed(self, pressing: Array | None, slip: Array, opening: Array | None = None) -> Array:

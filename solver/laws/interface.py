@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import fields, is_dataclass
-from typing import Any, NamedTuple, Self, cast
+from dataclasses import dataclass, fields, is_dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, cast
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice, in_rows
+from solver.refusal import RefusedError
+
+if TYPE_CHECKING:
+    from solver.laws.contact import Contact
 
 
 class Component(NamedTuple):
@@ -88,8 +92,48 @@ class Gaps(NamedTuple):
     force: float = 0.0
 
 
+class Given(NamedTuple):
+    """Values that are given at rows, (n_rows,): shape (n_rows, n_instants), scaled."""
+
+    rows: Indices
+    values: Array
+
+
+class Glued(NamedTuple):
+    """Rows that move as one, opposite each other, (n_pairs,) each."""
+
+    first: Indices
+    second: Indices
+
+
+@dataclass(frozen=True, kw_only=True)
+class IncrementalForm:
+    """Form in which a law enters the incremental problem: all that its solvers read of it.
+
+    With nothing given the interface is free.
+
+    Attributes
+    ----------
+    force, displacement
+        What is prescribed at rows.
+    glued
+        Rows that share their degrees of freedom.
+    contact
+        The law itself, where it is one of contact.
+    """
+
+    force: Given | None = None
+    displacement: Given | None = None
+    glued: Glued | None = None
+    contact: Contact | None = None
+
+
 class Interface(ABC):
     """An interface of substructures with each other or with the outside.
+
+    A law of one's own needs `rows` and a `rule`. LATIN solves it; a reference and a certificate it
+    has where its class says its `incremental_form`. A class inherits nothing of `OF_ONE_LAW` from
+    another law unless it says that form, as its local stage may be a different one.
 
     Attributes
     ----------
@@ -102,6 +146,24 @@ class Interface(ABC):
     rows: Indices
     remembers = False
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Begin anew where a class does not say that what is known of its base holds for it."""
+        super().__init_subclass__(**options)
+        if "incremental_form" in vars(cls):
+            return
+        for name in OF_ONE_LAW:
+            if name not in vars(cls):
+                setattr(cls, name, vars(Interface)[name])
+
+    def incremental_form(self) -> IncrementalForm | None:
+        """The form in which the law enters the incremental problem; None where it has none."""
+        return None
+
+    @property
+    def n_instants(self) -> int | None:
+        """Number of instants that its values are for; None where they are for any."""
+        return None
+
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
         """Join interfaces of one law that may be treated as one: points know none."""
@@ -111,25 +173,48 @@ class Interface(ABC):
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Prepare the law for one k and so many instants."""
 
-    @abstractmethod
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """How much W and F of all rows, (n_rows, n_instants), miss continuity and balance by.
 
-        Without k; what is less than `noise` is rounding.
+        What is less than `noise` is rounding. By the local stage itself, unless a law knows better:
+        from W - F/k it finds W and F again if they obey the law, whatever k of the rows,
+        (n_rows,), it is.
         """
+        return gaps_of_rule(self, displacement, force, noise, k)
 
     def during(self, instants: slice) -> Self:
-        """Law of some instants alone; where bodies stand before them is another matter."""
-        return self
+        """Law of some instants alone; where bodies stand before them is another matter.
+
+        Raises
+        ------
+        RefusedError
+            If the law does not say what it is then.
+        """
+        raise RefusedError(
+            f"{type(self).__name__}.during",
+            "not defined",
+            "laws that say what they are at some instants alone",
+            "solve the whole interval at once, or define it",
+        )
 
     def macro_parts(self) -> Iterator[MacroPart]:
         """Macro forces that are in equilibrium in the coarse problem."""
         return iter(())
 
-    @property
-    def acts(self) -> bool:
-        """Whether anything is given here that is not zero: load, displacement, overlap."""
-        return False
+
+OF_ONE_LAW = "incremental_form", "together", "gaps", "during", "macro_parts"
+"""Methods that belong to one local stage, and to no other that a subclass may have."""
+
+
+def gaps_of_rule(law: Interface, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
+    """Gaps of W and F to the law by its local stage along k; parameters as `Interface.gaps`."""
+    incoming = displacement - force / k[:, None]
+    local = displacement.copy(order="F")
+    law.rule(k, displacement.shape[1])(incoming, local, slice(None))
+    stiffness = k[law.rows, None]
+    # Rounding of W and of F both move the place from which the local stage starts.
+    apart = beyond(local[law.rows] - displacement[law.rows], noise * (1.0 + 1.0 / stiffness))
+    return Gaps(displacement=squared(apart), force=squared(stiffness * apart))
 
 
 def joined(parts: Sequence[Any]) -> Any:
@@ -145,7 +230,7 @@ def joined(parts: Sequence[Any]) -> Any:
     return kind(**{n: joined([getattr(part, n) for part in parts]) for n in names})
 
 
-def beyond(field: Array, noise: float) -> Array:
+def beyond(field: Array, noise: float | Array) -> Array:
     """A field in which what may be rounding is zero."""
     return np.where(np.abs(field) > noise, field, 0.0)
 

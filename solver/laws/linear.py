@@ -9,7 +9,19 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array, Indices, as_slice
-from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, joined, squared
+from solver.checks import ROWS, Numbers, check
+from solver.laws.interface import (
+    Gaps,
+    Given,
+    Glued,
+    IncrementalForm,
+    Interface,
+    MacroPart,
+    Rule,
+    beyond,
+    joined,
+    squared,
+)
 
 
 @dataclass(frozen=True)
@@ -19,19 +31,27 @@ class _Given(Interface):
     rows: Indices
     values: Array
 
+    def __post_init__(self) -> None:
+        check(self, rows=ROWS)
+        check(self, values=Numbers(((len(self.rows), None),)))
+
     def during(self, instants: slice) -> Self:
         """Law of some instants alone."""
         return replace(self, values=self.values[:, instants])
 
     @property
-    def acts(self) -> bool:
-        """Whether anything moves, or pulls."""
-        return bool(self.values.any())
+    def n_instants(self) -> int:
+        """Number of instants that the values are for."""
+        return int(self.values.shape[1])
 
 
 @dataclass(frozen=True)
 class Dirichlet(_Given):
     """Prescribed displacement."""
+
+    def incremental_form(self) -> IncrementalForm:
+        """Displacements that are given."""
+        return IncrementalForm(displacement=Given(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """W^ is the displacement that is prescribed."""
@@ -42,7 +62,7 @@ class Dirichlet(_Given):
 
         return prescribe
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare the displacement with that prescribed."""
         return Gaps(displacement=squared(beyond(displacement[self.rows] - self.values, noise)))
 
@@ -52,6 +72,14 @@ class Neumann(_Given):
     """Prescribed nodal forces on the body, with a macro basis of shape (n_rows, n_macro)."""
 
     macro: Array
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check(self, macro=Numbers(((len(self.rows), None),)))
+
+    def incremental_form(self) -> IncrementalForm:
+        """Forces that are given."""
+        return IncrementalForm(force=Given(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Move by F_d / k."""
@@ -63,7 +91,7 @@ class Neumann(_Given):
 
         return push
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare the force with that prescribed."""
         return Gaps(force=squared(beyond(force[self.rows] - self.values, noise)))
 
@@ -80,10 +108,24 @@ class Perfect(Interface):
     second: Indices
     macro: Array
 
+    def __post_init__(self) -> None:
+        check(self, first=ROWS)
+        size = len(self.first)
+        opposite = Numbers(((size,),), low=0, whole=True)
+        check(self, second=opposite, macro=Numbers(((size, None),)))
+
     @property
     def rows(self) -> Indices:  # type: ignore[override]  # others are given them
         """Rows of both sides."""
         return np.concatenate([self.first, self.second])
+
+    def incremental_form(self) -> IncrementalForm:
+        """Both sides as one."""
+        return IncrementalForm(glued=Glued(self.first, self.second))
+
+    def during(self, _instants: slice) -> Self:
+        """Law of some instants alone, which is that of all."""
+        return self
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
@@ -104,7 +146,7 @@ class Perfect(Interface):
 
         return glue
 
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+    def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare both sides."""
         apart = _at(displacement, self.first) - _at(displacement, self.second)
         unbalanced = _at(force, self.first) + _at(force, self.second)

@@ -136,6 +136,10 @@ class Strength:
         return lowest
 
 
+PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
+"""Of friction that slip does not change."""
+
+
 def follow(target: Array, reach: Array, strength: Strength) -> Array:
     """Positions of sliders that follow a target with a reach that changes with their slip.
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
+from solver.checks import Numbers, check
 from solver.laws.friction import Friction
 from solver.laws.interface import Component, Springs
 from solver.laws.play import Play, follow
@@ -35,6 +36,10 @@ class Unilateral:
     component: Component
     gap: Array
     softness: Array | None = None
+
+    def __post_init__(self) -> None:
+        size = len(self.component.above)
+        check(self, gap=Numbers(((size,),)), softness=Numbers(((size,),), low=0.0, above=True))
 
     def opening(self, displacement: Array, force: Array) -> Array:
         """Distance of the sides and compression of the spring, (n_pairs, n_instants), scaled.

@@ -9,6 +9,10 @@ from solver.arrays import Array, Indices, space_time
 from solver.discrete.problem import Problem
 
 
+class NoReferenceError(ValueError):
+    """No reference can be found; the message says why."""
+
+
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     """Stiffness K of the whole structure, shape (n_dofs, n_dofs), scaled."""
     entries: dict[int, sparse.coo_array] = {}
@@ -24,7 +28,15 @@ def assembled_stiffness(problem: Problem) -> sparse.csr_array:
 
 
 def external_force(problem: Problem) -> Array:
-    """Forces on the whole structure, shape (n_dofs, n_instants), scaled."""
+    """Forces on the whole structure, shape (n_dofs, n_instants), scaled.
+
+    Raises
+    ------
+    NoReferenceError
+        If these are not all, or the problem holds anything else that no incremental solver reads.
+    """
+    if problem.no_reference:
+        raise NoReferenceError(problem.no_reference)
     total = space_time(problem.n_dofs, problem.n_instants)
     for part in problem.substructures:
         if part.body_force is not None:

@@ -30,7 +30,13 @@ from scipy.sparse.linalg import SuperLU
 
 from solver.arrays import ROUNDING, Array, Indices, sparse_factor
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force, jumps, separated
+from solver.reference.assembly import (
+    NoReferenceError,
+    assembled_stiffness,
+    external_force,
+    jumps,
+    separated,
+)
 from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of
 
@@ -52,10 +58,6 @@ TIE = 1e3
 
 BLOCK = 500
 """Columns of a dense matrix at a time, where more would fill the memory."""
-
-
-class NoReferenceError(ValueError):
-    """No reference can be found; the message says why."""
 
 
 class Condensation:

@@ -13,7 +13,8 @@ import numpy as np
 from solver.arrays import Array, Flags
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
-from solver.reference.condensation import Condensation, NoReferenceError
+from solver.reference.assembly import NoReferenceError
+from solver.reference.condensation import Condensation
 from solver.reference.distance import broken_laws
 from solver.reference.instants import Instants
 from solver.reference.limit_analysis import Collapse, collapse_of

@@ -22,8 +22,13 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.reference.assembly import assembled_stiffness, external_force, points_dofs
-from solver.reference.condensation import LEFT_INSIDE, NoReferenceError
+from solver.reference.assembly import (
+    NoReferenceError,
+    assembled_stiffness,
+    external_force,
+    points_dofs,
+)
+from solver.reference.condensation import LEFT_INSIDE
 from solver.reference.contact import IncrementalContact
 from solver.reference.rules import Starts, States, rules_of
 from solver.reference.search import Minimum, Search, Tridiagonal
@@ -39,8 +44,9 @@ beside loads of 1e9 times what friction holds."""
 
 
 def rubs_on_supports(problem: Problem) -> bool:
-    """Whether all friction is of known bound, on rigid supports, one at every point."""
-    if not all(law.is_plain for law in problem.rubbing.values()):
+    """Whether all friction of rods is of known bound, on rigid supports, one at every point."""
+    laws = problem.rubbing.values()
+    if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
     dofs = points_dofs(problem)
     return len(problem.rubbing) == 1 or len(np.unique(dofs)) == len(dofs)
@@ -223,8 +229,11 @@ def incremental_solver(problem: Problem) -> Incremental:
     Raises
     ------
     NoReferenceError
-        If there is none, or the problem goes on from where another ends.
+        If there is none, as the problem holds what no solver reads, or goes on from where another
+        ends.
     """
+    if problem.no_reference:
+        raise NoReferenceError(problem.no_reference)
     if any(law.tangential.start is not None for law in problem.rubbing.values()):
         raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
     return IncrementalRod(problem) if rubs_on_supports(problem) else IncrementalContact(problem)

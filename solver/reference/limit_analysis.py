@@ -18,8 +18,7 @@ from scipy.optimize import linprog
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.reference.assembly import external_force, jumps
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError, external_force, jumps
 from solver.reference.rules import rules_of
 
 WHOLE = 1.0 - 1e-6

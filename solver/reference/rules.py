@@ -18,6 +18,8 @@ from solver.arrays import Array, Flags, Indices, in_rows
 from solver.discrete.problem import Problem
 from solver.laws import OPEN, Contact, Strength
 from solver.laws.friction import is_intact
+from solver.laws.play import PLAIN
+from solver.reference.assembly import NoReferenceError
 
 States = NDArray[np.int8]
 HELD = 0
@@ -26,8 +28,6 @@ EXPECTED = 2.5
 charts of the bar, where a guess from a neighbour takes 1 to 7, and one from an iterate 1.7."""
 OF_JUMPS = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance")
 """Fields of rules that have a row for each jump."""
-PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
-"""Of friction that slip does not change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +145,7 @@ def rules_of(problem: Problem) -> Rules:
 
     Raises
     ------
-    ValueError
+    NoReferenceError
         If slip changes friction otherwise on one interface than on another.
     """
     strengths, parts, first = set[Strength](), list[Rules](), 0
@@ -155,7 +155,7 @@ def rules_of(problem: Problem) -> Rules:
         if not parts[-1].smooth.all():
             strengths.add(law.tangential.strength or PLAIN)
     if len(strengths) > 1:
-        raise ValueError("slip changes friction in one way at most: give all interfaces the same")
+        raise NoReferenceError(problem.no_reference)
     stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS}
     return Rules(**stacked, strength=next(iter(strengths), PLAIN))
 

@@ -29,7 +29,8 @@ from scipy.optimize import OptimizeResult, linprog
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.reference.condensation import Condensation, NoReferenceError
+from solver.reference.assembly import NoReferenceError
+from solver.reference.condensation import Condensation
 
 MOST_KNOWN = 1000
 """Points of known bound above which matrices, which are full, take more than some seconds."""

@@ -97,7 +97,13 @@ def fingerprint(problem: Problem) -> bytes:
 
     So cuts count where degrees of freedom depend on them, as in the plane, and do not along a rod;
     the method never does. Problems that differ by rounding count as two.
+
+    Raises
+    ------
+    NoReferenceError
+        If a problem holds anything that they do not read.
     """
+    force = external_force(problem)
     scales, rules = problem.scales, rules_of(problem)
     laws = problem.rubbing
     matrices = assembled_stiffness(problem), jumps(problem)
@@ -108,7 +114,7 @@ def fingerprint(problem: Problem) -> bytes:
         [scales.displacement, scales.force, scales.time],
         problem.instants,
         problem.positions,
-        external_force(problem),
+        force,
         *problem.prescribed,
         *(getattr(rules, name) for name in OF_JUMPS),
         [rules.strength.slips, rules.strength.factors],

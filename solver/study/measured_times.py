@@ -26,7 +26,7 @@ from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.latin import Ending, Solution, judged, solve
 from solver.latin.cost import run_cost
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference

@@ -17,7 +17,7 @@ from typing import Any
 
 from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise

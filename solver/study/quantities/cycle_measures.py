@@ -11,7 +11,7 @@ from solver.discrete.probes import AxialForce
 from solver.discrete.rope import Rope
 from solver.discrete.wire_forces import stress_ranges
 from solver.laws import OPEN, FrictionLaw
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of

@@ -21,7 +21,7 @@ from solver.latin.cost import costs_of
 from solver.latin.status import certified, jump_of, limit_of
 from solver.latin.status_step import status_step
 from solver.laws import OPEN
-from solver.reference.condensation import NoReferenceError
+from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.rules import States
