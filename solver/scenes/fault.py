@@ -17,7 +17,7 @@ from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, rede
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
-from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import Act, Axes, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of
 from solver.reference.closed_forms import ExactCurve
@@ -64,12 +64,16 @@ class Fault:
         """Make the discrete problem."""
         return self.body.discretise()
 
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        return ("Displacement at the well", "m"), ("Friction force", "N")
+
     def loop(self, problem: Problem) -> Loop:
         """Friction of the quarter over how far it has moved at the middle."""
         law = problem.rubbing["support"]
         return Loop(
-            ("Displacement at the well", "m"),
-            ("Friction force", "N"),
+            *self.axes,
             Probe(problem.row_dofs[law.tangential.component.above[:1]], np.ones(1)),
             lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
         )
