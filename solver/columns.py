@@ -172,6 +172,7 @@ SPELLINGS = {
     "micrometres": "µm",
     "mikrometer": "µm",
     "in": "in",
+    '"': "in",
     "ins": "in",
     "inch": "in",
     "inches": "in",
@@ -333,11 +334,14 @@ def quantities_of(title: str, units: str) -> Collection[str]:
 
 
 def are_units(cells: list[str]) -> bool:
-    """Whether a line is one of units; symbols of quantities, as t, s and F, are none."""
-    words = [cell.strip("()[]") for cell in cells]
+    """Whether a line is one of units; symbols of quantities, as t, s and F, are none.
+
+    Half of its cells are units at least: in prose there may be an "in", too.
+    """
+    words = [cell.strip("()[]") for cell in cells if cell.strip("()[]-1")]
     units = [word for word in words if is_spelt_as_unit(word)]
     is_named = any(TableColumn(0, name=word).quantities[1] for word in words if word not in units)
-    return bool(units) and not is_named
+    return bool(units) and 2 * len(units) >= len(words) and not is_named
 
 
 def parse_unit(text: str) -> tuple[float, Dimensions] | None:

@@ -63,6 +63,10 @@ def _pattern(decimal: str, thousands: str) -> re.Pattern[str]:
     return re.compile(numeral, re.IGNORECASE | re.ASCII)
 
 
+_PLAIN = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+"""Numerals as almost all are: one decimal sign, no groups."""
+_GROUP = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
+"""A sign that may stand between thousands."""
 _PATTERNS = {
     ".": _pattern(".", ","),
     ",": _pattern(",", "."),
@@ -76,21 +80,27 @@ def is_gap(cell: str) -> bool:
 
 def decimal_signs(cell: str) -> str:
     """Decimal signs under which a cell is a number: both, as of `1,234` and `12`, one, or none."""
+    if _PLAIN.fullmatch(cell):
+        if not ("." in cell or "," in cell) or _GROUP.fullmatch(cell):
+            return SIGNS
+        return "." if "." in cell else ","
     plain = cell.translate(_MINUS)
     return "".join(sign for sign in SIGNS if _PATTERNS[sign].fullmatch(plain))
 
 
 def is_numeral(cell: str) -> bool:
     """Whether a cell is a number, whatever its decimal sign is."""
-    return bool(decimal_signs(cell))
+    return _PLAIN.fullmatch(cell) is not None or bool(decimal_signs(cell))
 
 
 def number(cell: str, decimal: str) -> float:
     """Number of a cell under a decimal sign; NaN of what is none."""
+    thousands = "." if decimal == "," else ","
+    if thousands not in cell and _PLAIN.fullmatch(cell):
+        return float(cell.replace(",", "."))
     plain = cell.translate(_MINUS)
     if not _PATTERNS[decimal].fullmatch(plain):
         return math.nan
-    thousands = "." if decimal == "," else ","
     plain = plain.translate(_DROPPED).replace(thousands, "").replace(decimal, ".").lower()
     plain = re.sub("[dq]", "e", plain)
     return float(re.sub(r"(?<=[\d.])([+-]\d{3})$", r"e\1", plain))

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from solver.columns import TableColumn, are_units, column_of, is_spelt_as_unit
 from solver.disk import Refuse
@@ -24,53 +25,58 @@ _MARK = re.compile(r"#|%|//|!|;")
 _RULE = re.compile(r"[\s;,|+]*([-=_*~.])\1{2,}[-=_*~.\s;,|+]*")
 
 
-@dataclass(frozen=True)
-class Line:
-    """A line by its number, from 1, its text, and its cells, without empty ones at its end."""
+class Line(NamedTuple):
+    """A line by its number, from 1, its text, and its cells, without empty ones at its end.
+
+    Some cells are numbers, others words, which are neither numbers nor gaps.
+    """
 
     number: int
     text: str
     cells: tuple[str, ...]
+    are_numbers: tuple[bool, ...]
+    are_words: tuple[bool, ...]
     is_comment: bool = False
-
-    @cached_property
-    def are_numbers(self) -> tuple[bool, ...]:
-        """Which cells are numbers."""
-        return tuple(map(is_numeral, self.cells))
-
-    @cached_property
-    def are_words(self) -> tuple[bool, ...]:
-        """Which cells are neither numbers nor gaps."""
-        return tuple(not is_number and not is_gap(cell) for cell, is_number in self._pairs())
 
     @property
     def count(self) -> int:
         """Number of numbers."""
-        return sum(self.are_numbers)
+        return self.are_numbers.count(True)
 
     @property
     def has_words(self) -> bool:
         """Whether a cell is neither a number nor a gap."""
-        return any(self.are_words)
+        return True in self.are_words
 
     @property
     def width(self) -> int:
         """Cells up to the last one that is a number or a gap."""
+        if not self.has_words:
+            return len(self.cells)
         return max((place for place, word in enumerate(self.are_words, 1) if not word), default=0)
 
-    @cached_property
+    @property
     def is_text(self) -> bool:
         """Whether it may be a head, units, as in `s;1;kN`, or a title: words without numbers."""
         if not self.has_words:
             return False
-        words = [cell for cell, is_number in self._pairs() if not is_number]
-        numbers = {cell for cell, is_number in self._pairs() if is_number}
+        pairs = list(zip(self.cells, self.are_numbers, strict=True))
+        words = [cell for cell, is_number in pairs if not is_number]
+        numbers = {cell for cell, is_number in pairs if is_number}
         # Labels of rows are no units: N1.
         has_digits = any(char.isdigit() for word in words for char in word)
         return not numbers or (numbers == {"1"} and not has_digits and are_units(words))
 
-    def _pairs(self) -> Iterator[tuple[str, bool]]:
-        return zip(self.cells, self.are_numbers, strict=True)
+
+def line_of(number: int, text: str, cells: Sequence[str], *, is_comment: bool = False) -> Line:
+    """A line with its cells, which are told apart."""
+    are_numbers = tuple(map(is_numeral, cells))
+    if False in are_numbers:
+        pairs = zip(cells, are_numbers, strict=True)
+        are_words = tuple(not is_number and not is_gap(cell) for cell, is_number in pairs)
+    else:
+        are_words = (False,) * len(cells)
+    return Line(number, text, tuple(cells), are_numbers, are_words, is_comment)
 
 
 @dataclass(eq=False)
@@ -101,6 +107,11 @@ class Block:
     def width(self) -> int:
         """Columns that most rows have, without words at their end."""
         return Counter(row.width for row in self.rows).most_common(1)[0][0]
+
+    @cached_property
+    def is_known(self) -> bool:
+        """Whether a line above may be a head that names a quantity."""
+        return any(len(line.cells) > 1 and _is_known(line.cells) for line in self.above)
 
     def has_above(self, line: Line) -> bool:
         """Whether a line stands above the rows, too."""
@@ -160,17 +171,21 @@ def _line(number: int, text: str, separator: str) -> Line:
     plain = text.strip(" \f")
     mark = _MARK.match(plain)
     # `#N/A` is a gap.
-    first = (_split(plain, separator) or [""])[0]
-    if mark is not None and mark[0] != separator and not is_gap(first):
+    if (
+        mark is not None
+        and mark[0] != separator
+        and not is_gap((_split(plain, separator) or [""])[0])
+    ):
         # A line of units may begin with %.
         is_unit = not separator.isspace() and plain[mark.end() :].startswith(separator)
         if not is_unit:
             words = plain.lstrip("#%/!; \t")
-            return Line(number, words, tuple(_split(words, separator)), is_comment=True)
-    cells = _split(plain, separator)
-    if _MARK.search(plain) and not all(map(is_numeral, cells)):
-        cells = _without_comment(plain, separator) or cells
-    return Line(number, plain, tuple(cells))
+            return line_of(number, words, _split(words, separator), is_comment=True)
+    line = line_of(number, plain, _split(plain, separator))
+    if line.has_words and _MARK.search(plain):
+        before = _without_comment(plain, separator)
+        return line_of(number, plain, before) if before else line
+    return line
 
 
 def _without_comment(text: str, separator: str) -> list[str]:
@@ -226,14 +241,16 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
     block: Block | None = None
     between: list[Line] = []
     for line in lines:
-        has_head = any(_is_head_of(other, line, separator) for other in between)
-        begins = block is None or has_head
+        heads = [other for other in between if _is_head_of(other, line, separator)]
+        if block is not None and block.is_known:
+            # Words that name no quantity may tell what happens, as in `phase;unloading`.
+            heads = [other for other in heads if _is_known(other.cells) or other.is_comment]
+        begins = block is None or bool(heads)
         is_row = _is_first(line, between) if begins else _is_next(line, block, separator)
         if line.is_comment or line.is_text or not is_row:
             between.append(line)
             continue
         again = [other for other in between if block is not None and block.has_above(other)]
-        heads = [other for other in between if _is_head_of(other, line, separator)]
         if block is None or not all(other in again for other in heads):
             if block is not None:
                 yield block
@@ -260,6 +277,11 @@ def _is_head_of(line: Line, row: Line, separator: str) -> bool:
     texts = _names_in(line, row.width, separator)
     known = [column_of(0, 0, text).is_known for text in texts]
     return len(texts) == row.width and sum(known) > 1
+
+
+def _is_known(words: Sequence[str]) -> bool:
+    """Whether a name of a line is that of a quantity, or has a unit."""
+    return any(column_of(0, 0, word).is_known for word in words)
 
 
 def _is_first(line: Line, between: Sequence[Line]) -> bool:
@@ -313,7 +335,8 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
     texts = [(line, words) for line, words in texts if len(words) > 1 and not _has_numbers(words)]
     for line, words in reversed(texts):
         if are_units(words):
-            if not units[1] and (not names or len(words) == len(names)):
+            is_prose = (line.is_comment or _is_blank(separator)) and len(words) != width
+            if not (units[1] or is_prose) and (not names or len(words) == len(names)):
                 units = line.number, words
             if any(column.is_known for column in names):
                 break
@@ -377,7 +400,7 @@ def _names_in(line: Line, width: int, separator: str) -> list[str]:
     if short != line.text:
         ways.append(_split(short, separator))
     fitting = [names for names in ways if len(names) == width]
-    known = [names for names in fitting if any(column_of(0, 0, name).is_known for name in names)]
+    known = [names for names in fitting if _is_known(names)]
     return next(iter([*known, *fitting, *ways]))
 
 

@@ -66,7 +66,7 @@ from solver.columns import TableColumn, examples_of, size_in
 from solver.definitions import SettingError
 from solver.disk import LARGEST, TOO_LARGE, Refuse
 from solver.numerals import SIGNS, decimal_signs, is_gap, number
-from solver.table_lines import Block, block_of, fitted, headed, lines_of_text
+from solver.table_lines import Block, Line, block_of, fitted, headed, lines_of_text
 from solver.workbooks import is_archive, lines_of_workbook
 
 STANDS_IN = {"displacement": "position"}
@@ -151,12 +151,17 @@ class Table:
         ]
         for rule in rules:
             likely = [column for column in columns if rule(column)]
+            # A column of words, as of the time of day, is not meant where another may be.
+            likely = [column for column in likely if self._has_numbers(column)] or likely
             if len(likely) > 1:
                 names = " and ".join(repr(column.name or column.unit) for column in likely)
                 raise self.refuse(f"{names} may both be meant: rename all columns but one")
             if likely:
                 return likely[0]
         return None
+
+    def _has_numbers(self, column: TableColumn) -> bool:
+        return bool(np.isfinite(self.numbers[column.place]).any())
 
     def choose(
         self,
@@ -257,7 +262,8 @@ def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table
     columns = headed(block, separator, refuse)
     cells = fitted(block, len(columns), separator, refuse)
     places = np.array([row.number for row in block.rows])
-    decimal, thousands = _notation(cells, places, separator, refuse)
+    places.flags.writeable = False
+    decimal, thousands = _notation(block.rows, separator, refuse)
     numbers = np.array([[number(cell, decimal) for cell in row] for row in cells]).T
     return Table(
         columns=tuple(columns),
@@ -281,28 +287,28 @@ def _interruptions(block: Block) -> list[str]:
     return remarks
 
 
-def _notation(
-    cells: Sequence[Sequence[str]], lines: Indices, separator: str, refuse: Refuse
-) -> tuple[str, list[str]]:
+def _notation(rows: Sequence[Line], separator: str, refuse: Refuse) -> tuple[str, list[str]]:
     """The decimal sign of a table, and words on signs between thousands, as described above."""
+    if not any("," in cell or cell.count(".") > 1 for row in rows for cell in row.cells):
+        return ".", []
     # Cells that are numbers under one decimal sign alone, and under both, by line.
     sure: dict[str, list[tuple[int, str]]] = {sign: [] for sign in SIGNS}
     unsure: dict[str, list[tuple[int, str]]] = {sign: [] for sign in SIGNS}
-    for line, row in zip(lines.tolist(), cells, strict=True):
-        for cell in row:
+    for row in rows:
+        for cell in row.cells:
             signs = decimal_signs(cell) if "," in cell or "." in cell else ""
             if len(signs) == 1:
-                sure[signs].append((line, cell))
+                sure[signs].append((row.number, cell))
             elif signs:
-                unsure["," if "," in cell else "."].append((line, cell))
+                unsure["," if "," in cell else "."].append((row.number, cell))
     _check_alike(sure, refuse)
     if not sure["."] and not sure[","] and unsure[","]:
-        line, cell = unsure[","][0]
         if unsure["."] or separator != ";":
-            point = cell.replace(",", ".")
+            line, cell = unsure[","][0]
+            decimals = cell.replace(",", ".")
             raise refuse(
-                f"line {line} has {cell!r}, which may be {point} or {cell.replace(',', '')}: write "
-                "decimals with a point, and thousands without a sign"
+                f"line {line} has {cell!r}, which may be {decimals} or {cell.replace(',', '')}: "
+                "write decimals with a point, and thousands without a sign"
             )
         return ",", []
     decimal = "," if sure[","] else "."

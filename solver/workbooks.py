@@ -7,7 +7,7 @@ import warnings
 import zipfile
 
 from solver.disk import Refuse
-from solver.table_lines import Line
+from solver.table_lines import Line, line_of
 
 UNPACKED = 40_000_000
 """Bytes of a workbook's parts at most: some ten times what a table of the largest size takes."""
@@ -41,7 +41,8 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
     except Exception as problem:  # whatever a file that is broken makes of its readers
         raise refuse(f"{OTHER} ({type(problem).__name__})") from None
     lines = [
-        Line(number, " ".join(row), _without_end(row)) for number, row in enumerate(rows, start=1)
+        line_of(number, " ".join(row), _without_end(row))
+        for number, row in enumerate(rows, start=1)
     ]
     several = f" of {len(names)}" if len(names) > 1 else ""
     return [line for line in lines if line.cells], f"sheet {sheet.title!r}{several}"
@@ -64,7 +65,7 @@ def _text_of(value: object) -> str:
     return "" if value is None else str(value).strip()
 
 
-def _without_end(cells: list[str]) -> tuple[str, ...]:
+def _without_end(cells: list[str]) -> list[str]:
     """Cells without empty ones at the end."""
     last = max((place for place, cell in enumerate(cells, start=1) if cell), default=0)
-    return tuple(cells[:last])
+    return cells[:last]

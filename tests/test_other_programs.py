@@ -129,7 +129,7 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
         ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
         (HEAD + ROWS + "0.5,1,inf\n", "line 6 has 'inf' as friction force: leave such rows out"),
         (HEAD + ROWS + "0.5,much,1\n", "line 6 has 'much' as t: give a number"),
-        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*to 1 m: name its unit"),
+        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*: name its unit"),
         (HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n", r"2 of its 3 rows lie in the run.*at least 4"),
         (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
     ],
