@@ -393,9 +393,9 @@ def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
     """Words where numbers without a unit are some thousand times off; empty where they are not.
 
     `size` is the largest number, taken in that unit, and `usual` one of what it is compared with,
-    in the same unit, both positive; `of` says of what.
+    in the same unit, both positive; `of` says of what. Plain numbers are not doubted.
     """
-    if not (math.isfinite(size * usual) and size * usual > 0.0):
+    if not unit or not (math.isfinite(size * usual) and size * usual > 0.0):
         return ""
     thousands = math.log10(size / usual) / 3.0
     if abs(thousands) < DOUBTFUL:
@@ -406,7 +406,7 @@ def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
     if likely:
         remedy = f"if it is in {likely}, name that in the head, as in {name} [{likely}]"
     times = f"{float(f'{size / usual:.1g}'):g} times that of {of}"
-    return f"{name} has no unit, and taken in {unit or 'plain numbers'} it is {times}: {remedy}"
+    return f"{name} has no unit, and taken in {unit} it is {times}: {remedy}"
 
 
 def examples_of(units: str) -> str:

@@ -58,25 +58,32 @@ def columns_for(
     return columns
 
 
-def path_doubt(
+def path_doubts(
     table: Table, settings: Settings, name: str, points: Sequence[Sequence[float]]
-) -> str:
-    """Words where a path without a unit is some thousand times off that of the scene.
+) -> list[str]:
+    """Words where columns without a unit are some thousand times off the scene.
 
-    That is the path by default, where it is of the same quantity.
+    That is its length, and the path by default, where it is of the same quantity. Times are not
+    doubted, as runs last as long as their paths.
     """
     definition: Any = settings.definitions()[name]
     units = settings.curve_units(name)
+    if not definition.is_path:
+        return []
+    sizes = np.abs(points).max(axis=0)
+    usual = [0.0, 0.0]
+    if definition.abscissa == "position":
+        usual[0] = settings.length
     default = type(settings).checked({})
-    if not definition.is_path or default.curve_units(name) != units:
-        return ""
-    column = columns_for(table, definition, name, units)[-1]
-    if column.unit or not column.name:
-        return ""
-    size, usual = (
-        float(np.abs(np.array(rows)[:, 1]).max()) for rows in (points, default.points(name))
-    )
-    return unit_doubt(column.name, units[-1], size, usual, "the scene")
+    if default.curve_units(name) == units:
+        usual[1] = float(np.abs(default.points(name)).max(axis=0)[1])
+    columns = columns_for(table, definition, name, units)
+    doubts = [
+        unit_doubt(column.name, unit, float(size), one, "the scene")
+        for column, unit, size, one in zip(columns, units, sizes, usual, strict=True)
+        if column.name and not column.unit
+    ]
+    return [doubt for doubt in doubts if doubt]
 
 
 def _chosen(
@@ -124,8 +131,7 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     found = {}
     for name, table in tables.items():
         points, message = curve_of(table, definitions[name], name, settings.curve_units(name))
-        doubt = path_doubt(table, settings, name, points)
-        found[name] = f"{message}; {doubt}" if doubt else message
+        found[name] = "; ".join([message, *path_doubts(table, settings, name, points)])
     return found
 
 

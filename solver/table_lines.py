@@ -39,7 +39,7 @@ class Line(NamedTuple):
     is_comment: bool = False
 
     @property
-    def count(self) -> int:
+    def n_numbers(self) -> int:
         """Number of numbers."""
         return self.are_numbers.count(True)
 
@@ -101,7 +101,7 @@ class Block:
     @property
     def size(self) -> int:
         """Rows that have two numbers or more."""
-        return sum(row.count > 1 for row in self.rows)
+        return sum(row.n_numbers > 1 for row in self.rows)
 
     @cached_property
     def width(self) -> int:
@@ -163,7 +163,7 @@ def _separator_of(texts: Sequence[str]) -> str:
 def _has_two(line: Line) -> bool:
     """Whether two cells of a line are numbers, or one and a gap that is written."""
     gaps = sum(bool(cell) and is_gap(cell) for cell in line.cells)
-    return not line.is_comment and line.count > 0 and line.count + gaps > 1
+    return not line.is_comment and line.n_numbers > 0 and line.n_numbers + gaps > 1
 
 
 def _line(number: int, text: str, separator: str) -> Line:
@@ -289,12 +289,12 @@ def _is_first(line: Line, between: Sequence[Line]) -> bool:
     if not line.has_words:
         return len(line.cells) > 1
     is_below_head = bool(between) and between[-1].is_text and len(between[-1].cells) > 1
-    return line.count > 1 and (is_below_head or not line.are_words[0])
+    return line.n_numbers > 1 and (is_below_head or not line.are_words[0])
 
 
 def _is_next(line: Line, block: Block | None, separator: str) -> bool:
     """Whether a line may be a further row; one that begins with a word is often of the text."""
-    if block is None or not line.count:
+    if block is None or not line.n_numbers:
         return not line.has_words
     first = block.rows[0]
     if not line.are_words[0] or first.are_words[0]:
@@ -308,7 +308,7 @@ def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
     return [
         line
         for line in above
-        if line.count
+        if line.n_numbers
         and not (line.is_text or line.is_comment)
         and len(line.cells) == len(row.cells)
     ]

@@ -9,8 +9,8 @@ import zipfile
 from solver.disk import Refuse
 from solver.table_lines import Line, line_of
 
-UNPACKED = 40_000_000
-"""Bytes of a workbook's parts at most: some ten times what a table of the largest size takes."""
+UNPACKED = 20_000_000
+"""Bytes of a workbook's parts at most: some five times what is read of a text."""
 MISSING = (
     "it is a workbook, which needs openpyxl: save the table as CSV, or install it with "
     "`pip install 'slipfront[excel]'`"

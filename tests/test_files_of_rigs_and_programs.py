@@ -122,7 +122,8 @@ KINDS: dict[str, str | bytes] = {
         + PLAIN.partition("\n")[2]
     ),
     "words on what happens between rows": (
-        "t;u [mm];F [N]\n0;0;0\n0.5;1.5;1234.5\nphase 2;slow;unloading\n1;2.25;2000\n1.5;-1;-500.25\n"
+        "t;u [mm];F [N]\n0;0;0\n0.5;1.5;1234.5\nphase 2;slow;unloading\n1;2.25;2000\n"
+        "1.5;-1;-500.25\n"
     ),
     "units above the names": "s;mm;N\nZeit;Weg;Kraft\n" + GERMAN,
     "a column of remarks": (
@@ -299,6 +300,11 @@ def test_the_command_doubts_loops_and_paths_without_a_unit(tmp_path: Path, capsy
     path.write_text("time,force\n0,0\n1,0.9\n")
     assert main(["run", "bar", *SIZES, f"--set=load={path}"]) == 0
     assert "as in force [kN]" in capsys.readouterr().err
+    path.write_text("position,friction factor\n0,1\n1000,2\n")
+    assert main(["run", "bar", *SIZES, f"--set=friction_profile={path}"]) == 0
+    said = capsys.readouterr().err
+    assert "position has no unit, and taken in m it is 1000 times that of the scene" in said
+    assert "if it is in mm" in said
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")

@@ -63,6 +63,21 @@ def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     assert state.brought is None
 
 
+def test_a_loop_without_units_is_doubted_beside_the_run_that_is_shown() -> None:
+    settings = bar(start="nested", finish="at-once")
+    runner = Runner(Start(1, settings, float("inf")), ReferenceCache(), lambda: False)
+    while runner.status is None:
+        runner.advance()
+    state = PageState(settings)
+    state.frame = runner.frame(Needs())
+    loop = loop_of_a_run(settings)
+    rows = "".join(f"{1e3 * u},{f}\n" for u, f in zip(loop.displacement, loop.force, strict=True))
+    made = opener(state, f"disp,force\n{rows}")
+    assert "1000 times that of the run: if it is in mm" in made.message.object
+    made.heads.value = "disp [mm], force"
+    assert "times that of" not in made.message.object
+
+
 def test_columns_without_names_are_named_and_what_is_no_number_is_said() -> None:
     state = PageState(bar())
     made = opener(state, "1,0,7,5\n2,1,7,6\n3,2,7,x\n4,3,7,9\n")

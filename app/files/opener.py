@@ -32,9 +32,9 @@ from solver.study.table_use import Use
 from solver.tables import Table
 
 HELP = (
-    "Settings (.toml) that were saved here; or a table (.csv): of time and load; of displacement "
-    "and force, a measured loop, which is drawn beside the run; or of x, t and friction force or "
-    "displacement, as another program found them, which are drawn beside it, too."
+    "Settings (.toml) that were saved here; or a table (.csv, .xlsx, ...): of time and load; of "
+    "displacement and force, a measured loop, which is drawn beside the run; or of x, t and "
+    "friction force or displacement, as another program found them, which are drawn beside it, too."
 )
 HEADS = (
     "A name for each column, with its unit in brackets, as in `time [s], displacement [mm], "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.state import PageState
 from solver.columns import column_of
-from solver.curves import curve_of, path_doubt
+from solver.curves import curve_of, path_doubts
 from solver.definitions import CurveParameter, about, title_of
 from solver.discrete.structure import Axes
 from solver.remarks import ends_of_tables
@@ -55,8 +55,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     points, message = curve_of(table, definition, name, settings.curve_units(name))
     changed = settings.replace(**{name: points})
     message = f"{title_of(definition)}: {message}."
-    if doubt := path_doubt(table, settings, name, points):
-        message += f" {doubt}."
+    message += "".join(f" {doubt}." for doubt in path_doubts(table, settings, name, points))
     if definition.abscissa == "time":
         ends = max(ends_of_tables(changed).values(), default=0.0)
         changed = changed.replace(duration=ends) if ends > 0.0 else changed
