@@ -13,7 +13,7 @@ import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 
 from solver.disk import Refuse
 
@@ -284,9 +284,8 @@ class TableColumn:
         last = name.rstrip("0123456789 ").rpartition(" ")[2]
         ending = next((word for word in _ENDINGS if last.endswith(word)), "")
         for word in (name, name.replace(" ", ""), last, ending):
-            meant = {kind for kind, words in WORDS.items() if word in [kind, *words.split()]}
-            if meant:
-                return frozenset(meant), word.replace(" ", "") == name.replace(" ", "")
+            if meant := _meant_by().get(word):
+                return meant, word.replace(" ", "") == name.replace(" ", "")
         return frozenset(), False
 
     def size(self, unit: str, refuse: Refuse) -> float:
@@ -311,6 +310,16 @@ class TableColumn:
         if self.unit or not unit:
             return f"{name} in {self.unit}" if self.unit.strip("-1") else name
         return f"{name} in {unit}{' (no unit given)' if self.name else ''}"
+
+
+@cache
+def _meant_by() -> dict[str, frozenset[str]]:
+    """Quantities that each word of `WORDS` may mean."""
+    meant: dict[str, frozenset[str]] = {}
+    for kind, words in WORDS.items():
+        for word in [kind, *words.split()]:
+            meant[word] = meant.get(word, frozenset()) | {kind}
+    return meant
 
 
 def column_of(place: int, line: int, head: str) -> TableColumn:

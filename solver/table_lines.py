@@ -20,7 +20,10 @@ BLANKS = "  "
 SEPARATORS = ("\t", ";", ",", " ", BLANKS)
 """What may divide columns, in the order in which they are preferred."""
 SAMPLE = 200
-"""Lines of which it is judged what divides columns."""
+LAST = 20
+"""Lines of which it is judged what divides columns: all over a file, and at its end."""
+FARTHEST = 100
+"""Lines of text above rows among which a head is sought."""
 _MARK = re.compile(r"#|%|//|!|;")
 _RULE = re.compile(r"[\s;,|+]*([-=_*~.])\1{2,}[-=_*~.\s;,|+]*")
 
@@ -94,7 +97,7 @@ class Block:
     """
 
     above: list[Line]
-    rows: list[Line] = field(default_factory=list)
+    rows: list[Line]
     passed: list[Line] = field(default_factory=list)
     repeats: int = 0
 
@@ -111,11 +114,13 @@ class Block:
     @cached_property
     def is_known(self) -> bool:
         """Whether a line above may be a head that names a quantity."""
-        return any(len(line.cells) > 1 and _is_known(line.cells) for line in self.above)
+        near = self.above[-FARTHEST:]
+        return any(len(line.cells) > 1 and _is_known(line.cells) for line in near)
 
-    def has_above(self, line: Line) -> bool:
-        """Whether a line stands above the rows, too."""
-        return any(line.cells == other.cells for other in self.above)
+    @cached_property
+    def texts_above(self) -> set[tuple[str, ...]]:
+        """Cells of the lines above."""
+        return {line.cells for line in self.above}
 
 
 def text_of(data: bytes | str, refuse: Refuse) -> str:
@@ -148,7 +153,7 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
 
 def _separator_of(texts: Sequence[str]) -> str:
     """What divides columns: most cells of most lines are numbers, and widths are alike."""
-    sample = texts[:: max(1, len(texts) // SAMPLE)]
+    sample = [*texts[:: max(1, len(texts) // SAMPLE)], *texts[-LAST:]]
 
     def score(separator: str) -> tuple[float, float]:
         lines = [_line(0, text, separator) for text in sample]
@@ -169,23 +174,22 @@ def _has_two(line: Line) -> bool:
 def _line(number: int, text: str, separator: str) -> Line:
     """Split a line; a comment keeps its words, which may be a head, and loses its mark."""
     plain = text.strip(" \f")
-    mark = _MARK.match(plain)
-    # `#N/A` is a gap.
-    if (
-        mark is not None
-        and mark[0] != separator
-        and not is_gap((_split(plain, separator) or [""])[0])
-    ):
-        # A line of units may begin with %.
-        is_unit = not separator.isspace() and plain[mark.end() :].startswith(separator)
-        if not is_unit:
-            words = plain.lstrip("#%/!; \t")
-            return line_of(number, words, _split(words, separator), is_comment=True)
     line = line_of(number, plain, _split(plain, separator))
+    if line.cells and _is_comment(plain, line.cells[0], separator):
+        words = plain.lstrip("#%/!; \t")
+        return line_of(number, words, _split(words, separator), is_comment=True)
     if line.has_words and _MARK.search(plain):
         before = _without_comment(plain, separator)
         return line_of(number, plain, before) if before else line
     return line
+
+
+def _is_comment(text: str, first: str, separator: str) -> bool:
+    """Whether a text begins with the mark of a comment; `#N/A` is a gap, and % alone a unit."""
+    mark = _MARK.match(text)
+    if mark is None or mark[0] == separator or is_gap(first):
+        return False
+    return first != mark[0] or _is_blank(separator) or (separator == "\t" and first != "%")
 
 
 def _without_comment(text: str, separator: str) -> list[str]:
@@ -241,23 +245,25 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
     block: Block | None = None
     between: list[Line] = []
     for line in lines:
-        heads = [other for other in between if _is_head_of(other, line, separator)]
+        if line.is_comment or line.is_text:
+            between.append(line)
+            continue
+        heads = [other for other in between[-FARTHEST:] if _is_head_of(other, line, separator)]
         if block is not None and block.is_known:
             # Words that name no quantity may tell what happens, as in `phase;unloading`.
             heads = [other for other in heads if _is_known(other.cells) or other.is_comment]
         begins = block is None or bool(heads)
         is_row = _is_first(line, between) if begins else _is_next(line, block, separator)
-        if line.is_comment or line.is_text or not is_row:
+        if not is_row:
             between.append(line)
             continue
-        again = [other for other in between if block is not None and block.has_above(other)]
-        if block is None or not all(other in again for other in heads):
+        if block is None or any(head.cells not in block.texts_above for head in heads):
             if block is not None:
                 yield block
             block = Block(above=between, rows=_broken_rows(between, line))
         else:
             block.repeats += bool(heads)
-            block.passed += [other for other in between if other not in again]
+            block.passed += [o for o in between if o.cells not in block.texts_above]
         block.rows.append(line)
         between = []
     if block is not None:
@@ -318,8 +324,9 @@ def _leave_summary(block: Block) -> None:
     """Pass over numbers right above the rows that are of another width, where there is no head."""
     if any(line.is_text for line in block.above[-1:]):
         return
-    while block.rows[0].width != block.width:
-        block.passed.append(block.rows.pop(0))
+    first = next(place for place, row in enumerate(block.rows) if row.width == block.width)
+    block.passed += block.rows[:first]
+    del block.rows[:first]
 
 
 def _is_blank(separator: str) -> bool:
@@ -331,7 +338,8 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
     width = block.width
     names: list[TableColumn] = []
     units: tuple[int, list[str]] = (0, [])
-    texts = [(line, _names_in(line, width, separator)) for line in block.above if line.is_text]
+    near = [line for line in block.above if line.is_text][-FARTHEST:]
+    texts = [(line, _names_in(line, width, separator)) for line in near]
     texts = [(line, words) for line, words in texts if len(words) > 1 and not _has_numbers(words)]
     for line, words in reversed(texts):
         if are_units(words):
@@ -389,7 +397,7 @@ def _names_in(line: Line, width: int, separator: str) -> list[str]:
     own = list(line.cells)
     ways = [own]
     if line.is_comment or _is_blank(separator):
-        plain = line.text.strip("#% \t")
+        plain = line.text.strip()
         ways = [
             re.split(r"\s+(?![\[(])", plain),
             re.split(r"\s{2,}|\t", plain),
