@@ -25,6 +25,7 @@ LAST = 20
 FARTHEST = 100
 """Lines of text above rows among which a head is sought."""
 _MARK = re.compile(r"#|%|//|!|;")
+_WORD = re.compile(r"\s*[^\W\d]")
 _RULE = re.compile(r"[\s;,|+]*([-=_*~.])\1{2,}[-=_*~.\s;,|+]*")
 
 
@@ -143,9 +144,10 @@ def text_of(data: bytes | str, refuse: Refuse) -> str:
 def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
     """What divides the columns of a file, and its lines that are neither empty nor rules."""
     texts = re.split(r"\r\n|\n|\r", text_of(data, refuse))
+    filled = [(number, text) for number, text in enumerate(texts, start=1) if text.strip()]
     try:
-        separator = _separator_of([text for text in texts if text.strip()])
-        lines = [_line(number, text, separator) for number, text in enumerate(texts, start=1)]
+        separator = _separator_of([text for _, text in filled])
+        lines = [_line(number, text, separator) for number, text in filled]
     except csv.Error as problem:
         raise refuse(str(problem)) from None
     return separator, [line for line in lines if line.cells and not _RULE.fullmatch(line.text)]
@@ -195,15 +197,13 @@ def _is_comment(text: str, first: str, separator: str) -> bool:
 def _without_comment(text: str, separator: str) -> list[str]:
     """Cells before a comment that stands behind two numbers; none where there is no such."""
     for mark in _MARK.finditer(text):
-        before = text[: mark.start()]
-        stands_apart = not before or before[-1].isspace() or before.endswith(separator)
+        before = text[mark.start() - 1 : mark.start()]
+        stands_apart = before.isspace() or before == separator
         # Behind a number % is its unit, unless words follow.
-        is_unit = mark[0] == "%" and not re.match(r"\s*[^\W\d]", text[mark.end() :])
-        if mark[0] == separator or not stands_apart or is_unit:
-            continue
-        cells = _split(before, separator)
-        if sum(map(is_numeral, cells)) > 1:
-            return cells
+        is_unit = mark[0] == "%" and not _WORD.match(text, mark.end())
+        if mark[0] != separator and stands_apart and not is_unit:
+            cells = _split(text[: mark.start()], separator)
+            return cells if sum(map(is_numeral, cells)) > 1 else []
     return []
 
 
