@@ -21,6 +21,7 @@ from solver.remarks import remarks_before
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.page import NO_CHARTS, renderer
+from solver.tables import Table, read_table
 
 INTERRUPTED = 130
 """Exit code that shells have for a program that is ended by Ctrl-C."""
@@ -60,9 +61,10 @@ def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
     return settings, tables
 
 
-def read_brought(chosen: argparse.Namespace, allowed: str) -> bytes:
-    """Bytes of the file that `--with` names."""
-    return read_bytes(chosen.file, partial(SettingError, "--with", str(chosen.file), allowed))
+def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
+    """Table of the file that `--with` names."""
+    data = read_bytes(chosen.file, partial(SettingError, "--with", str(chosen.file), allowed))
+    return read_table(data, chosen.file.name, "--with", allowed)
 
 
 def warn(*messages: str) -> None:

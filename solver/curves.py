@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.columns import TableColumn, quantities_of
+from solver.columns import TableColumn, quantities_of, unit_doubt
 from solver.definitions import CurveParameter, SettingError, allowed
 from solver.disk import read_bytes
 from solver.scenes import CATALOGUE
@@ -33,21 +33,57 @@ def curve_of(
     Columns that cannot be chosen, other units, what is no number, and an abscissa that does not
     increase are refused.
     """
-    columns = table.columns
-    if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):
-        columns = _chosen(table, definition, name, units)
-    elif len(columns) != len(units):
-        *others, last = definition.columns
-        names = f"{', '.join(others)} and {last}"
-        raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
-    numbers, message = table.read(columns, definition.columns, units)
-    falls = np.flatnonzero(np.diff(numbers[0]) <= 0.0)
+    columns = columns_for(table, definition, name, units)
+    reading = table.read(columns, definition.columns, units)
+    falls = np.flatnonzero(np.diff(reading.numbers[0]) <= 0.0)
     if definition.is_path and len(falls):
-        line = table.rows[falls[0] + 1][0]
+        line = reading.lines[falls[0] + 1]
         remedy = f"line {line}: {definition.abscissa} must increase from row to row"
         loop = "; of a loop, as force over displacement, give the time of every row"
         raise table.refuse(remedy + (loop if definition.abscissa == "time" else ""))
-    return numbers.T.tolist(), message
+    return reading.numbers.T.tolist(), reading.message
+
+
+def columns_for(
+    table: Table, definition: CurveParameter, name: str, units: Sequence[str]
+) -> Sequence[TableColumn]:
+    """Columns of a curve in a table, by its head, or as they stand where that says nothing."""
+    columns = table.columns
+    if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):
+        return _chosen(table, definition, name, units)
+    if len(columns) != len(units):
+        *others, last = definition.columns
+        names = f"{', '.join(others)} and {last}"
+        raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
+    return columns
+
+
+def path_doubts(
+    table: Table, settings: Settings, name: str, points: Sequence[Sequence[float]]
+) -> list[str]:
+    """Words where columns without a unit are some thousand times off the scene.
+
+    That is its length, and the path by default, where it is of the same quantity. Times are not
+    doubted, as runs last as long as their paths.
+    """
+    definition: Any = settings.definitions()[name]
+    units = settings.curve_units(name)
+    if not definition.is_path:
+        return []
+    sizes = np.abs(points).max(axis=0)
+    usual = [0.0, 0.0]
+    if definition.abscissa == "position":
+        usual[0] = settings.length
+    default = type(settings).checked({})
+    if default.curve_units(name) == units:
+        usual[1] = float(np.abs(default.points(name)).max(axis=0)[1])
+    columns = columns_for(table, definition, name, units)
+    doubts = [
+        unit_doubt(column.name, unit, float(size), one, "the scene")
+        for column, unit, size, one in zip(columns, units, sizes, usual, strict=True)
+        if column.name and not column.unit
+    ]
+    return [doubt for doubt in doubts if doubt]
 
 
 def _chosen(
@@ -92,13 +128,16 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     A table of another quantity than the other settings want is refused.
     """
     definitions: Mapping[str, Any] = settings.definitions()
-    return {
-        name: curve_of(table, definitions[name], name, settings.curve_units(name))[1]
-        for name, table in tables.items()
-    }
+    found = {}
+    for name, table in tables.items():
+        points, message = curve_of(table, definitions[name], name, settings.curve_units(name))
+        found[name] = "; ".join([message, *path_doubts(table, settings, name, points)])
+    return found
 
 
 def _read_file(path: Path, definition: CurveParameter, name: str) -> Table:
-    refuse = partial(SettingError, name, str(path), allowed(definition))
+    can = allowed(definition)
+    refuse = partial(SettingError, name, str(path), can)
     no_file = "it is no preset, and no readable CSV file"
-    return read_table(read_bytes(path, lambda why: refuse(f"{no_file} ({why})")), refuse)
+    data = read_bytes(path, lambda why: refuse(f"{no_file} ({why})"))
+    return read_table(data, str(path), name, can)

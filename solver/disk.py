@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,18 +21,27 @@ TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
 def read_bytes(path: Path, refuse: Refuse) -> bytes:
-    """Bytes of a file; of one that is too large, or has no end, no more than it takes to know.
+    """Bytes of a file; of one that is too large no more than it takes to know.
 
-    One that cannot be read, or is too large, is refused with the reason.
+    What cannot be read, is too large, or is no file is refused with the reason. A pipe, which may
+    have no other end, is not waited for.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST + 1)
+        with open(path, "rb", opener=_open_at_once) as file:
+            is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
+            data = file.read(LARGEST + 1) if is_file else b""
     except (OSError, ValueError) as problem:  # no path at all is a ValueError
         raise refuse(why(problem)) from None
+    if not is_file:
+        raise refuse("it is a pipe or a device: save what it gives to a file")
     if len(data) > LARGEST:
         raise refuse(TOO_LARGE)
     return data
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Open a file; a pipe without waiting for its other end, where a system knows how."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 @contextmanager

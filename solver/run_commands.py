@@ -26,11 +26,11 @@ from solver.lessons import check, lesson_from_file
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.study.compared_runs import ComparedRun
-from solver.study.comparison import CAN, FEWEST, Comparison, read_results
+from solver.study.comparison import CAN, FEWEST, Comparison
 from solver.study.fit import MOST, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
 from solver.study.measured_loop import CAN as LOOP
-from solver.study.measured_loop import LoopComparison, is_a_loop, read_loop
+from solver.study.measured_loop import LoopComparison, MeasuredLoop, loop_in
 from solver.study.mesh import (
     TIME_STEP,
     Refinement,
@@ -42,6 +42,7 @@ from solver.study.mesh import (
     which_to_refine,
 )
 from solver.study.quantities import reading
+from solver.study.table_use import brought_in
 
 OFTEN = 0.3
 """Seconds between two lines, and files, of how far a fit is."""
@@ -96,21 +97,20 @@ def _mesh(chosen: argparse.Namespace) -> int:
 
 def _compare(chosen: argparse.Namespace) -> int:
     settings, tables = given(chosen)
-    data, problem = read_brought(chosen, CAN), discretise(settings)
+    table = read_brought(chosen, f"{CAN}; or displacement and force")
+    structure = settings.structure()
+    brought = brought_in(table, settings, structure.axes)
+    problem = discretise(settings)
     name, interface = chosen.file.name, chosen.interface
+    message = brought.message
     beside: LoopComparison | Comparison
-    if is_a_loop(data, name):
-        loop = settings.structure().loop(problem)
-        measured = read_loop(data, name, loop.axes)
-        message = measured.message
-        beside = LoopComparison(measured, loop, problem)
+    if isinstance(brought, MeasuredLoop):
+        beside = LoopComparison(brought, structure.loop(problem), problem)
     else:
         if interface and interface not in problem.rubbing:
             can = ", ".join(problem.rubbing)
             raise SettingError("--interface", interface, can, "choose one of these")
-        results = read_results(data, name, settings)
-        message = results.message
-        beside = Comparison(results, problem, interface)
+        beside = Comparison(brought, problem, interface)
         if beside.counted < FEWEST:
             can = f"at least {FEWEST} rows that both cover"
             raise SettingError("--with", str(chosen.file), can, "give points along this interface")
@@ -125,6 +125,7 @@ def _compare(chosen: argparse.Namespace) -> int:
         figures |= dict.fromkeys(figures.keys() & {"distance", "distance_given"}, math.nan)
     elif isinstance(beside, LoopComparison):
         warn(*beside.drive_messages(figures["distance_given"]))
+        warn(*beside.measured.unit_doubts(*beside.loop.along(solution.iterate)))
     if chosen.json:
         print_json({**figures, "tables": {**tables, name: message}, "status": str(status.ending)})
     else:
@@ -137,9 +138,8 @@ def _compare(chosen: argparse.Namespace) -> int:
 
 def _fit(chosen: argparse.Namespace) -> int:
     settings, tables = given(chosen)
-    data, problem = read_brought(chosen, LOOP), discretise(settings)
-    announce(settings, problem)
-    measured = read_loop(data, chosen.file.name, settings.structure().loop(problem).axes)
+    measured = loop_in(read_brought(chosen, LOOP), settings.structure().axes)
+    announce(settings, discretise(settings))
     print_tables({measured.source: measured.message})
     names = [name.strip() for name in chosen.vary.split(",")]
     printed = 0.0
@@ -147,6 +147,9 @@ def _fit(chosen: argparse.Namespace) -> int:
     def watch(runs: int, nearest: ComparedRun) -> None:
         """Print how far it is, and keep the loop of the nearest run so far in the folder."""
         nonlocal printed
+        if not printed:
+            run = nearest.run
+            warn(*measured.unit_doubts(run.displacement, run.force))
         if time.monotonic() - printed < OFTEN:
             return
         printed = time.monotonic()

@@ -13,12 +13,12 @@ from small_scenes import SMALL as SMALL_SCENES
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.files import scene_settings, settings_from_toml
-from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.fit import fit
 from solver.study.fit_report import messages
-from solver.study.measured_loop import LoopComparison, MeasuredLoop, branches, read_loop
+from solver.study.measured_loop import CAN, LoopComparison, MeasuredLoop, branches, loop_in
 from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.tables import read_table
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}
@@ -37,6 +37,10 @@ def loop_from(run: FinishedRun, *, timed: bool = True, **changes: np.ndarray) ->
     pair = {"displacement": run.displacement, "force": run.force} | changes
     times = run.problem.instants if timed else None
     return MeasuredLoop(*pair.values(), times, (loop.across[1], loop.up[1]), "made.csv", "")
+
+
+def in_text(text: str, axes: tuple[tuple[str, str], tuple[str, str]]) -> MeasuredLoop:
+    return loop_in(read_table(text, "theirs.csv", "--with", CAN), axes)
 
 
 def beside(run: FinishedRun, measured: MeasuredLoop) -> LoopComparison:
@@ -112,15 +116,15 @@ UNITS = (("End displacement", "m"), ("Force", "N"))
 
 def test_heads_say_columns_and_units() -> None:
     rows = "\n".join(f"{n};{n**2 / 10};{n / 4}".replace(".", ",") for n in range(5))
-    read = read_loop("Zeit [ms];Kraft [kN];Weg [µm]\n" + rows, "a.csv", UNITS)
+    read = in_text("Zeit [ms];Kraft [kN];Weg [µm]\n" + rows, UNITS)
     assert np.allclose(read.times, 1e-3 * np.arange(5))
     assert np.allclose(read.force, 100.0 * np.arange(5) ** 2)
     assert np.allclose(read.displacement, 0.25e-6 * np.arange(5))
     assert "Kraft in kN" in read.message
-    bare = read_loop("u,F\n1,2\n2,3\n3,4\n5,9", "a.csv", UNITS)
+    bare = in_text("u,F\n1,2\n2,3\n3,4\n5,9", UNITS)
     assert bare.times is None
     assert "u in m (no unit given), F in N (no unit given)" in bare.message
-    assert np.array_equal(read_loop(read.csv(), "b.csv", UNITS).force, read.force)
+    assert np.array_equal(in_text(read.csv(), UNITS).force, read.force)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +141,7 @@ def test_heads_say_columns_and_units() -> None:
 )
 def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None:
     with pytest.raises(SettingError, match=why) as caught:
-        read_loop(text, "theirs.csv", UNITS)
+        in_text(text, UNITS)
     assert "theirs.csv" in str(caught.value)
 
 
@@ -274,7 +278,7 @@ def test_the_commands_compare_and_fit_and_write_what_they_found(tmp_path, capsys
     far = 100.0 * found["distance"]
     told = capsys.readouterr().out
     assert told == f"End displacement: {far:.4g} % from measured.csv, at 41 of 41 rows\n"
-    axes = saved.structure().loop(discretise(saved)).axes
-    fitted = read_loop((out / "loop.csv").read_text(), "loop.csv", axes)
+    axes = saved.structure().axes
+    fitted = in_text((out / "loop.csv").read_text(), axes)
     run = finished_run(saved, errors=False, indicators=False)
     assert beside(run, fitted).of(run.iterate) < 1e-6

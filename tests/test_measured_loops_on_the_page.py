@@ -11,7 +11,7 @@ from bars import SMALL
 
 from app.experiments.fit import FitTab
 from app.files.opener import TableOpener
-from app.files.tables import LOOP, TABLES
+from app.files.tables import TABLES
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
@@ -19,6 +19,7 @@ from app.worker.runner import Runner
 from solver.settings import Settings
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.finished import finished_run
+from solver.study.table_use import Use
 
 
 def bar(**values: Any) -> Settings:
@@ -46,7 +47,7 @@ def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     assert made.dialog.open
     assert loop.force.tolist() == [0.0, 500.0, 700.0, 100.0, -400.0]
     assert "Weg in mm, Kraft in kN" in made.message.object
-    assert (made.use.value, made.heads.value) == (LOOP, "Weg [mm], Kraft [kN]")
+    assert (made.use.value, made.heads.value) == (Use.LOOP, "Weg [mm], Kraft [kN]")
     made.heads.value = "Weg [µm], Kraft [kN]"
     assert state.brought.displacement.max() == pytest.approx(2e-6)
     assert "passed over" not in made.message.object
@@ -62,11 +63,26 @@ def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     assert state.brought is None
 
 
+def test_a_loop_without_units_is_doubted_beside_the_run_that_is_shown() -> None:
+    settings = bar(start="nested", finish="at-once")
+    runner = Runner(Start(1, settings, float("inf")), ReferenceCache(), lambda: False)
+    while runner.status is None:
+        runner.advance()
+    state = PageState(settings)
+    state.frame = runner.frame(Needs())
+    loop = loop_of_a_run(settings)
+    rows = "".join(f"{1e3 * u},{f}\n" for u, f in zip(loop.displacement, loop.force, strict=True))
+    made = opener(state, f"disp,force\n{rows}")
+    assert "1000 times that of the run: if it is in mm" in made.message.object
+    made.heads.value = "disp [mm], force"
+    assert "times that of" not in made.message.object
+
+
 def test_columns_without_names_are_named_and_what_is_no_number_is_said() -> None:
     state = PageState(bar())
     made = opener(state, "1,0,7,5\n2,1,7,6\n3,2,7,x\n4,3,7,9\n")
     assert "finite numbers" in made.message.object or "columns" in made.message.object
-    made.use.value = LOOP
+    made.use.value = Use.LOOP
     made.heads.value = "force, displacement"
     assert "4 columns" in made._understood.object
     made.heads.value = "force, displacement, 3, 4"

@@ -17,7 +17,8 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
-from solver.study.comparison import Comparison, read_results
+from solver.study.comparison import CAN, Comparison, OtherResults, results_in
+from solver.tables import read_table
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
@@ -37,6 +38,10 @@ def solved(scene: str) -> tuple[Settings, Problem, Reference]:
     settings = settings_of(scene)
     problem = discretise(settings)
     return settings, problem, reference_of(problem)
+
+
+def results(text: str, source: str, settings: Settings) -> OtherResults:
+    return results_in(read_table(text, source, "the results", CAN), settings)
 
 
 def table(quantity: str, x: Any, t: Any, values: Any) -> str:
@@ -67,7 +72,7 @@ def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
 ) -> None:
     settings, problem, reference = solved(scene)
     x, t, values = own_friction(scene)
-    brought = read_results(table("friction force", x, t, factor * values), "a.csv", settings)
+    brought = results(table("friction force", x, t, factor * values), "a.csv", settings)
     beside = Comparison(brought, problem)
     assert beside.counted == len(brought.times) > 50
     expected = abs((factor - 1.0) / factor)
@@ -92,7 +97,7 @@ def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
             t,
             friction.up[np.ix_(where, when)],
         )
-        brought = read_results(text, "exact.csv", settings)
+        brought = results(text, "exact.csv", settings)
         problem = discretise(settings)
         distances.append(Comparison(brought, problem).of(reference_of(problem)))
     assert distances[0] > distances[1] > distances[2]
@@ -104,7 +109,7 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
     text = table("friction force", x, t, values)
     # The clamped node shares its friction with the clamp, and the run is over after a second.
     text += "\n0.0,0.5,1e9\n0.1,1.5,1e9\n0.1,-0.5,1e9"
-    brought = read_results(text, "a.csv", settings)
+    brought = results(text, "a.csv", settings)
     beside = Comparison(brought, problem)
     assert beside.counted == len(brought.times) - 3
     assert beside.of(reference) < 1e-12
@@ -122,16 +127,16 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
             r"says N: give it in N/m, kN/m, N/mm; divide nodal forces",
         ),
         ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
-        (HEAD + ROWS + "0.5,1,nan\n", "line 6 has 'nan' as friction force: leave such rows out"),
+        (HEAD + ROWS + "0.5,1,inf\n", "line 6 has 'inf' as friction force: leave such rows out"),
         (HEAD + ROWS + "0.5,much,1\n", "line 6 has 'much' as t: give a number"),
-        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*to 1 m"),
+        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*: name its unit"),
         (HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n", r"2 of its 3 rows lie in the run.*at least 4"),
         (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str) -> None:
     with pytest.raises(SettingError, match=why) as caught:
-        read_results(text, "theirs.csv", settings_of())
+        results(text, "theirs.csv", settings_of())
     assert "theirs.csv" in str(caught.value)
 
 

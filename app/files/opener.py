@@ -11,15 +11,14 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.files.tables import (
-    LOOP,
     TABLES,
+    USES,
     Content,
-    axes_on,
     paths_of,
     read_as,
     renamed,
     table_of,
-    use_of,
+    use_on,
 )
 from app.refusals import message_of
 from app.state import PageState, default_settings
@@ -28,14 +27,14 @@ from solver.definitions import title_of
 from solver.files import dump, read_settings
 from solver.refusal import RefusedError
 from solver.settings import Settings
-from solver.study.comparison import read_results
-from solver.study.measured_loop import MeasuredLoop, is_a_loop
+from solver.study.measured_loop import MeasuredLoop
+from solver.study.table_use import Use
 from solver.tables import Table
 
 HELP = (
-    "Settings (.toml) that were saved here; or a table (.csv): of time and load; of displacement "
-    "and force, a measured loop, which is drawn beside the run; or of x, t and friction force or "
-    "displacement, as another program found them, which are drawn beside it, too."
+    "Settings (.toml) that were saved here; or a table (.csv, .xlsx, ...): of time and load; of "
+    "displacement and force, a measured loop, which is drawn beside the run; or of x, t and "
+    "friction force or displacement, as another program found them, which are drawn beside it, too."
 )
 HEADS = (
     "A name for each column, with its unit in brackets, as in `time [s], displacement [mm], "
@@ -115,35 +114,31 @@ class TableOpener:
             self.show()
 
     def _read(self, source: str, data: bytes) -> tuple[Content, str]:
-        state, axes = self._state, axes_on(self._state)
+        state = self._state
         if source.lower().endswith(".toml"):
             settings, changed = read_settings(data.decode("utf-8-sig", "replace"), source)
             definitions = settings.definitions()
             told = [f"{title_of(definitions[name])}: {text}." for name, text in changed.items()]
             message = f"{source}: settings of the scene {settings.scene}."
             return settings, " ".join([message, *told])
-        table = table_of(data, source)
-        if not is_a_loop(data, source):
-            results = read_results(data, source, state.settings)
-            return results, f"{source}: {results.message}."
-        self._table, self._source = table, source
+        self._table = table = table_of(data, source)
         names = [name.replace(",", " ") for name in names_of(table)]
-        cells = [cells + [""] * len(names) for _, cells in table.rows[:SHOWN]]
-        self._rows.object = pd.DataFrame([row[: len(names)] for row in cells], columns=names)
+        self._rows.object = pd.DataFrame(table.cells[:SHOWN], columns=names)
         self._is_updating = True
         self.heads.value = ", ".join(names)
         self._is_updating = False
-        self._offer(LOOP)
-        use = use_of(table, state.settings, axes)
+        self._offer(Use.LOOP)
+        use = use_on(state, table)
         self._offer(use)
-        return read_as(use, table, source, state.settings, axes)
+        return read_as(use, table, state)
 
     def _offer(self, use: str) -> None:
         """Offer what a table may be used as in this scene."""
         paths = paths_of(self._state.settings).items()
-        kinds = {"Measured loop": LOOP, **{title_of(path): name for name, path in paths}}
+        kinds = USES | {title_of(path): name for name, path in paths}
         self._is_updating = True
-        self.use.param.update(options=kinds, value=use if use in kinds.values() else LOOP)
+        known = use if use in kinds.values() else Use.LOOP
+        self.use.param.update(options=kinds, value=str(known))
         self._is_updating = False
 
     def _reread(self) -> None:
@@ -152,8 +147,7 @@ class TableOpener:
             self._take(self._read_as)
 
     def _read_as(self) -> tuple[Content, str]:
-        table, settings = renamed(self._table, self.heads.value), self._state.settings
-        return read_as(self.use.value, table, self._source, settings, axes_on(self._state))
+        return read_as(self.use.value, renamed(self._table, self.heads.value), self._state)
 
     def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
         """What is read, which the page shows or runs; None where it is refused, as is said."""

@@ -45,7 +45,7 @@ class CurveDialog:
             margin=(10, 5),
         )
         self.text.param.watch(lambda event: self._take(event.new, "the text"), "value")
-        self._file = pmui.FileInput(label="Open a table (.csv)", accept=TABLES)
+        self._file = pmui.FileInput(label="Open a table (.csv, .xlsx)", accept=TABLES)
         self._file.param.watch(lambda event: self._take(event.new, self._file.filename), "value")
         self._message = pn.pane.Markdown("", margin=(0, 5))
         self._figure = self._plot() if is_path else None

@@ -2,44 +2,48 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from dataclasses import replace
-from functools import partial
-
 from app.state import PageState
 from solver.columns import column_of
-from solver.curves import curve_of
-from solver.definitions import CurveParameter, SettingError, about, title_of
-from solver.refusal import RefusedError
+from solver.curves import curve_of, path_doubts
+from solver.definitions import CurveParameter, about, title_of
+from solver.discrete.structure import Axes
 from solver.remarks import ends_of_tables
-from solver.scenes import discretise
 from solver.settings import Settings
-from solver.study.comparison import OtherResults
-from solver.study.measured_loop import Axes, MeasuredLoop, columns_of, loop_in
+from solver.study.comparison import OtherResults, results_in
+from solver.study.measured_loop import MeasuredLoop, loop_in
+from solver.study.table_use import Use, use_of
 from solver.tables import Table, read_table
 
-TABLES = ".csv,.txt,.dat,.tsv"
-LOOP = "loop"
-"""What a table is used as, if it is not the name of a path."""
+TABLES = ".csv,.txt,.dat,.tsv,.xlsx"
+USES = {"Measured loop": str(Use.LOOP), "Results of another program": str(Use.RESULTS)}
+"""What a table is used as beside the name of a path, by its title."""
 Content = Settings | OtherResults | MeasuredLoop
 
 
-def use_of(table: Table, settings: Settings, axes: Axes) -> str:
-    """What a table is used as by its head: a loop, or a path."""
-    with suppress(RefusedError):
-        columns_of(table, axes)
-        return LOOP
-    return path_of(table, settings)
+def use_on(state: PageState, table: Table) -> str:
+    """What a table is used as by its head: a loop, results, or the path of that name."""
+    use = use_of(table, axes_on(state))
+    return path_of(table, state.settings) if use is Use.PATH else str(use)
 
 
-def read_as(
-    use: str, table: Table, source: str, settings: Settings, axes: Axes
-) -> tuple[Content, str]:
-    """What a table has that is used as a loop or a path, and what was understood."""
-    if use != LOOP:
-        return with_path(settings, use, table)
-    loop = loop_in(table, source, axes)
-    return loop, f"{source}: {loop.message}."
+def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
+    """What a table has that is used as a loop, results or a path, and what was understood."""
+    if use == Use.RESULTS:
+        results = results_in(table, state.settings)
+        return results, f"{table.source}: {results.message}."
+    if use != Use.LOOP:
+        return with_path(state.settings, use, table)
+    loop = loop_in(table, axes_on(state))
+    sentences = [f"{table.source}: {loop.message}.", *_doubts(loop, state)]
+    return loop, " ".join(sentences)
+
+
+def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
+    """Sentences where a loop is some thousand times off the run that is shown."""
+    frame = state.frame
+    if frame is None or (frame.run.across[1], frame.run.up[1]) != loop.units:
+        return []
+    return [f"{doubt}." for doubt in loop.unit_doubts(*frame.loop)]
 
 
 def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
@@ -51,6 +55,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     points, message = curve_of(table, definition, name, settings.curve_units(name))
     changed = settings.replace(**{name: points})
     message = f"{title_of(definition)}: {message}."
+    message += "".join(f" {doubt}." for doubt in path_doubts(table, settings, name, points))
     if definition.abscissa == "time":
         ends = max(ends_of_tables(changed).values(), default=0.0)
         changed = changed.replace(duration=ends) if ends > 0.0 else changed
@@ -60,7 +65,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 def table_of(data: bytes | str, source: str) -> Table:
     """Table of a file, whatever it is of."""
-    return read_table(data, partial(SettingError, "the table", source, "a table of time and value"))
+    return read_table(data, source, "the table", "a table of time and value")
 
 
 def renamed(table: Table, heads: str) -> Table:
@@ -70,12 +75,9 @@ def renamed(table: Table, heads: str) -> Table:
     """
     columns = [column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))]
     width = len(table.columns)
-    if len(columns) == width:
-        return replace(table, columns=columns)
-    if len(columns) != width + 1:
+    if len(columns) not in (width, width + 1):
         raise table.refuse(f"it has {width} columns: write as many names, or one more")
-    rows = [(line, [*cells, str(n)]) for n, (line, cells) in enumerate(table.rows)]
-    return replace(table, columns=columns, rows=rows)
+    return table.with_columns(columns)
 
 
 def paths_of(settings: Settings) -> dict[str, CurveParameter]:
@@ -103,4 +105,4 @@ def axes_on(state: PageState) -> Axes:
     frame, settings = state.frame, state.settings
     if frame is not None and frame.run.settings.scene == settings.scene:
         return frame.run.across, frame.run.up
-    return settings.structure().loop(discretise(settings)).axes
+    return settings.structure().axes

@@ -26,7 +26,7 @@ from solver.checks import (
 from solver.discrete.cut_rods import SIDES, CutRods
 from solver.discrete.probes import Probe, Reaction, constant, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
+from solver.discrete.structure import OUTWARD, Act, Axes, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
@@ -243,6 +243,18 @@ class Rods:
         rods, places = [self] * self.wires, [self.nodes] * self.wires
         return CutRods(rods, places, names, rub_at_ends).problem()
 
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        drive = self._drive
+        if self.driven_end is None and drive is not None:
+            title, unit, _ = drive
+            is_held = self.ends["right"].displacement is not None
+            return (title, unit), ("Force", "N") if is_held else ("End displacement", "m")
+        if self.wires == 1:
+            return ("End displacement", "m"), ("Force", "N")
+        return ("Mean end displacement", "m"), ("Tension", "N")
+
     def loop(self, problem: Problem) -> Loop:
         """Mean force on the ends that are driven over their mean displacement.
 
@@ -251,13 +263,11 @@ class Rods:
         side, drive = self.driven_end or "right", self._drive
         moved, force = self._moved(problem, side), self.end_force(problem, side).of
         if self.driven_end is None and drive is not None:
-            title, unit, values = drive
-            up = "Force", "N"
+            _, _, values = drive
             if self.ends[side].displacement is None:
-                up, force = ("End displacement", "m"), moved.of
-            return Loop((title, unit), up, constant(values), force)
-        of, what = ("End", "Force") if self.wires == 1 else ("Mean end", "Tension")
-        return Loop((f"{of} displacement", "m"), (what, "N"), moved, force)
+                force = moved.of
+            return Loop(*self.axes, constant(values), force)
+        return Loop(*self.axes, moved, force)
 
     def end_force(self, problem: Problem, side: Side) -> Probe | Reaction:
         """Mean axial force at the ends of a side, N, positive to the right."""

@@ -40,7 +40,7 @@ from solver.discrete.cut_rods import CutRods
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem
 from solver.discrete.rods import End, Rods
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, on_side
+from solver.discrete.structure import OUTWARD, Act, Axes, Description, Hold, Loop, on_side
 from solver.laws import FrictionLaw
 
 
@@ -272,11 +272,16 @@ class Rope:
         dofs = np.flatnonzero(together)
         return Probe(dofs, together[dofs], stuck)
 
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        title = "Curvature at the clamp" if self.is_clamped else "Curvature"
+        return (title, "1/m"), ("Moment", "N·m")
+
     def loop(self, problem: Problem) -> Loop:
         """Moment over the curvature, which drives it."""
-        title = "Curvature at the clamp" if self.is_clamped else "Curvature"
         across, moment = constant(self.curvature), self.moment().of
-        return Loop((title, "1/m"), ("Moment", "N·m"), across, moment)
+        return Loop(*self.axes, across, moment)
 
     def described(self) -> Description:
         """The strand in words, for whoever draws it."""

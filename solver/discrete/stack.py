@@ -31,7 +31,16 @@ from solver.discrete.bricks import Brick
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack_problem import problem_of
-from solver.discrete.structure import OUTWARD, Act, Description, Hold, Loop, LoopFields, on_side
+from solver.discrete.structure import (
+    OUTWARD,
+    Act,
+    Axes,
+    Description,
+    Hold,
+    Loop,
+    LoopFields,
+    on_side,
+)
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
@@ -327,27 +336,50 @@ class Stack:
         """Make the discrete problem."""
         return problem_of(self)
 
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        if self.tilt is not None and self.spring is not None:
+            return ("Angle of the slope", "°"), ("Spring force", "N")
+        if self.support is not None:
+            return (f"Displacement of the {self._shown_side}", "m"), ("Shear force", "N")
+        if self._is_turned:
+            return ("Rotation of the end", "rad"), ("Moment", "N·m")
+        return ("Deflection of the end", "m"), ("Transverse force", "N")
+
+    @property
+    def _is_turned(self) -> bool:
+        """Whether a moment acts on the end, which nothing else bends."""
+        bent = self.sides["right"].y
+        return self.support is None and not bent.prescribed and not np.any(bent.mean)
+
+    @property
+    def _shown_side(self) -> str:
+        """Side whose displacement the loop is over: of a single body the one that is driven."""
+        if self.support is None:
+            return "right"
+        if len(self.rectangles) > 1:
+            return "top"
+        driven = (name for name in DRIVEN if not all(one.is_zero for one in self.sides[name]))
+        return next(driven, DRIVEN[0])
+
     def loop(self, problem: Problem) -> Loop:
         """Spring force on a slope, shear force on a support, or what bends the end."""
         if self.tilt is not None and self.spring is not None:
             # The spring's force lags behind on the way back.
             return Loop(
-                ("Angle of the slope", "°"),
-                ("Spring force", "N"),
+                *self.axes,
                 constant(np.degrees(self.tilt)),
                 lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
             )
-        bent, rests = self.sides["right"].y, self.support is not None
-        if not rests and not bent.prescribed and not np.any(bent.mean):
+        rests = self.support is not None
+        if self._is_turned:
             size = self.longest * self.height**2
             moment = np.broadcast_to(-size / 6.0 * self.sides["right"].x.slope, self.instants.shape)
             rotation, force = end_rotation(problem), constant(moment).of
-            return Loop(("Rotation of the end", "rad"), ("Moment", "N·m"), rotation, force)
-        side, component, across, up = "right", 1, "Deflection of the end", "Transverse force"
-        if rests:
-            driven = (name for name in DRIVEN if not all(one.is_zero for one in self.sides[name]))
-            side = "top" if len(self.rectangles) > 1 else next(driven, DRIVEN[0])
-            component, across, up = 0, f"Displacement of the {side}", "Shear force"
+            return Loop(*self.axes, rotation, force)
+        side = self._shown_side
+        component = 0 if rests else 1
         given = self.sides[side][component]
         if rests and len(self.rectangles) == 1:
             force = _shear_force
@@ -356,7 +388,7 @@ class Stack:
         else:
             whole = self.size[0] if rests else self.longest * self.height
             force = constant(np.broadcast_to(given.mean * whole, self.instants.shape)).of
-        return Loop((across, "m"), (up, "N"), side_mean(problem, side, component), force)
+        return Loop(*self.axes, side_mean(problem, side, component), force)
 
     def described(self) -> Description:
         """The bodies in words, for whoever draws them."""

@@ -134,6 +134,10 @@ class LoopFields(Protocol):
         """Fields of one interface with friction."""
 
 
+Axes = tuple[tuple[str, str], tuple[str, str]]
+"""Titles and units of a loop's displacement and force."""
+
+
 @dataclass(frozen=True, eq=False)
 class Loop:
     """A force over the displacement that it works on; what is inside the loop is dissipated.
@@ -148,7 +152,7 @@ class Loop:
     force: Callable[[LoopFields], Array]
 
     @property
-    def axes(self) -> tuple[tuple[str, str], tuple[str, str]]:
+    def axes(self) -> Axes:
         """Titles and units of displacement and force."""
         return self.across, self.up
 
@@ -166,6 +170,10 @@ class Structure(Protocol):
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
+
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop, which are known without a problem."""
 
     def loop(self, problem: Problem) -> Loop:
         """The hysteresis loop that it shows; forces in the plane for a metre of thickness."""

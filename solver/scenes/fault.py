@@ -17,7 +17,7 @@ from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, abou
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
-from solver.discrete.structure import Act, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import Act, Axes, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
 from solver.loads import INJECTIONS, instants_of
 from solver.profiles import Profile
@@ -77,12 +77,16 @@ class Fault:
         """Make the discrete problem."""
         return self.body.discretise()
 
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        return ("Slip at the well", "m"), ("Friction force", "N")
+
     def loop(self, problem: Problem) -> Loop:
         """Friction along the quarter over the slip of the fault at the middle."""
         law = problem.rubbing["support"]
         return Loop(
-            ("Slip at the well", "m"),
-            ("Friction force", "N"),
+            *self.axes,
             Probe(problem.row_dofs[law.tangent.above[:1]], np.full(1, law.slip_ratio)),
             lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
         )

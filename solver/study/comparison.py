@@ -19,20 +19,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from solver.arrays import Array, Flags
+from solver.arrays import Array, Flags, Indices
 from solver.columns import TableColumn, size_in
-from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.disk import Refuse
 from solver.reference.distance import Fields, determinate_forces
 from solver.settings import Settings
-from solver.tables import Table, read_table
+from solver.tables import Reading, Table
 
 FRICTION, DISPLACEMENT = "friction force", "displacement"
 FEWEST = 4
@@ -63,8 +61,8 @@ class OtherResults:
     message: str
 
 
-def read_results(data: bytes | str, source: str, settings: Settings) -> OtherResults:
-    """Read results of another program for a scene, of a table, bytes or text.
+def results_in(table: Table, settings: Settings) -> OtherResults:
+    """The results of another program for a scene in a table.
 
     Its head names the columns x (m), t (s), and friction force or displacement, with units if they
     are others; further columns are passed over, and rows may have any order.
@@ -76,27 +74,30 @@ def read_results(data: bytes | str, source: str, settings: Settings) -> OtherRes
         another unit, points outside of the body, or fewer than `FEWEST` rows during the run; for a
         displacement of other scenes than a single rod.
     """
-    refuse = partial(SettingError, "the results", source, CAN)
-    table = read_table(data, refuse)
+    table = table.given_as("the results", CAN)
     kind = settings.kind
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
-        raise refuse("displacements are compared along a single rod: give the friction force here")
+        raise table.refuse(
+            "displacements are compared along a single rod: give the friction force here"
+        )
     units = "m", "s", PER[kind] if quantity == FRICTION else "m"
     if quantity == FRICTION and size_in(columns[2].unit, "N") is not None:
         nodal = "divide nodal forces by what a node stands for"
-        columns[2].size(units[2], lambda remedy: refuse(f"{remedy}; {nodal}"))
+        columns[2].size(units[2], lambda remedy: table.refuse(f"{remedy}; {nodal}"))
     pairs = zip(columns, units, strict=True)
-    (x, t, values), message = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
-    _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
+    reading = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
+    x, t, values = reading.numbers
+    _check_places(x, t, reading.lines, settings, table.refuse)
     x = np.clip(x, 0.0, settings.length)
-    return OtherResults(quantity, x, t, values, source, settings.scene, message)
+    return OtherResults(quantity, x, t, values, table.source, settings.scene, reading.message)
 
 
-def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> tuple[Array, str]:
-    """Numbers of columns with their units by name, (n_columns, n_rows), and what was understood."""
-    if len(table.rows) > MOST:
-        raise table.refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
+def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
+    """Numbers of columns with their units by name, and what was understood."""
+    count = len(table.lines)
+    if count > MOST:
+        raise table.refuse(f"it has {count} rows, and may have {MOST}: leave some out")
     columns, units = zip(*used.values(), strict=True)
     return table.read(columns, list(used), units)
 
@@ -117,13 +118,13 @@ def _columns(table: Table) -> tuple[str, list[TableColumn]]:
     return quantity, [x, t, column]
 
 
-def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refuse: Refuse) -> None:
+def _check_places(x: Array, t: Array, lines: Indices, settings: Settings, refuse: Refuse) -> None:
     length, duration = settings.length, settings.duration
     beyond = np.flatnonzero((x < -EDGE * length) | (x > (1.0 + EDGE) * length))
     if len(beyond):
         raise refuse(
             f"line {lines[beyond[0]]} has x = {x[beyond[0]]:g} m, outside of the body, which goes "
-            f"from 0 to {length:g} m: shift or scale x"
+            f"from 0 to {length:g} m: name its unit (x [mm]), or shift or scale x"
         )
     during = int(((t >= 0.0) & (t <= duration)).sum())
     if during < FEWEST:

@@ -19,26 +19,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.columns import KINDS, TableColumn
+from solver.columns import KINDS, TableColumn, unit_doubt
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Loop, LoopFields
+from solver.discrete.structure import Axes, Loop, LoopFields
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
-from solver.tables import Table, read_table
+from solver.tables import Table
 
 CAN = "CSV whose head names displacement and force of every row, and their time if it is known"
 ALIKE = 0.02
 """Share of the range by which the ends of branches may differ, each, that fit equally well."""
-Axes = tuple[tuple[str, str], tuple[str, str]]
-"""Titles and units of a loop's displacement and force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +43,7 @@ class MeasuredLoop:
     """A measured loop, in SI and the units of the loop of its scene, and what was read of the file.
 
     Displacement, force and times, s, have shape (n_rows,); without times rows are matched along the
-    path.
+    path. Of displacement and force `bare` has the names where the file gives no unit, else "".
     """
 
     displacement: Array
@@ -55,6 +52,20 @@ class MeasuredLoop:
     units: tuple[str, str]
     source: str
     message: str
+    bare: tuple[str, str] = ("", "")
+
+    def unit_doubts(self, displacement: Array, force: Array) -> list[str]:
+        """Sentences where it is some thousand times off a run's loop, (n_instants,) each.
+
+        Only what has no unit in the file is doubted.
+        """
+        pairs = ((self.displacement, displacement), (self.force, force))
+        doubts = [
+            unit_doubt(name, unit, float(np.ptp(own)), float(np.ptp(run)), "the run")
+            for (own, run), name, unit in zip(pairs, self.bare, self.units, strict=True)
+            if name
+        ]
+        return [doubt for doubt in doubts if doubt]
 
     def csv(self) -> str:
         """Table of it, as `read_loop` takes it."""
@@ -71,18 +82,6 @@ def csv_of(columns: Mapping[str, Array]) -> str:
     return "\n".join([",".join(columns), *rows, ""])
 
 
-def is_a_loop(data: bytes | str, source: str) -> bool:
-    """Whether a table is a measured loop, and not results over places."""
-    table = read_table(data, partial(SettingError, "--with", source, CAN))
-    return not any(column.quantities[0] & {"position"} for column in table.columns)
-
-
-def read_loop(data: bytes | str, source: str, axes: Axes) -> MeasuredLoop:
-    """Read a measured loop of a table, bytes or text, as `loop_in` does."""
-    table = read_table(data, partial(SettingError, "the measured loop", source, CAN))
-    return loop_in(table, source, axes)
-
-
 def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColumn, TableColumn]:
     """Columns of time, where there is one, displacement and force that the head has to name."""
     columns = table.columns
@@ -93,32 +92,50 @@ def columns_of(table: Table, axes: Axes) -> tuple[TableColumn | None, TableColum
     both = []
     for title, unit in axes:
         remedy = f"name that of {title}, {unit}"
-        both.append(table.choose(rest, KINDS[unit], unit, remedy=remedy))
+        kinds = KINDS.get(unit, {unit})
+        both.append(table.choose(rest, kinds, unit, remedy=remedy))
         rest.remove(both[-1])
     return time, both[0], both[1]
 
 
-def loop_in(table: Table, source: str, axes: Axes) -> MeasuredLoop:
+def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
     """The loop in a table, for a loop of these titles and units.
 
     Raises
     ------
     SettingError
-        For a table without these columns or in another unit, too large or too small, with what is
-        no finite number, or values that are all the same.
+        For a table without these columns or in another unit, with too many rows or too few, with
+        words or infinite numbers in them, or values that are all the same.
     """
-    roles = zip(columns_of(table, axes), (("time", "s"), *axes), strict=True)
+    table = table.given_as("the measured loop", CAN)
+    chosen = columns_of(table, axes)
+    roles = zip(chosen, (("time", "s"), *axes), strict=True)
     used = {name: (column, unit) for column, (name, unit) in roles if column is not None}
-    (*times, displacement, force), message = in_si(table, used)
+    reading = in_si(table, used)
+    *times, displacement, force = reading.numbers
     if len(force) < FEWEST:
         raise table.refuse(f"it has {len(force)} rows: give at least {FEWEST}")
     for values, (title, _) in zip((displacement, force), axes, strict=True):
         if np.ptp(values) == 0.0:
             raise table.refuse(f"{title} has the same value in all rows")
+    message = reading.message
     if not times:
         message += "; matched along the path, as no time is given"
-    units = axes[0][1], axes[1][1]
-    return MeasuredLoop(displacement, force, times[0] if times else None, units, source, message)
+    _, across, up = chosen
+    return MeasuredLoop(
+        displacement=displacement,
+        force=force,
+        times=times[0] if times else None,
+        units=(axes[0][1], axes[1][1]),
+        source=table.source,
+        message=message,
+        bare=(_bare(across), _bare(up)),
+    )
+
+
+def _bare(column: TableColumn) -> str:
+    """Name of a column without a unit; empty of one with a unit."""
+    return "" if column.unit else column.name
 
 
 class LoopComparison:
@@ -142,7 +159,10 @@ class LoopComparison:
             self.counted = (measured.times >= min(first, 0.0)) & (measured.times <= last)
             if self.counted.sum() < FEWEST:
                 ends = f"{measured.times.min():g} s to {measured.times.max():g} s"
-                remedy = "shift or scale its times, set duration, or leave the column of time out"
+                remedy = (
+                    "name the unit of its times (time [ms]), shift or scale them, set duration, "
+                    "or leave the column of time out"
+                )
                 can = f"at least {FEWEST} rows in the run, which lasts {last:g} s"
                 raise self._refusal(can, f"it goes from {ends}: {remedy}")
         pair = measured.displacement[self.counted], measured.force[self.counted]

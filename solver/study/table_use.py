@@ -1,0 +1,58 @@
+"""What a table that is brought to a run is: a measured loop, results of a program, or a path."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from enum import StrEnum
+
+import numpy as np
+
+from solver.discrete.structure import Axes
+from solver.refusal import RefusedError
+from solver.settings import Settings
+from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults, results_in
+from solver.study.measured_loop import MeasuredLoop, columns_of, loop_in
+from solver.tables import Table
+
+
+class Use(StrEnum):
+    """What a table is."""
+
+    LOOP = "loop"
+    RESULTS = "results"
+    PATH = "path"
+
+
+def use_of(table: Table, axes: Axes) -> Use:
+    """What a table is by its head, beside a loop of these axes.
+
+    Results are over positions and times; without a time, or with a friction force, a table of
+    positions is of results that lack something. A position beside another force, however, is where
+    a machine stands, if no time comes twice: then it is a loop, as is all that has its columns.
+    """
+    named = [column.quantities[0] for column in table.columns]
+    has_position = any("position" in kinds for kinds in named)
+    has_friction = any(FRICTION in kinds and "force" not in kinds for kinds in named)
+    has_displacement = any(DISPLACEMENT in kinds for kinds in named)
+    is_loop = False
+    with suppress(RefusedError):
+        columns_of(table, axes)
+        is_loop = True
+    if has_position and (has_friction or not is_loop):
+        return Use.RESULTS
+    if has_position and not has_displacement and not _times_rise(table):
+        return Use.RESULTS
+    return Use.LOOP if is_loop else Use.PATH
+
+
+def brought_in(table: Table, settings: Settings, axes: Axes) -> OtherResults | MeasuredLoop:
+    """The results, or else the loop, in a table for a scene whose loop has these axes."""
+    if use_of(table, axes) is Use.RESULTS:
+        return results_in(table, settings)
+    return loop_in(table, axes)
+
+
+def _times_rise(table: Table) -> bool:
+    """Whether every row is later than the one before, as of a machine, where there are times."""
+    times = [column.place for column in table.columns if "time" in column.quantities[0]]
+    return len(times) != 1 or bool(np.all(np.diff(table.numbers[times[0]]) > 0.0))
