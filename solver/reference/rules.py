@@ -109,11 +109,6 @@ class Rules:
         """Friction force at an instant that needs no normal force, (n,)."""
         return np.asarray(self.bound[:, 0 if self.bound.shape[1] == 1 else instant])
 
-    def without_slip(self, factor: Array) -> Rules:
-        """Rules of a friction that slip has changed by a factor, (n,), and changes no more."""
-        endless = np.full_like(self.cap, np.inf)
-        return replace(self, friction=self.friction * factor, cap=endless, strength=PLAIN)
-
     def states_at(self, jumps: Array) -> States:
         """States of a body that is where it would be if it were rigid, (n, n_instants)."""
         closed = (jumps + self.gap[:, None] <= 0.0)[self.partner]
