@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -98,16 +99,23 @@ class StopState:
     certified solution: at once, or once the iterates themselves are that near to it. It also ends
     when the LATIN indicator has stopped falling, or numbers to be finite. Most numbers cost as much
     as an iteration: they are computed when they may be low enough, and at the first and the last.
-    Beside its iterations the run took so many `seconds` so far.
+    Beside its iterations the run took so many `seconds` so far. A status step is given up where
+    `interrupted` returns True.
     """
 
-    def __init__(self, latin: Latin, spent: float = 0.0) -> None:
+    def __init__(
+        self,
+        latin: Latin,
+        spent: float = 0.0,
+        interrupted: Callable[[], bool] = lambda: False,
+    ) -> None:
         self._latin, self._stop, self.seconds = latin, latin.stop, spent
         self._may_finish = latin.finish is not None
         self._searches = latin.finish is not None and not latin.finish.at_once
         self._asks_accuracy = math.isfinite(self._stop.accuracy)
         accuracy = self._stop.accuracy if self._asks_accuracy else DEFAULT_ACCURACY
-        self.estimate = ErrorEstimate(accuracy, needs_proof=isinstance(latin.linear, PGD))
+        has_bases = isinstance(latin.linear, PGD)
+        self.estimate = ErrorEstimate(accuracy, needs_proof=has_bases, interrupted=interrupted)
         self._on_goal, self._on_sufficient = NextCheck(), NextCheck()
         self._stall = StallCheck()
 

@@ -35,7 +35,7 @@ class Instants:
 
     `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants), and `guess`
     are states to try, (n, n_instants). `may_hold` says whether there may be an equilibrium at an
-    instant, where none is found at once.
+    instant, where none is found at once. `stop` is that of `LinearSystem`.
 
     Attributes
     ----------
@@ -51,8 +51,9 @@ class Instants:
         rest: Array | None,
         guess: States | None,
         may_hold: Callable[[int], bool],
+        stop: Callable[[], bool] | None = None,
     ) -> None:
-        self._newton, rules = Newton(condensed), condensed.rules
+        self._newton, rules = Newton(condensed, stop), condensed.rules
         self.system = self._newton.system
         self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules

@@ -15,7 +15,7 @@ hold without them (solver/README.md, 6).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from copy import copy
 from dataclasses import replace
 
@@ -61,8 +61,8 @@ class Newton:
         Largest force of the load on a jump, scaled.
     """
 
-    def __init__(self, condensed: Condensation) -> None:
-        self.system = LinearSystem(condensed, condensed.stiffness, condensed.gauge)
+    def __init__(self, condensed: Condensation, stop: Callable[[], bool] | None = None) -> None:
+        self.system = LinearSystem(condensed, condensed.stiffness, condensed.gauge, stop)
         self._condensed, self._rules = condensed, condensed.rules
         rules = self._rules
         self.gone, self.strained = np.zeros_like(rules.gap), np.zeros(len(condensed.base))
@@ -122,7 +122,7 @@ class Newton:
         for _ in range(STEPS):
             springs = share * alone
             held = condensed.elastic + np.diagflat(springs)
-            sprung = LinearSystem(condensed, held, condensed.gauge[:, :0])
+            sprung = LinearSystem(condensed, held, condensed.gauge[:, :0], self.system.stop)
             pulled = replace(sides, load=sides.load + springs * moved)
             solved = self.seek(sprung, states, pulled, at)
             if solved is not None:

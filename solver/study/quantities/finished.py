@@ -21,11 +21,11 @@ from solver.latin.cost import costs_of
 from solver.latin.status import certified
 from solver.latin.status_step import status_step
 from solver.laws import OPEN
-from solver.reference.condensation import NoReferenceError
+from solver.reference.condensation import Interrupted, NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.rules import States
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -187,10 +187,12 @@ def finished_run(
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
-    reference, _ = known_reference(problem) if errors else (None, "")
+    reference, _ = known_reference(problem, cancelled) if errors else (None, "")
     distance = None if reference is None else distance_to(reference, problem)
-    if before is not None and (near := neighbour(problem, settings, before)) is not None:
-        return FinishedRun(settings, near, was_warm=True)
+    if before is not None:
+        near = neighbour(problem, settings, before, cancelled)
+        if near is not None:
+            return FinishedRun(settings, near, was_warm=True)
     solution = solve(
         problem,
         method_of(settings),
@@ -207,7 +209,7 @@ def known_reference(
 ) -> tuple[Reference | None, str]:
     """The reference, if there is one, and why it is not the one solution, if it is not.
 
-    `stop` is asked once per instant whether to give it up.
+    `stop` is asked again and again whether to give it up.
     """
     try:
         reference = reference_of(problem, stop)
@@ -228,11 +230,17 @@ def known_reference(
     return reference, f"there are several solutions at {several} instants" if several else ""
 
 
-def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
+def neighbour(
+    problem: Problem,
+    settings: Settings,
+    states: States,
+    stop: Callable[[], bool] | None = None,
+) -> Solution | None:
     """Solution by a status step from what stuck, slipped and opened in a run of like settings.
 
     It counts only if it is the one of the discrete problem, which does not depend on the start;
-    None where it is not found soon. A run on separated bases is its own, as it has these too.
+    None where it is not found soon, or `stop` returns True before. A run on separated bases is its
+    own, as it has these too.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
@@ -242,9 +250,9 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     if not costs.afford(ALONE):
         return None
     try:
-        solver, most = incremental_solver(problem), costs.systems(ALONE)
-        _, certificate = status_step(solver, problem, states, most)
-    except NoReferenceError:
+        solver, most = incremental_solver(problem, stop), costs.systems(ALONE)
+        _, certificate = status_step(solver, problem, states, most, stop)
+    except (NoReferenceError, Interrupted):
         return None
     if certificate is None or certificate.residual > settings.accuracy:
         return None
