@@ -41,9 +41,12 @@ class Instants:
     ----------
     jumps_at
         First instant at which no solution goes on from the one before; None while all do.
+    has_others
+        Whether another solution of the last instant was met, which is not stable.
     """
 
     jumps_at: int | None = None
+    has_others = False
 
     def __init__(
         self,
@@ -78,6 +81,7 @@ class Instants:
         (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
         """
         condensed, rules = self._condensed, self._rules
+        self.has_others = False
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
             return Increment(*map(np.zeros_like, still))
@@ -214,6 +218,7 @@ class Instants:
             near = self._newton.near(at, end)
             if near is not None and self._newton.is_stable(near, end):
                 return near
+            self.has_others |= near is not None
             if near is not None and _are_equal(at.slip, before.slip):
                 at = self._newton.leave(near, end)
         return None
