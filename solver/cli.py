@@ -21,6 +21,7 @@ from solver.discrete.problem import nothing_acts
 from solver.disk import check_place, why
 from solver.files import save_result, scene_settings, summary
 from solver.latin import Ending, solve, solve_in_slabs
+from solver.latin.blocks import one_blas_thread
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to, held_instants
 from solver.refusal import RefusedError
@@ -156,7 +157,9 @@ def _run(chosen: argparse.Namespace) -> int:
     if chosen.out is not None:
         with refusing(chosen.out, place):
             save_result(chosen.out, settings, solution)
-    loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
+    # Matrices are small: threads that wait for each other take longer than the whole run.
+    with one_blas_thread:
+        loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
     if loose:
         warn(
             f"at {loose} of {problem.n_instants} instants nothing says where a body lies: its "

@@ -15,9 +15,14 @@ from contact_problems import (
     two_bodies,
 )
 
-from solver.reference.assembly import NoReferenceError, assembled_stiffness, external_force
+from solver.reference.assembly import (
+    Interrupted,
+    NoReferenceError,
+    assembled_stiffness,
+    external_force,
+)
 from solver.reference.distance import determinate_forces
-from solver.reference.incremental import Interrupted, reference_of
+from solver.reference.incremental import reference_of
 
 SMALL = 1e-10
 
@@ -170,9 +175,14 @@ def test_a_body_that_nothing_holds_even_glued_is_refused():
         reference_of(problem(parts, of.interfaces, 2))
 
 
-def test_a_stop_interrupts_between_instants():
+def test_a_stop_is_asked_before_every_system_and_interrupts_at_any():
     of = on_a_support(np.random.default_rng(0), 2, 0.3)
-    calls = iter([False, False, True])
-    with pytest.raises(Interrupted):
-        reference_of(of, stop=lambda: next(calls))
-    assert next(calls, None) is None
+    asked: list[int] = []
+    steps = reference_of(of, stop=lambda: bool(asked.append(0))).steps
+    assert steps > 2 * of.n_instants
+    assert len(asked) >= steps
+    for last in range(len(asked)):
+        answers = iter([False] * last + [True])
+        with pytest.raises(Interrupted):
+            reference_of(of, stop=lambda answers=answers: next(answers))
+        assert next(answers, None) is None

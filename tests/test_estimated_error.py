@@ -219,6 +219,23 @@ def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converg
         assert np.isfinite(saved["friction_force"]).all()
 
 
+def test_a_status_step_that_is_halted_is_tried_again_at_the_next_iterate() -> None:
+    settings = small("block", finish="at-once")
+    problem, method = discretise(settings), method_of(settings)
+    asked: list[int] = []
+    at_once = list(judged(problem, method, interrupted=lambda: bool(asked.append(0))))
+    certified = at_once[-1][0].number
+    assert len(asked) > problem.n_instants
+    is_halted = True
+    run = judged(problem, method, interrupted=lambda: is_halted)
+    halted = [decision for _, decision in islice(run, certified + 2)]
+    assert all(decision.certificate is None for decision in halted)
+    is_halted = False
+    iterate, decision = next(run)
+    assert iterate.number == certified + 3
+    assert decision.certificate is not None
+
+
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf"])
 def test_a_limit_is_some_time(value: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "bar", "--limit", value]) == 2

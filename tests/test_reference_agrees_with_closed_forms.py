@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.reference import search as module
+from solver.reference.assembly import Interrupted
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.incremental import reference_of
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.solution import Reference
 from solver.scenes.bar import BarSettings
 
 EXACT = settings(max_examples=25)

@@ -25,6 +25,7 @@ UNSEEN = 30.0
 """Seconds without a picture on the screen after which a run waits: nobody sees it."""
 LONG, LARGE = 60.0, 2e9
 """Seconds and bytes of a run from which it waits to be agreed to."""
+PAUSE = messages.Pace(0.0)
 HEARTBEAT = 2.0
 """Seconds between two signs of life."""
 
@@ -100,7 +101,7 @@ class WorkerLoop:
     def _begin(self, start: Start) -> None:
         self._send(messages.Began(start.number))
         self._number, self._runner = start.number, None
-        runner = Runner(start, self._references, self._is_superseded)
+        runner = Runner(start, self._references, self._is_superseded, self._is_halted)
         cost = runner.cost
         if (cost.seconds > LONG or cost.memory > LARGE) and not start.is_agreed:
             self._send(messages.Costly(start.number, str(cost)))
@@ -127,6 +128,11 @@ class WorkerLoop:
         """Whether another run is ordered."""
         self._receive(0.0)
         return any(isinstance(order, Start) for order in self._orders)
+
+    def _is_halted(self) -> bool:
+        """Whether another run is ordered, or this one is to wait."""
+        self._receive(0.0)
+        return any(isinstance(order, Start) or order == PAUSE for order in self._orders)
 
     def _receive(self, timeout: float | None) -> None:
         """Take what has been ordered; of several runs, only the last counts."""

@@ -14,8 +14,8 @@ from app.worker.sampling import Sampler
 from solver.latin import Ending, Iterate, Record, Status, judged, record
 from solver.latin.cost import RunCost, run_cost
 from solver.latin.status import collapses
+from solver.reference.assembly import Interrupted
 from solver.reference.distance import Distance, distance_to
-from solver.reference.solution import Interrupted
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 
@@ -66,13 +66,18 @@ class Pacing:
 class Runner:
     """One run: its first iteration, then the reference, then the others as they are due.
 
-    It is `interrupted` where an order waits that ends it. The problem is shown by `sampler`; it has
+    It is `interrupted` where an order waits that ends it; where one waits that halts it a status
+    step is given up until it goes on. The problem is shown by `sampler`; it has
     the newest `iterate`, a `history` with a record of each, and at its end a `status`. `pacing`
     says when the next iteration is due, `has_news` whether anything changed since the last frame.
     """
 
     def __init__(
-        self, start: Start, references: ReferenceCache, interrupted: Callable[[], bool]
+        self,
+        start: Start,
+        references: ReferenceCache,
+        interrupted: Callable[[], bool],
+        halted: Callable[[], bool] = lambda: False,
     ) -> None:
         self.settings = settings = start.settings
         self.is_dragged = start.is_dragged
@@ -87,7 +92,7 @@ class Runner:
         self.status: Status | None = None
         self.has_news = False
         self.pacing = Pacing(start.pace, start.steps)
-        self._iterates = judged(problem, latin, spent=spent)
+        self._iterates = judged(problem, latin, spent=spent, interrupted=halted)
         self._references, self._interrupted = references, interrupted
         self._is_compared = False
         self._distance: Distance | None = None

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array, Indices
-from solver.laws import Contact, Friction
+from solver.laws import Component, Contact, Friction
 from solver.laws.play import Play, follow
 
 
@@ -129,6 +129,7 @@ def driven_friction(
     driven = DrivenFriction(
         along=replace(
             own,
+            component=Component(*(rows[pairs[points]] for rows in law.tangent.sides)),
             bound=law.by_point(own.bound)[points],
             friction=law.mean_by_point(own.friction)[points],
             cap=cap,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -15,10 +16,9 @@ from solver.latin.indicators import ratio
 from solver.latin.iterate import Iterate
 from solver.latin.status import Status, collapses, lost_jump
 from solver.latin.status_step import Certificate, states_of, status_step
-from solver.reference.assembly import NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import LEAST_SHARE, VANISHING
 from solver.reference.incremental import Incremental, incremental_solver
-from solver.reference.solution import Interrupted
 
 SETTLED = 0.04
 """Relative change of the whole contact force at which most statuses are right. If friction and
@@ -56,11 +56,18 @@ class ErrorEstimate:
     With `needs_proof` a certified solution alone counts, whatever it costs: bases that are too
     small converge to something else, which no change shows. The `certificate` is None until it is
     known; for ever, where the problem has no reference. A status step is given up at the
-    `deadline`, by `time.perf_counter`, and none begins that would take longer. The `ending` is that
+    `deadline`, by `time.perf_counter`, and none begins that would take longer. Where `interrupted`
+    returns True it is given up, too, and tried again after the next iteration. The `ending` is that
     of a run whose last status step came to where no equilibrium goes on.
     """
 
-    def __init__(self, accuracy: float, *, needs_proof: bool = False) -> None:
+    def __init__(
+        self,
+        accuracy: float,
+        *,
+        needs_proof: bool = False,
+        interrupted: Callable[[], bool] = lambda: False,
+    ) -> None:
         self._accuracy, self.needs_proof = accuracy, needs_proof
         self._changes = ForceChanges()
         self._next_trial = 1
@@ -68,7 +75,7 @@ class ErrorEstimate:
         self._costs: tuple[int, Costs] | None = None
         self._has_solver = True
         self.certificate: Certificate | None = None
-        self.deadline = math.inf
+        self.deadline, self._interrupted = math.inf, interrupted
         self.ending: Status | None = None
 
     def __call__(self, iterate: Iterate) -> float:
@@ -119,18 +126,20 @@ class ErrorEstimate:
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
         systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
-            self._solver = self._solver or incremental_solver(iterate.problem)
+            self._solver = self._solver or incremental_solver(iterate.problem, self._stops)
             solution, certificate = status_step(
                 self._solver,
                 iterate.problem,
                 states_of(iterate),
                 systems,
-                lambda: self._left() < 0.0,
+                self._stops,
             )
         except NoReferenceError:
             self._has_solver = False
             return
         except Interrupted:
+            if self._left() >= 0.0:
+                self._next_trial = iterate.number + 1
             return
         self.ending = None
         if solution.collapse is not None:
@@ -140,6 +149,10 @@ class ErrorEstimate:
             self.ending = lost_jump(iterate.problem, solution.jumps_at, lost_from)
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
+
+    def _stops(self) -> bool:
+        """Whether a status step is to be given up."""
+        return self._left() < 0.0 or self._interrupted()
 
     def _left(self) -> float:
         """Seconds that are left of the run's limit."""

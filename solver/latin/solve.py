@@ -91,13 +91,15 @@ def judged(
     latin: Latin,
     start: Checkpoint | None = None,
     spent: float = 0.0,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
     It goes on though a verdict says that the run ends. The run took `spent` seconds before, to make
-    the problem.
+    the problem. Where `interrupted` returns True a status step is given up, so that the iterate
+    before it is there at once.
     """
-    rules = StopState(latin, spent)
+    rules = StopState(latin, spent, interrupted)
     for iterate in iterations(problem, latin, start):
         with one_blas_thread:
             verdict = rules.judge(iterate)
@@ -128,12 +130,12 @@ def solve(
     watch
         Whether the records shall hold the indicators of every iteration.
     cancelled
-        Asked after every iteration.
+        Asked after every iteration, and before every linear system of a status step.
     """
     records: list[Record] = []
     last = None
     with one_blas_thread:
-        for iterate, verdict in judged(problem, latin, start, spent):
+        for iterate, verdict in judged(problem, latin, start, spent, cancelled):
             status = verdict.status
             if status is not None and status.ending is Ending.DIVERGED:
                 return Solution(last or iterate, records, status)

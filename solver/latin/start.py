@@ -15,9 +15,9 @@ from solver.discrete.problem import Problem
 from solver.latin.certified import balance_of_rows, known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
-from solver.reference.assembly import NoReferenceError
-from solver.reference.incremental import incremental_solver
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.assembly import Interrupted, NoReferenceError
+from solver.reference.incremental import reference_of
+from solver.reference.solution import Reference
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,7 @@ class Nested:
         deadline = time.perf_counter() + seconds
         for coarse in self.coarser():
             try:
-                solver = incremental_solver(coarse)
-                solution = solver.march(stop=lambda: time.perf_counter() > deadline)
+                solution = reference_of(coarse, lambda: time.perf_counter() > deadline)
             except NoReferenceError:
                 continue
             except Interrupted:

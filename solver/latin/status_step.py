@@ -75,7 +75,7 @@ def status_step(
     """What the solver makes of states, mended, and its certificate if it is a solution.
 
     It begins with `states`, as `states_of` returns those of an iterate, may solve `most` linear
-    systems, and calls `stop` once per instant.
+    systems, and asks `stop` before each of them.
 
     Raises
     ------

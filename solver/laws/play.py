@@ -7,6 +7,7 @@ composed side by side. Where the reach changes with the slip that has gone by, t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -119,6 +120,17 @@ class Strength:
     def slopes(self) -> Array:
         """Growth per slip between the points, and none beyond, shape (n_points,)."""
         return np.asarray(np.append(np.diff(self.factors) / np.diff(self.slips), 0.0))
+
+    @cached_property
+    def rising(self) -> Array:
+        """Sum of the rises of the factor up to each point, shape (n_points,)."""
+        rises = np.maximum(np.diff(self.factors), 0.0)
+        return np.asarray(np.append(0.0, np.cumsum(rises)))
+
+    def rise(self, slip: Array) -> Array:
+        """Sum of the rises of the factor up to a slip, of any shape; the rest are falls."""
+        risen: Array = np.interp(slip, self.slips, self.rising)
+        return risen
 
     def segment(self, slip: Array) -> Indices:
         """Number of the point behind each slip, of any shape."""

@@ -13,6 +13,10 @@ class NoReferenceError(ValueError):
     """No reference can be found; the message says why."""
 
 
+class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
+    """The caller asked the solver to stop before the last instant."""
+
+
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     """Stiffness K of the whole structure, shape (n_dofs, n_dofs), scaled."""
     entries: dict[int, sparse.coo_array] = {}

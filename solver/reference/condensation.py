@@ -20,6 +20,7 @@ Three things are kept apart, as they may differ by any number of digits:
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -31,6 +32,7 @@ from scipy.sparse.linalg import SuperLU
 from solver.arrays import ROUNDING, Array, Indices, sparse_factor
 from solver.discrete.problem import Problem
 from solver.reference.assembly import (
+    Interrupted,
     NoReferenceError,
     assembled_stiffness,
     external_force,
@@ -63,6 +65,8 @@ BLOCK = 500
 class Condensation:
     """The structure between its contacts, without jumps that prescribed displacements make alone.
 
+    `stop` is asked now and then while it is made; `Interrupted` is raised where it returns True.
+
     Attributes
     ----------
     moving
@@ -90,7 +94,7 @@ class Condensation:
         is not unknown.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, stop: Callable[[], bool] | None = None) -> None:
         fixed, prescribed = problem.prescribed
         free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
         self._whole = assembled_stiffness(problem)
@@ -108,9 +112,9 @@ class Condensation:
         self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
         self.stresses: Array = self_stresses(free_jumps, rigid)
         self._rings = np.flatnonzero(self.stresses.any(axis=1))
-        self._condense(free_jumps)
+        self._condense(free_jumps, stop)
 
-    def _condense(self, free_jumps: sparse.csr_array) -> None:
+    def _condense(self, free_jumps: sparse.csr_array, stop: Callable[[], bool] | None) -> None:
         """Factor the glued structure once, and take it out for all jumps and instants together."""
         free = self._free
         stiffness = self._whole[free]
@@ -129,6 +133,8 @@ class Condensation:
         load = self._jumped.T @ load - self._pulled.T @ self._alone
         whole = (self._jumped.T @ strained).toarray(order="C")
         for columns in _blocks(len(whole)):
+            if stop is not None and stop():
+                raise Interrupted
             whole[:, columns] -= self._pulled.T @ self._solved(self._pulled[:, columns].toarray())
         _symmetrise(whole)
         self._tie(whole)

@@ -13,14 +13,14 @@ import numpy as np
 from solver.arrays import Array, Flags
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
-from solver.reference.assembly import NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.condensation import Condensation
 from solver.reference.distance import broken_laws
 from solver.reference.instants import Instants
 from solver.reference.limit_analysis import Collapse, collapse_of
 from solver.reference.newton import CONVERGED
 from solver.reference.rules import Increment, Rules, States
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.solution import Reference
 
 MOST_JUMPS = 13_000
 """Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB."""
@@ -37,11 +37,12 @@ class IncrementalContact:
     is taken as zero, and so is the friction there. Where the tangential jump is, friction is as
     `Problem.with_driven_friction` says.
 
+    `stop` is asked now and then while it is made; `Interrupted` is raised where it returns True.
     NoReferenceError is raised if there are more than `MOST_JUMPS` jumps, or the structure can move
     with all contacts closed and stuck.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, stop: Callable[[], bool] | None = None) -> None:
         n_jumps = jumps_in(problem)
         if n_jumps > MOST_JUMPS:
             raise NoReferenceError(
@@ -49,7 +50,7 @@ class IncrementalContact:
                 f"{MOST_JUMPS}); take fewer elements, layers or wires to have one"
             )
         self._problem = problem
-        self._condensed = Condensation(problem)
+        self._condensed = Condensation(problem, stop)
         self._rules = self._condensed.all_rules
         self._is_analysed = False
         self._collapse: Collapse | None = None
@@ -71,11 +72,13 @@ class IncrementalContact:
             Linear systems to solve; the instants that are not reached then do not move, and are
             not `converged`.
         stop
-            Called once per instant; `Interrupted` is raised as soon as it returns True.
+            Called before each linear system; `Interrupted` is raised as soon as it returns True.
         """
         problem, condensed = self._problem, self._condensed
         own = None if guess is None else guess[condensed.moving]
-        instants = Instants(condensed, problem.rest, own, self._may_hold)
+        instants = Instants(
+            condensed, problem.rest, own, lambda instant: self._may_hold(instant, stop), stop
+        )
         sizes = (len(condensed.moving),) * 2 + condensed.gauge.shape
         done = Increment(*(np.zeros((size, problem.n_instants)) for size in sizes))
         turned, reached = np.zeros((2, problem.n_instants), dtype=bool)
@@ -86,15 +89,16 @@ class IncrementalContact:
                 break
             for field, values in zip(done, instants(instant), strict=True):
                 field[:, instant] = values
-            turned[instant], reached[instant] = instants.system.turned, True
+            turned[instant] = instants.system.turned or instants.has_others
+            reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
         return self._judged(instants, done, turned, reached)
 
-    def _may_hold(self, instant: int) -> bool:
+    def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:
         """Whether any contact forces balance the loads of an instant."""
         if not self._is_analysed:
-            self._is_analysed, self._collapse = True, collapse_of(self._problem)
+            self._collapse, self._is_analysed = collapse_of(self._problem, stop), True
         return self._collapse is None or instant < self._collapse.instant
 
     def _judged(

@@ -15,7 +15,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 from numpy.linalg import LinAlgError
@@ -23,6 +22,7 @@ from numpy.linalg import LinAlgError
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import (
+    Interrupted,
     NoReferenceError,
     assembled_stiffness,
     external_force,
@@ -32,7 +32,7 @@ from solver.reference.condensation import LEFT_INSIDE
 from solver.reference.contact import IncrementalContact
 from solver.reference.rules import Starts, States, rules_of
 from solver.reference.search import Minimum, Search, Tridiagonal
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.solution import Reference
 
 DEARER = 30
 """Points that make a system of the general solver cost one more of this one (measured)."""
@@ -74,11 +74,17 @@ class IncrementalRod:
         first = self._on_dofs(self._rules.bound_at(0)) * self._movable
         self._search = Search(self._stiffness, first, self._movable)
         self._systems = 0
+        self._general: IncrementalContact | None = None
 
-    @cached_property
-    def _general(self) -> IncrementalContact:
-        """The solver that also follows friction which softens faster than a rod unloads."""
-        return IncrementalContact(self._problem)
+    def _marched_in_general(
+        self, guess: States | None, most: int | None, stop: Callable[[], bool] | None
+    ) -> Reference:
+        """Solve by what also follows friction that softens faster than a rod unloads."""
+        if self._general is None:
+            self._general = IncrementalContact(self._problem, stop)
+        dearer = 1 + len(self._dofs) // DEARER
+        limit = None if most is None else most // dearer
+        return self._general.march(guess, limit, stop)
 
     def march(
         self,
@@ -109,8 +115,7 @@ class IncrementalRod:
                 status = self._on_dofs(guess[:, instant])
             least = self._minimise(instant, self._load_steps[instant] + balance, status, gone)
             if least is None:
-                dearer = 1 + len(self._dofs) // DEARER
-                return self._general.march(guess, most and most // dearer, stop)
+                return self._marched_in_general(guess, most, stop)
             minima.append(least)
             starts.took(self._systems - done, from_guess=from_guess)
             balance, status = least.pull, least.status
@@ -216,18 +221,21 @@ Incremental = IncrementalRod | IncrementalContact
 def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
     """Solve a problem instant by instant, by the solver that its interfaces call for.
 
-    `stop` is called once per instant; `Interrupted` is raised as soon as it returns True.
+    `stop` is asked before each linear system, or each instant where these are small;
+    `Interrupted` is raised as soon as it returns True.
     """
     start = time.perf_counter()
-    solution = incremental_solver(problem).march(stop=stop)
+    solution = incremental_solver(problem, stop).march(stop=stop)
     return replace(solution, seconds=time.perf_counter() - start)
 
 
-def incremental_solver(problem: Problem) -> Incremental:
+def incremental_solver(problem: Problem, stop: Callable[[], bool] | None = None) -> Incremental:
     """Prepare the solver that the interfaces of a problem call for.
 
     Raises
     ------
+    Interrupted
+        As soon as `stop` returns True.
     NoReferenceError
         If there is none, as the problem holds what no solver reads, or goes on from where another
         ends.
@@ -236,4 +244,6 @@ def incremental_solver(problem: Problem) -> Incremental:
         raise NoReferenceError(problem.no_reference)
     if any(law.tangential.start is not None for law in problem.rubbing.values()):
         raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
-    return IncrementalRod(problem) if rubs_on_supports(problem) else IncrementalContact(problem)
+    if rubs_on_supports(problem):
+        return IncrementalRod(problem)
+    return IncrementalContact(problem, stop)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 
@@ -27,6 +26,8 @@ SHORTEST = 2.0**-12
 """Share of the load of an instant within which the solution is lost, where it jumps."""
 SLIDES = 100
 """Slips at most, each with the friction that the one before has left, up to the next solution."""
+AT_REST = 1e-9
+"""Change of slips, as a share of the largest, at which they have come to rest."""
 
 
 class Instants:
@@ -34,15 +35,18 @@ class Instants:
 
     `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants), and `guess`
     are states to try, (n, n_instants). `may_hold` says whether there may be an equilibrium at an
-    instant, where none is found at once.
+    instant, where none is found at once. `stop` is that of `LinearSystem`.
 
     Attributes
     ----------
     jumps_at
         First instant at which no solution goes on from the one before; None while all do.
+    has_others
+        Whether another solution of the last instant was met, which is not stable.
     """
 
     jumps_at: int | None = None
+    has_others = False
 
     def __init__(
         self,
@@ -50,8 +54,9 @@ class Instants:
         rest: Array | None,
         guess: States | None,
         may_hold: Callable[[int], bool],
+        stop: Callable[[], bool] | None = None,
     ) -> None:
-        self._newton, rules = Newton(condensed), condensed.rules
+        self._newton, rules = Newton(condensed, stop), condensed.rules
         self.system = self._newton.system
         self._may_hold, self._is_lost = may_hold, False
         self._condensed, self._rules = condensed, rules
@@ -76,6 +81,7 @@ class Instants:
         (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
         """
         condensed, rules = self._condensed, self._rules
+        self.has_others = False
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
             return Increment(*map(np.zeros_like, still))
@@ -126,18 +132,19 @@ class Instants:
         # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
         # or slips as a whole.
         known = [states[:, instant] for states in self._guesses]
-        guesses = [self._states, *known]
-        # Where there may be several solutions, the one that goes on from the instant before.
-        if self._has_guess and self._starts.from_guess and not rules.is_curved:
-            guesses[:2] = guesses[1::-1]
         still = np.zeros_like(sides.held)
         nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
         begin = InstantSolution(self._states, nothing, still)
+        guesses = begin.guesses(known)
+        # Where there may be several solutions, the one that goes on from the instant before.
+        if self._has_guess and self._starts.from_guess and not rules.is_curved:
+            guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
-        if solved is None and rules.is_curved:
-            solved = self._in_parts(begin, sides, known, instant)
-        elif solved is None and not self._is_lost and self._may_hold(instant):
-            solved = newton.follow(begin, sides, newton.approach(begin, sides))
+        if solved is None and not self._is_lost:
+            if rules.is_curved:
+                solved = self._in_parts(begin, sides, known, instant)
+            elif self._may_hold(instant):
+                solved = newton.follow(begin, sides, newton.approach(begin, sides))
         self._is_lost = self._is_lost or solved is None
         return solved
 
@@ -150,42 +157,100 @@ class Instants:
         # Under these nothing is added to the instant before.
         pulled = -self.system.on_base(force)
         begin = Sides(pulled, self._bound(max(instant - 1, 0)), held)
+        at, share = self._followed(lambda _: self._newton, at, (begin, sides), known)
+        if share == 1.0:
+            return at
+        if self.jumps_at is None and rules.softens:
+            self.jumps_at = instant
+        if not self._may_hold(instant):
+            return None
+        return self._beyond(at, (begin.towards(sides, share), sides), known)
+
+    def _followed(
+        self,
+        newton_at: Callable[[float], Newton],
+        at: InstantSolution,
+        sides: tuple[Sides, Sides],
+        known: list[States],
+    ) -> tuple[InstantSolution, float]:
+        """Follow a solution to other sides, in parts; how far it goes, as a share of the way.
+
+        The method may depend on the share, too.
+        """
+        begin, end = sides
         share, length = 0.0, 0.25
         while share < 1.0:
             target = min(share + length, 1.0)
-            part = begin.towards(sides, target)
-            following = self._newton.follow(at, part, [at.states, *known])
+            part = begin.towards(end, target)
+            following = newton_at(target).follow(at, part, at.guesses(known))
             if following is not None:
                 at, share, length = following, target, 2.0 * length
             elif length > SHORTEST:
                 length *= 0.25
             else:
-                if self.jumps_at is None and rules.softens:
-                    self.jumps_at = instant
-                return self._beyond(at, sides, known) if self._may_hold(instant) else None
-        return at
+                break
+        return at, share
 
     def _beyond(
-        self, at: InstantSolution, sides: Sides, known: list[States]
+        self, at: InstantSolution, sides: tuple[Sides, Sides], known: list[States]
     ) -> InstantSolution | None:
         """A stable solution beyond one that is lost, or None.
 
         With the friction that slip so far has left the next slip is larger, and so on up to the
-        nearest solution; Newton's method is tried once the same contacts slip again. What the last
+        nearest solution; Newton's method is tried once the same contacts slip again. Where the
+        bound is known each slip lowers the energy (convex-concave procedure: Yuille, Rangarajan,
+        Neural Comput. 15, 2003), so slips come to rest. That may be where the structure is not
+        stable, as on a ridge between two slopes: it is left down one of them. What the last
         friction alone comes to is the last resort.
         """
-        gone = self._newton.gone
-        lefts = (self._rules.strength(gone + np.abs(at.slip)) for _ in range(SLIDES))
-        last = self._rules.strength(np.full_like(gone, np.inf))
-        for factor in chain(lefts, [last]):
-            before, newton = at.states, self._newton.with_friction_left(factor)
-            given = replace(sides, bound=sides.bound * factor)
-            slid = newton.follow(at, given, [before, *known])
+        end = sides[1]
+        begins, fallen = sides[0], np.abs(at.slip)
+        for number in range(SLIDES + 1):
+            before, falls = at, np.abs(at.slip)
+            if number == SLIDES:
+                falls = np.full_like(falls, self._rules.strength.slips[-1])
+            slid = self._slid(at, (begins, end), (fallen, falls), known)
             if slid is None:
                 return None
-            at = slid
-            if factor is last or np.array_equal(at.states, before):
-                stable = self._newton.stable(at, sides)
-                if stable is not None:
-                    return stable
+            at, begins, fallen = slid, end, falls
+            if number < SLIDES and not np.array_equal(at.states, before.states):
+                continue
+            near = self._newton.near(at, end)
+            if near is not None and self._newton.is_stable(near, end):
+                return near
+            self.has_others |= near is not None
+            if near is not None and _are_equal(at.slip, before.slip):
+                at = self._newton.leave(near, end)
         return None
+
+    def _slid(
+        self,
+        at: InstantSolution,
+        sides: tuple[Sides, Sides],
+        fallen: tuple[Array, Array],
+        known: list[States],
+    ) -> InstantSolution | None:
+        """Follow a solution to other sides with friction that falls no more by itself.
+
+        It falls from what slips (n,) have left to what others have left.
+        """
+        before, after = fallen
+        newton = self._newton.with_friction_left(after)
+        slid = newton.follow(at, sides[1], at.guesses(known))
+        if slid is not None:
+            return slid
+        slid, share = self._followed(
+            lambda share: self._newton.with_friction_left(before + share * (after - before)),
+            at,
+            sides,
+            known,
+        )
+        if share == 1.0:
+            return slid
+        return newton.follow(at, sides[1], newton.approach(at, sides[1]))
+
+
+def _are_equal(slip: Array, other: Array) -> bool:
+    """Whether slips (n,) are others up to the digits that a solution has."""
+    size = np.abs(other).max(initial=0.0)
+    return bool(np.abs(slip - other).max(initial=0.0) <= AT_REST * size)

@@ -10,6 +10,7 @@ before; it never fails after. The program's dual is the mechanism by which it co
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ from scipy.optimize import linprog
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.reference.assembly import NoReferenceError, external_force, jumps
+from solver.reference.assembly import Interrupted, NoReferenceError, external_force, jumps
 from solver.reference.rules import rules_of
 
 WHOLE = 1.0 - 1e-6
@@ -52,11 +53,15 @@ class Collapse:
     tips: bool
 
 
-def collapse_of(problem: Problem) -> Collapse | None:
+def collapse_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Collapse | None:
     """Where a structure collapses on the path of its loads; None if it never does.
+
+    `stop` is asked before each linear program, one an instant.
 
     Raises
     ------
+    Interrupted
+        As soon as `stop` returns True.
     NoReferenceError
         If HiGHS finds no answer.
     """
@@ -85,6 +90,8 @@ def collapse_of(problem: Problem) -> Collapse | None:
         step = sparse.csr_array((now - before)[:, None])
         if not step.nnz and instant:
             continue
+        if stop is not None and stop():
+            raise Interrupted
         program = linprog(
             np.append(np.zeros(size), -1.0),
             A_ub=sparse.hstack([cone, none]),

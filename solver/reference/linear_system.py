@@ -7,10 +7,13 @@ motions a. Their equations say what free jumps carry, what held ones come to, an
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.linalg import lapack
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice
+from solver.reference.assembly import Interrupted
 from solver.reference.condensation import Condensation
 from solver.reference.rules import HELD, Increment, Sides, States
 
@@ -33,6 +36,8 @@ class LinearSystem:
         Stiffness of every jump alone, with what is in series, shape (n,), scaled.
     friction
         Coefficient mu of each jump, shape (n,).
+    stop
+        Asked before each system is solved; where it returns True, `Interrupted` is raised instead.
     solutions
         Systems solved.
     unbalanced
@@ -42,8 +47,15 @@ class LinearSystem:
         and the signs at all solutions of an instant add up to one: so it has others.
     """
 
-    def __init__(self, condensed: Condensation, stiffness: Array, gauge: Array) -> None:
+    def __init__(
+        self,
+        condensed: Condensation,
+        stiffness: Array,
+        gauge: Array,
+        stop: Callable[[], bool] | None = None,
+    ) -> None:
         self._stiffness, self._gauge, rules = stiffness, gauge, condensed.rules
+        self.stop = stop
         self._partner, self.friction = rules.partner, rules.friction
         self._growth = np.zeros_like(rules.friction)
         self._base, self._soft = condensed.base, rules.compliance
@@ -78,6 +90,8 @@ class LinearSystem:
 
     def __call__(self, states: States, sides: Sides) -> Increment:
         """Solve for the step from the instant before."""
+        if self.stop is not None and self.stop():
+            raise Interrupted
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
         self.solutions += 1

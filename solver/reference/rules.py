@@ -7,6 +7,7 @@ where the contact is open or there is no friction.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -108,11 +109,6 @@ class Rules:
     def bound_at(self, instant: int) -> Array:
         """Friction force at an instant that needs no normal force, (n,)."""
         return np.asarray(self.bound[:, 0 if self.bound.shape[1] == 1 else instant])
-
-    def without_slip(self, factor: Array) -> Rules:
-        """Rules of a friction that slip has changed by a factor, (n,), and changes no more."""
-        endless = np.full_like(self.cap, np.inf)
-        return replace(self, friction=self.friction * factor, cap=endless, strength=PLAIN)
 
     def states_at(self, jumps: Array) -> States:
         """States of a body that is where it would be if it were rigid, (n, n_instants)."""
@@ -226,6 +222,10 @@ class InstantSolution(NamedTuple):
     states: States
     step: Increment
     slip: Array
+
+    def guesses(self, known: Iterable[States]) -> list[InstantSolution]:
+        """The solution, and the same with other states."""
+        return [self, *(self._replace(states=states) for states in known)]
 
 
 class Starts:

@@ -16,10 +16,6 @@ from solver.reference.limit_analysis import Collapse
 from solver.reference.rules import OF_JUMPS, States, rules_of
 
 
-class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
-    """The caller asked the solver to stop before the last instant."""
-
-
 @dataclass(frozen=True, eq=False)
 class Reference:
     """The solution of a problem on its own mesh and instants, exact up to rounding.

@@ -21,11 +21,11 @@ from solver.latin.cost import costs_of
 from solver.latin.status import certified, jump_of, limit_of
 from solver.latin.status_step import status_step
 from solver.laws import OPEN
-from solver.reference.assembly import NoReferenceError
+from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver, reference_of
 from solver.reference.rules import States
-from solver.reference.solution import Interrupted, Reference
+from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -245,12 +245,14 @@ def finished_run(
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
-    known = known_reference(problem) if errors else Known()
+    known = known_reference(problem, cancelled) if errors else Known()
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
-    if before is not None and (near := neighbour(problem, settings, before)) is not None:
-        return FinishedRun(settings, near, was_warm=True)
+    if before is not None:
+        near = neighbour(problem, settings, before, cancelled)
+        if near is not None:
+            return FinishedRun(settings, near, was_warm=True)
     solution = solve(
         problem,
         method_of(settings),
@@ -274,7 +276,7 @@ class Known(NamedTuple):
 
 
 def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
-    """Find what is known without a run; `stop` is asked once per instant whether to give up."""
+    """Find what is known without a run; `stop` is asked again and again whether to give up."""
     try:
         reference = reference_of(problem, stop)
     except Interrupted:
@@ -299,11 +301,17 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
     return Known(reference, message)
 
 
-def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
+def neighbour(
+    problem: Problem,
+    settings: Settings,
+    states: States,
+    stop: Callable[[], bool] | None = None,
+) -> Solution | None:
     """Solution by a status step from what stuck, slipped and opened in a run of like settings.
 
     It counts only if it is the one of the discrete problem, which does not depend on the start;
-    None where it is not found soon. A run on separated bases is its own, as it has these too.
+    None where it is not found soon, or `stop` returns True before. A run on separated bases is its
+    own, as it has these too.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
@@ -313,9 +321,9 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     if not costs.afford(ALONE):
         return None
     try:
-        solver, most = incremental_solver(problem), costs.systems(ALONE)
-        _, certificate = status_step(solver, problem, states, most)
-    except NoReferenceError:
+        solver, most = incremental_solver(problem, stop), costs.systems(ALONE)
+        _, certificate = status_step(solver, problem, states, most, stop)
+    except (NoReferenceError, Interrupted):
         return None
     if certificate is None or certificate.residual > settings.accuracy:
         return None
