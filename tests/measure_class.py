@@ -2,8 +2,8 @@
 
 Serves the page and opens all pages, thirty without a number, at once: websockets that say *painted*
 at once, as browsers of thirty machines do, for which these two cores are too few. Prints when the
-first picture of the last page came, how many pictures a second each got at 20 iterations a second and of searches without an
-end in 3 s, the memory of a worker, and what is left once all are closed.
+first picture of the last page came, how many pictures a second each got at 20 iterations a second
+and of searches without an end in 3 s, the memory of a worker, and what is left once all are closed.
 
 With waves all pages are opened and closed so many times, and the memory of the server after each is
 printed. What counts is how much each wave adds from the second on: memory that was once taken is
