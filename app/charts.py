@@ -142,7 +142,8 @@ def overlay(chart: Chart) -> hv.Overlay:
         x_limits, y_limits = (axis.limits or (None, None) for axis in (chart.x, chart.y))
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
     return hv.Overlay([element.opts(framewise=True) for element in made]).opts(
-        title=title,
+        # HoloViews takes braces for places that it fills.
+        title=title.replace("{", "{{").replace("}", "}}"),
         logx=chart.x.logarithmic,
         logy=chart.y.logarithmic,
         xlim=tuple(x_limits),

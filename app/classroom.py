@@ -40,13 +40,14 @@ class Classroom:
     """What the pages of a class have in common.
 
     Whoever has `key` may lead: the page that began the class, after it was loaded again. `leader`
-    is the last one while there is none; `members` follow. `opened` is the lesson whose counts all
-    may see.
+    is None while nobody does; `state` is the leader's, or what the last one left. `members` follow.
+    `opened` is the lesson whose counts all may see.
     """
 
     def __init__(self, code: str, leader: ClassMember) -> None:
         self.code, self.key = code, secrets.token_hex(8)
-        self.leader = leader
+        self.leader: ClassMember | None = leader
+        self.state = leader.state
         self.members: list[ClassMember] = []
         self._gone_at: float | None = None
         self.opened = ""
@@ -54,7 +55,7 @@ class Classroom:
     @property
     def is_alone(self) -> bool:
         """Whether nobody leads it at present."""
-        return self._gone_at is not None
+        return self.leader is None
 
     @property
     def is_over(self) -> bool:
@@ -64,24 +65,32 @@ class Classroom:
     def lead(self, member: ClassMember) -> None:
         """Have a page lead it, in place of the one that did."""
         self.leader, self._gone_at = member, None
+        self.state = member.state
         self.notify()
 
     def part(self, member: ClassMember) -> None:
         """Wait for a leader whose page is closed, or let a follower go."""
-        if member is self.leader and not self.is_alone:
-            self._gone_at = time.monotonic()
+        if member is self.leader:
+            self._let_go(time.monotonic())
         elif member in self.members:
             self.members.remove(member)
         self.notify()
 
     def end(self) -> None:
         """End it; followers keep the last picture."""
-        self._gone_at = -math.inf
+        self._let_go(-math.inf)
         self.notify()
+
+    def _let_go(self, now: float) -> None:
+        """Keep of the leader what followers see: the state itself would keep the whole page."""
+        self.leader, self._gone_at = None, now
+        last = self.state
+        self.state = PageState(**{name: getattr(last, name) for name in (*SHARED, "prediction")})
+        self.state.history, self.state.number = last.history, last.number
 
     def poll_for(self, member: ClassMember) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
-        leader = self.leader.state
+        leader = self.state
         if leader.lesson not in LESSONS or self.is_over:
             return None
         states = (follower.state for follower in self.members)
@@ -98,14 +107,22 @@ class Classroom:
 
     def notify(self) -> None:
         """Have all pages take what is new; another lesson is predicted anew."""
-        if self.opened != self.leader.state.lesson:
+        if self.opened != self.state.lesson:
             self.opened = ""
-        for member in self.members + [self.leader] * (not self.is_alone):
+        for member in self.members:
             member.notify()
+        if self.leader is not None:
+            self.leader.notify()
 
 
 CLASSROOMS: dict[str, Classroom] = {}
 """The classes of the server, by their codes."""
+
+
+def forget() -> None:
+    """Forget the classes that are over, and what their leaders left."""
+    for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
+        del CLASSROOMS[code]
 
 
 def find(code: str) -> Classroom | None:
@@ -137,7 +154,7 @@ class ClassMember(param.Parameterized):
     def leads(self) -> bool:
         """Whether this page leads a class."""
         room = self.room
-        return room is not None and room.leader is self and not room.is_alone
+        return room is not None and room.leader is self
 
     @property
     def follows(self) -> bool:
@@ -156,7 +173,7 @@ class ClassMember(param.Parameterized):
                 self.message = f"There is no class {code[:20]}: ask for it; it may have ended."
             self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
-            last = room.leader.state
+            last = room.state
             self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
             self.state.prediction = last.prediction
             self._lead(room)
@@ -169,8 +186,7 @@ class ClassMember(param.Parameterized):
         """Begin a class that sees what this page shows; those that are over are forgotten."""
         if self.room is not None:
             return
-        for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
-            del CLASSROOMS[code]
+        forget()
         code = ""
         while not code or code in CLASSROOMS:
             code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
@@ -207,6 +223,7 @@ class ClassMember(param.Parameterized):
         if self.room is not None:
             self.room.part(self)
             self.room = None
+        forget()
 
     def notify(self) -> None:
         """Take what is new on the page's own next tick: of several news the last."""
@@ -243,7 +260,7 @@ class ClassMember(param.Parameterized):
             return
         values: dict[str, Any] = {"poll": room.poll_for(self)}
         if self.follows:
-            leader = room.leader.state
+            leader = room.state
             state.history, state.number = leader.history, leader.number
             values |= {name: getattr(leader, name) for name in SHARED}
         # Watchers of what is as it was have nothing to do.

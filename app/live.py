@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -134,7 +135,7 @@ class Live:
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
-            self._sentence.object = frame.run.sentence
+            self._sentence.object = escape(frame.run.sentence)
             if self._shape != self.view.css_classes:
                 # Beside data that are new the browser would paint what it has made of the old.
                 self._document.add_next_tick_callback(self._reshape)

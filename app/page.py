@@ -22,7 +22,7 @@ from app.live import STYLE, Live, column
 from app.server import FULL, PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import button, dialog, looks, wrapped
+from app.widgets import PlainText, button, dialog, looks, wrapped
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -79,9 +79,7 @@ class Page:
             dark_theme=pn.config.theme == "dark",
             sx=COMPACT,
         )
-        with edit_readonly(self.template):
-            # It follows the server as a whole: each event of a page would be told to all others.
-            self.template.busy = False
+        follow_itself(self.template)
         browser.listen(state, document, {**transport.keys(), "p": self._present, "?": self._help})
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
@@ -146,8 +144,13 @@ class Page:
 
     def _take_away(self) -> None:
         """Offer to save what is seen."""
-        link = button("Copy link", self._link.copy, icon="link", **LOOK)
-        self._away[:] = [link, *offers(self.state, list(self._live.display.views))]
+        copied = PlainText(margin=(0, 8))
+
+        def copy() -> None:
+            copied.object = self._link.copy()
+
+        link = button("Copy link", copy, icon="link", **LOOK)
+        self._away[:] = [link, copied, *offers(self.state, list(self._live.display.views))]
         self._away.open = True
 
     def _help(self) -> None:
@@ -191,11 +194,24 @@ class Page:
         self.template.sidebar_open = is_alone and not self.state.is_narrow
 
 
+def follow_itself(template: pmui.Page) -> None:
+    """Have a page follow whether it is loading itself, not whether the server is busy.
+
+    Each event of a page would be told to all others, and what watches the server as a whole keeps
+    the page in memory once it is closed. A value in place of the reference leaves the watcher.
+    """
+    with edit_readonly(template):
+        template.busy = template.param.loading
+
+
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
-    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
+    # Each page's notifications would stay in Panel's table of views once it is closed.
+    pn.extension(reconnect=True, respect_explicit_sizing=True)
     if not PAGES.enter():
-        return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
+        full = pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
+        follow_itself(full)
+        return full
     location = pn.state.location
     place, refusal = read(location.search if location is not None else "")
     # As long as the browser has not told how wide its window is.

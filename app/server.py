@@ -11,9 +11,9 @@ from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
 from tornado.httpserver import HTTPServer
-from tornado.httputil import HTTPServerRequest
+from tornado.httputil import HTTPHeaders, HTTPServerRequest
 from tornado.routing import Matcher, Rule
-from tornado.web import Application, ErrorHandler, GZipContentEncoding
+from tornado.web import Application, ErrorHandler, GZipContentEncoding, OutputTransform
 from tornado.websocket import WebSocketClosedError
 
 OF_A_PAGE = 150_000_000
@@ -28,6 +28,9 @@ LONGEST = 16_000
 """Characters of an address; what is longer is refused (414)."""
 RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
+POLICY = "script-src-attr 'none'; object-src 'none'"
+"""No handler that stands in an element runs, should a text become one after all. Scripts that stand
+in the page are Bokeh's, which has no nonces for them: with `script-src 'self'` there is no page."""
 QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
 
@@ -100,6 +103,7 @@ class PageServer(HTTPServer):
         """Set the application up, as `HTTPServer.initialize` does."""
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
+            request_callback.add_transform(Guarded)
             request_callback.wildcard_router.rules.insert(0, Rule(Refused(), ErrorHandler))
         super().initialize(request_callback, **{"max_header_size": RECEIVED, **options})
 
@@ -108,6 +112,17 @@ class Compressed(GZipContentEncoding):
     """Compression that takes little time: all pages wait for it."""
 
     GZIP_LEVEL = 1
+
+
+class Guarded(OutputTransform):
+    """Tells browsers what no page of this server contains."""
+
+    def transform_first_chunk(
+        self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
+    ) -> tuple[int, HTTPHeaders, bytes]:
+        """Add the policy to the head of an answer."""
+        headers["Content-Security-Policy"] = POLICY
+        return status_code, headers, chunk
 
 
 class Refused(Matcher):

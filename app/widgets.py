@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from html import escape
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 import panel as pn
 import panel_material_ui as pmui
+import param
 
 from solver.settings import Icon
 
@@ -22,13 +24,27 @@ def looks(role: str) -> dict[str, Any]:
     return {"css_classes": [role], "stylesheets": ["\n".join(rules)]}
 
 
-def changing_text(**options: Any) -> pn.pane.Markdown:
-    """Text that may change as soon as it is in sight.
+class PlainText(pn.viewable.Viewer):
+    """Text that is shown as it is, whatever it holds: nothing in it is markup.
 
-    A component of panel-material-ui begins to listen once it is painted, and loses what changes
-    before.
+    What comes from a file, an address or a class is shown by this: Markdown, HTML and `Str` panes,
+    and the `Alert`, `Typography` and `StaticText` of panel-material-ui would run scripts in it. It
+    may change as soon as it is in sight: a component of panel-material-ui begins to listen once it
+    is painted, and loses what changes before.
     """
-    return pn.pane.Markdown("", **looks("line"), **options)
+
+    object = param.String(doc="The text.")
+
+    def __init__(self, **look: Any) -> None:
+        super().__init__()
+        self._pane = pn.pane.HTML("", **looks("line"), **look)
+
+    @param.depends("object", watch=True)
+    def _show(self) -> None:
+        self._pane.object = escape(self.object)
+
+    def __panel__(self) -> pn.pane.HTML:
+        return self._pane
 
 
 def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:

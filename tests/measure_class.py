@@ -1,18 +1,22 @@
-"""Measure a server with many pages: `python tests/measure_class.py [PAGES]`, or with thirty.
+"""Measure a server with many pages: `python tests/measure_class.py [PAGES] [--waves N]`.
 
-Serves the page and opens all pages at once: websockets that say *painted* at once, as browsers of
-thirty machines do, for which these two cores are too few. Prints when the first picture of the last
-page came, how many pictures a second each got at 20 iterations a second and of searches without an
-end in 3 s, the memory of a worker, and what is left once all are closed.
+Serves the page and opens all pages, thirty without a number, at once: websockets that say *painted*
+at once, as browsers of thirty machines do, for which these two cores are too few. Prints when the
+first picture of the last page came, how many pictures a second each got at 20 iterations a second
+and of searches without an end in 3 s, the memory of a worker, and what is left once all are closed.
+
+With waves all pages are opened and closed so many times, and the memory of the server after each is
+printed. What counts is how much each wave adds from the second on: memory that was once taken is
+kept for what comes next.
 """
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import contextlib
 import json
 import re
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -20,9 +24,13 @@ from typing import Any
 from urllib.parse import quote
 
 from browser import Server, serving
-from measure_page import ENDLESS
+from measure_page import ANSWER, ENDLESS
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
-from tornado.websocket import WebSocketClientConnection, websocket_connect
+from tornado.websocket import (
+    WebSocketClientConnection,
+    WebSocketClosedError,
+    websocket_connect,
+)
 
 PACES = {"20 a second": ENDLESS, "whole in 3 s": ENDLESS.rpartition("&pace")[0]}
 SECONDS = 20.0
@@ -64,8 +72,10 @@ class Visitor:
         request = HTTPRequest(place, headers=headers, **PATIENT)
         self._socket: WebSocketClientConnection = await websocket_connect(request)
         self._pulse: str | None = None
-        while (header := await self._socket.read_message()) is not None:
-            await self._take(json.loads(header))
+        # What is to be said to a page that was closed meanwhile is not.
+        with contextlib.suppress(WebSocketClosedError):
+            while (header := await self._socket.read_message()) is not None:
+                await self._take(json.loads(header))
 
     def close(self) -> None:
         """Close it."""
@@ -109,15 +119,8 @@ class Visitor:
 async def measure(server: Server, number: int) -> None:
     idle = len(server.processes())
     for pace, query in PACES.items():
-        visitors = [Visitor() for _ in range(number)]
         began = time.perf_counter()
-        address = f"{server.address}?{quote(query, safe='=&%')}"
-        tasks = [asyncio.create_task(visitor.open(address)) for visitor in visitors]
-        while not all(visitor.pictures for visitor in visitors):
-            await asyncio.sleep(0.1)
-            for task in tasks:
-                if task.done():
-                    await task
+        visitors, tasks = await opened(server, number, query)
         last = max(visitor.pictures[0] for visitor in visitors) - began
         print(f"{pace}: the last opens after {last:.1f} s")
         before, began = [len(visitor.pictures) for visitor in visitors], time.perf_counter()
@@ -125,12 +128,51 @@ async def measure(server: Server, number: int) -> None:
         got = [len(v.pictures) - old for v, old in zip(visitors, before, strict=True)]
         rate = sum(got) / number / (time.perf_counter() - began)
         print(f"{pace}: {rate:.1f} pictures a second and page; {memory(server):.0f} MB a worker")
-        for visitor in visitors:
-            visitor.close()
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(asyncio.gather(*tasks, return_exceptions=True), 5.0)
-        await asyncio.sleep(LEAVING)
+        await close(visitors, tasks)
         print(f"{pace}: {len(server.processes()) - idle} processes left")
+
+
+async def measure_waves(server: Server, number: int, waves: int) -> None:
+    """Print what the server keeps of pages that were opened and closed again and again."""
+    idle, before = len(server.processes()), resident(server)
+    print(f"at first: {before:.0f} MB")
+    for wave in range(1, waves + 1):
+        await close(*await opened(server, number, ANSWER))
+        kept = resident(server)
+        left = len(server.processes()) - idle
+        each = (kept - before) / number
+        print(f"wave {wave}: {kept:.0f} MB, {each:.2f} MB more a page; {left} processes left")
+        before = kept
+
+
+async def opened(
+    server: Server, number: int, query: str
+) -> tuple[list[Visitor], list[asyncio.Task[None]]]:
+    """Open pages, all at once, until each has a picture."""
+    visitors = [Visitor() for _ in range(number)]
+    address = f"{server.address}?{quote(query, safe='=&%')}"
+    tasks = [asyncio.create_task(visitor.open(address)) for visitor in visitors]
+    while not all(visitor.pictures for visitor in visitors):
+        await asyncio.sleep(0.1)
+        for task in tasks:
+            if task.done():
+                await task
+    return visitors, tasks
+
+
+async def close(visitors: list[Visitor], tasks: list[asyncio.Task[None]]) -> None:
+    """Close pages, and wait until the server has let go of them."""
+    for visitor in visitors:
+        visitor.close()
+    with contextlib.suppress(TimeoutError):
+        await asyncio.wait_for(asyncio.gather(*tasks, return_exceptions=True), 5.0)
+    await asyncio.sleep(LEAVING)
+
+
+def resident(server: Server) -> float:
+    """Memory that the server's own process holds, MB."""
+    lines = Path(f"/proc/{server.pid}/status").read_text().splitlines()
+    return int(next(line for line in lines if line.startswith("VmRSS:")).split()[1]) / 1e3
 
 
 def memory(server: Server) -> float:
@@ -143,6 +185,13 @@ def memory(server: Server) -> float:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Measure a server with many pages.")
+    parser.add_argument("pages", type=int, nargs="?", default=30)
+    parser.add_argument("--waves", type=int, default=0)
+    chosen = parser.parse_args()
     quick = ("--unused-session-lifetime", "30000", "--check-unused-sessions", "1000")
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder) / "log", 0, *quick) as made:
-        asyncio.run(measure(made, int(sys.argv[1]) if len(sys.argv) > 1 else 30))
+        if chosen.waves:
+            asyncio.run(measure_waves(made, chosen.pages, chosen.waves))
+        else:
+            asyncio.run(measure(made, chosen.pages))

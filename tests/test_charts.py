@@ -124,3 +124,8 @@ def test_the_engine_finds_who_draws() -> None:
     project = loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     ((name, value),) = project["entry-points"][page.GROUP].items()
     assert EntryPoint(name, value, page.GROUP).load() is render
+
+
+def test_braces_in_a_title_are_braces() -> None:
+    named = replace(PANEL, title="{0} {label}.csv")
+    assert draw(named).title.text == "{0} {label}.csv"

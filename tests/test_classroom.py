@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Callable, Iterator
 from contextvars import copy_context
 from dataclasses import replace
@@ -257,3 +259,35 @@ def test_a_picture_that_moves_does_not_bring_the_poll_again(leader: Seat) -> Non
     tick(leader, follower)
     assert follower.state.selection.phase == 0.3
     assert not seen
+
+
+def test_a_class_keeps_nothing_of_its_leaders_page_but_what_followers_see(frame: Frame) -> None:
+    leader = Seat()
+    leader.member.begin()
+    code = code_of(leader)
+    follower = Seat("rope", code)
+    shown = show(leader, frame)
+    tick(leader, follower)
+    page = weakref.ref(leader.member)
+    leader.member.close()
+    tick(leader, follower)
+    del leader
+    gc.collect()
+    assert page() is None
+    assert follower.state.frame is shown
+    assert follower.member.message.startswith(f"The leader of class {code} is away")
+    follower.member.leave()
+
+
+def test_a_class_that_is_over_is_forgotten_once_a_page_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    leader, other = Seat(), Seat()
+    leader.member.begin()
+    code = code_of(leader)
+    leader.member.close()
+    other.member.close()
+    assert code in classroom.CLASSROOMS
+    monkeypatch.setattr(classroom, "KEPT", -1.0)
+    other.member.close()
+    assert code not in classroom.CLASSROOMS

@@ -6,15 +6,20 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from urllib.parse import quote
 
-from browser import ROOT
+from browser import ROOT, Chrome, Server
 from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Dialog, Page, Request, expect
 
 SMALL = f"elements=20&instants=21&substructures=4&{ANSWER}"
 LOAD = "time (s),force (kN)\n0,0\n1,1.2\n2,-0.6\n"
 ROWS = "".join(f"{x},0.75,1.4\n" for x in range(0, 1001, 100))
+QUIET = 500.0
+"""Milliseconds in which what was made of markup has run."""
 RESULTS = f"x (mm),t (s),friction force (kN/m)\n{ROWS}"
 
 
@@ -96,3 +101,103 @@ def test_what_a_file_has_is_drawn_beside_or_run_and_what_was_understood_is_said(
     is_solved(page)
     upload(page, tmp_path / "bad.csv", "time,force\n0,0\n1,much\n")
     expect(page.get_by_text("much").first).to_be_visible()
+
+
+MARKUP = "<img/src='x'/onerror='window.ran=1'>[go](javascript:window.ran=1)"
+"""Runs wherever it is taken for HTML or Markdown."""
+HANDLER = "<img src='data:,' onerror='window.ran=1'>"
+NAME = "<img src=x onerror=window.ran=1>[go](javascript:window.ran=1)"
+"""The same, as a file may be called."""
+LOOP = f"displacement (mm),force (kN),{MARKUP}\n" + "".join(
+    f"{n / 10},{n},{MARKUP}\n" for n in (0, 1, 2, 1, 0)
+)
+HOSTILE = {
+    "cell.csv": f"time,force\n0,0\n1,{MARKUP}\n",
+    "head.csv": f"time,{MARKUP}\n0,0\n1,1\n",
+    "unit.csv": f"time [s],force [{MARKUP}]\n0,0\n1,1\n",
+    f"{NAME} refused.csv": "time,force\n0,0\n1,much\n",
+    "scene.toml": f'scene = "{MARKUP}"\n',
+    "key.toml": f'scene = "bar"\n"{MARKUP}" = 1\n',
+    "value.toml": f'scene = "bar"\nfriction = "{MARKUP}"\n',
+    "no.toml": f"{MARKUP}\n",
+    f"{NAME}.toml": "scene = 1\n",
+    f"{NAME} load.csv": "time (s),force (kN)\n0,0\n1,0.9\n",
+    f"{NAME} theirs.csv": RESULTS,
+    f"{NAME} {{0}} loop.csv": LOOP,
+}
+"""Files by their names; those that are not refused come last."""
+PLACES = "scene", "lesson", "case", "tab", "question", "plots", "file", "friction", MARKUP
+"""In an address."""
+
+
+@contextmanager
+def watched(page: Page) -> Iterator[None]:
+    """Check that nothing that was written for a page has become a part of it, or has run."""
+    done: list[str] = []
+
+    def ask(request: Request) -> None:
+        done.append(request.url)
+
+    def speak(dialog: Dialog) -> None:
+        done.append(f"dialog/{dialog.message}/x")
+        dialog.dismiss()
+
+    page.on("request", ask)
+    page.on("dialog", speak)
+    yield
+    page.wait_for_timeout(QUIET)
+    page.remove_listener("request", ask)
+    page.remove_listener("dialog", speak)
+    assert page.evaluate("window.ran") is None
+    assert page.locator("img[src='x'], a[href^='javascript:']").count() == 0
+    assert not [what for what in done if what.endswith("/x")]
+
+
+def test_nothing_runs_that_a_file_says_or_is_called(
+    visit: Visit, chrome: Chrome, tmp_path: Path
+) -> None:
+    page = visit(f"?{SMALL}")
+    is_solved(page)
+    button(page, "Files").click()
+    said = page.locator(".line div").first
+    with watched(page):
+        for number, (name, text) in enumerate(HOSTILE.items()):
+            folder = tmp_path / str(number)
+            folder.mkdir()
+            before = said.inner_text() if number else ""
+            upload(page, folder / name, text)
+            expect(said).not_to_have_text(before)
+        expect(said).to_contain_text(NAME)
+        close_dialog(page)
+        button(page, "Take away").click()
+        offline = download(page, "The run as one page", tmp_path)
+        close_dialog(page)
+        button(page, "Fit").click()
+        expect(page.locator(".fit .bk-Figure")).to_be_visible()
+    taken = chrome.new_page()
+    with watched(taken):
+        taken.goto(offline.as_uri())
+        expect(taken.locator(".bk-Figure").first).to_be_visible()
+    chrome.leave(taken)
+
+
+def test_a_handler_in_an_element_does_not_run_should_a_text_become_one(
+    chrome: Chrome, server: Server
+) -> None:
+    page = chrome.new_page()
+    page.goto(server.address)
+    with page.expect_console_message(lambda message: "Content Security Policy" in message.text):
+        page.evaluate("(text) => document.body.insertAdjacentHTML('beforeend', text)", HANDLER)
+    assert page.evaluate("window.ran") is None
+    chrome.leave(page)
+
+
+def test_nothing_runs_that_an_address_says(visit: Visit) -> None:
+    text = quote(MARKUP, safe="")
+    page = visit("?" + "&".join(f"{quote(place, safe='')}={text}" for place in PLACES))
+    with watched(page):
+        expect(page.locator(".status")).to_contain_text("there is no scene <img")
+        is_solved(page)
+    page = visit(f"?class={text}")
+    with watched(page):
+        expect(page.get_by_text("There is no class <img").first).to_be_visible()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from types import SimpleNamespace
+from typing import Any
 
 import panel as pn
 import pytest
@@ -13,7 +14,8 @@ from panel.util import edit_readonly
 
 import app.supervisor
 from app.messages import WHOLE, Order, Pace, Start
-from app.page import Page
+from app.page import Page, open_page
+from app.server import PAGES
 from app.state import PageState, default_settings
 
 
@@ -46,6 +48,19 @@ def test_a_first_run_goes_on_once_its_first_picture_is_painted(
     pulse.painted = 1
     pulse.painted = 2
     assert [order for order in orders if isinstance(order, Pace)] == [Pace(WHOLE)]
+
+
+@pytest.mark.usefixtures("document")
+def test_the_page_of_a_full_server_is_not_watched_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    def watchers() -> list[Any]:
+        return pn.state.param.watchers.get("value", {}).get("busy", [])
+
+    monkeypatch.setenv("SLIPFRONT_PAGES", "1")
+    monkeypatch.setattr(PAGES, "count", 1)
+    before = len(watchers())
+    page = open_page()
+    assert page.title == "Slipfront"
+    assert len(watchers()) == before
 
 
 @pytest.mark.usefixtures("orders", "document")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from html import escape
-
 import pandas as pd
 import panel_material_ui as pmui
 
@@ -102,7 +100,7 @@ class FitTab(CommandTab):
             _, across, up = pd.read_csv(file).to_numpy().T
             curves.append(PanelCurve("nearest run", across, up, 1))
         x, y = (PanelAxis(title, unit) for title, unit in axes_on(self.state))
-        return Panel(escape(measured.source), x, y, tuple(curves))
+        return Panel(measured.source, x, y, tuple(curves))
 
     def use(self) -> None:
         """Run what was found on the live tab, in as many digits as one reads."""

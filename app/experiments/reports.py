@@ -12,7 +12,7 @@ import panel_material_ui as pmui
 from app.experiments.jobs import OUT, SETTINGS, Job, follow
 from app.experiments.questions import TEXTS
 from app.state import PageState
-from app.widgets import button, changing_text, download, looks, wrapped
+from app.widgets import PlainText, button, download, looks, wrapped
 from solver.files import dump
 from solver.study.proof import PAGE
 
@@ -47,8 +47,8 @@ class CommandTab(ABC):
         self._done: dict[str, Files] = {}
         self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
         self.cancel_button = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
-        self._words = changing_text(margin=(0, 8))
-        self.progress = changing_text(margin=(6, 8))
+        self._words = PlainText(margin=(0, 8))
+        self.progress = PlainText(margin=(6, 8))
         self.files = pn.Row(margin=0)
         self.buttons = wrapped(self.start_button, self.cancel_button, self.files)
         self.page = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 8))

@@ -21,7 +21,7 @@ from app.experiments.questions import (
 )
 from app.state import PageState, answer
 from app.units import unit_for
-from app.widgets import button, changing_text, download
+from app.widgets import PlainText, button, download
 from solver.files import dump
 from solver.settings import Settings
 from solver.study.mesh import decides
@@ -81,8 +81,8 @@ class WhatIf:
         self._ready = {
             title: button(title, partial(self._on_ready, title), **look) for title in READY
         }
-        self.message = changing_text(margin=(2, 8))
-        self._meshed = changing_text(margin=(10, 8))
+        self.message = PlainText(margin=(2, 8))
+        self._meshed = PlainText(margin=(10, 8))
 
     def start(self) -> None:
         """Have the question answered, in place of the one before."""
@@ -111,7 +111,7 @@ class WhatIf:
         if sweep is not None and self._seen != (len(sweep.rows), sweep.is_over):
             self._draw()
         if job is not None:
-            self._meshed.object = job.progress or "  \n".join(job.lines)
+            self._meshed.object = job.progress or "\n".join(job.lines)
             self.mesh.label = MESH if job.is_over else "No more"
             if job.is_over:
                 job.close()

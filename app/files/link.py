@@ -62,11 +62,11 @@ class Link:
             is_same = self._location.search == query
             self._location.search = f"{query}&" if is_same else query
 
-    def copy(self) -> None:
-        """Have the browser copy the whole link."""
+    def copy(self) -> str:
+        """Have the browser copy the whole link; what is to be said of it."""
         self._browser.copied = ""
         self._browser.copied, message = link_of(self._state)
-        pn.state.notifications.info(f"The link to what is shown is copied. {message}")
+        return f"The link to what is shown is copied. {message}".rstrip()
 
     def go(self, query: str) -> None:
         """Bring the page to an address."""

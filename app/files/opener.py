@@ -22,7 +22,7 @@ from app.files.tables import (
 )
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from app.widgets import button, changing_text, dialog, download
+from app.widgets import PlainText, button, dialog, download
 from solver.definitions import title_of
 from solver.files import dump, read_settings
 from solver.refusal import RefusedError
@@ -73,7 +73,7 @@ class TableOpener:
         look: dict[str, Any] = {"margin": (4, 0), "size": "small", "width": width}
         outlined = {**look, "variant": "outlined"}
         self.file = pmui.FileInput(label=label, accept=accept, description=HELP, **outlined)
-        self.message = changing_text(margin=0)
+        self.message = PlainText(margin=0)
         self.columns_button = button(
             "Columns and units", self.show, icon="view_column", visible=False, **outlined
         )
@@ -82,7 +82,7 @@ class TableOpener:
         self.use = pmui.Select(label="Use it as", **wide)
         self.heads = pmui.TextInput(label="Columns", **wide)
         self._rows = pn.pane.DataFrame(None, index=False, margin=(0, 6), max_height=190)
-        self._understood = changing_text(margin=(6, 6))
+        self._understood = PlainText(margin=(6, 6))
         self.dialog = dialog(
             "Columns and units",
             *(self.use, self.heads, HEADS, self._rows, self._understood),

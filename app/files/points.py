@@ -16,7 +16,7 @@ from app.refusals import message_of
 from app.state import PageState
 from app.units import units_of_points
 from app.views.colors import LATIN
-from app.widgets import dialog
+from app.widgets import PlainText, dialog
 from solver.definitions import title_of
 from solver.refusal import RefusedError
 
@@ -47,7 +47,7 @@ class CurveDialog:
         self.text.param.watch(lambda event: self._take(event.new, "the text"), "value")
         self._file = pmui.FileInput(label="Open a table (.csv, .xlsx)", accept=TABLES)
         self._file.param.watch(lambda event: self._take(event.new, self._file.filename), "value")
-        self._message = pn.pane.Markdown("", margin=(0, 5))
+        self._message = PlainText(margin=(0, 5))
         self._figure = self._plot() if is_path else None
         plot = (
             pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),

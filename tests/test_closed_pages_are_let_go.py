@@ -1,0 +1,74 @@
+"""Nothing of a page that was closed stays in the server: no state, no document, no process."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import weakref
+from multiprocessing import active_children
+from typing import Any
+
+from bokeh.document import Document
+from browser import ROOT
+from measure_class import Visitor
+from pages import ANSWER
+from panel.io.server import get_server
+from processes import PATIENCE
+
+from app.state import PageState
+
+SMALL = f"elements=20&instants=11&{ANSWER}"
+QUERIES = SMALL, f"{SMALL}&view=present", "lesson=how-fast-how-big"
+LOOKS = 20
+QUICK = {"unused_session_lifetime_milliseconds": 1000, "check_unused_sessions_milliseconds": 50}
+
+
+def alive() -> list[Any]:
+    """The states and documents of pages that are in memory, garbage included."""
+    return [each for each in gc.get_objects() if isinstance(each, PageState | Document)]
+
+
+async def until(condition: Any) -> None:
+    """Wait until a condition holds, while the server works."""
+    async with asyncio.timeout(PATIENCE):
+        while not condition():
+            await asyncio.sleep(0.02)
+
+
+async def open_and_close(address: str) -> None:
+    """Open three pages one after the other, each until it has a picture, and close them."""
+    visitors, tasks = [], []
+    for query in QUERIES:
+        visitor = Visitor()
+        visitors.append(visitor)
+        tasks.append(asyncio.create_task(visitor.open(f"{address}?{query}")))
+        await until(lambda: visitor.pictures or tasks[-1].done())  # noqa: B023
+    for visitor in visitors:
+        visitor.close()
+    await asyncio.gather(*tasks)
+
+
+async def states_left() -> list[Any]:
+    """Serve the page, have it visited, and find what is left of the visitors' pages."""
+    server = get_server({"app": str(ROOT / "app" / "main.py")}, **QUICK)
+    server.start()
+    before = weakref.WeakSet(alive())
+    workers = set(active_children())
+    try:
+        await open_and_close(f"http://localhost:{server.port}/app")
+        await until(lambda: not server.get_sessions("/app"))
+        await until(lambda: set(active_children()) <= workers)
+        for _ in range(LOOKS):
+            gc.collect()
+            if not (left := [each for each in alive() if each not in before]):
+                break
+            # A callback that was to come each second is forgotten when it comes.
+            del left
+            await asyncio.sleep(0.1)
+        return [type(each).__name__ for each in alive() if each not in before]
+    finally:
+        server.stop()
+
+
+def test_three_pages_that_were_closed_leave_nothing_in_memory() -> None:
+    assert asyncio.run(states_left()) == []
