@@ -194,7 +194,7 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start(
     assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.
     assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(1.0, rel=0.05)
-    only, apart = messages(found)
+    only, apart, *_ = messages(found)
     assert only.startswith(f"Only friction * {name} is known: ")
     assert "does not tell friction and" in apart
 

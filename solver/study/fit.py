@@ -228,6 +228,9 @@ def _combinations(valley: Valley, reach: float, blind: Array, is_known: Flags) -
     for row in _echelon(ways[len(blind) :]):
         powers = np.zeros(len(is_known))
         powers[is_open] = row
+        if np.count_nonzero(powers) == 1:
+            # A setting by itself has been asked for, and is not known.
+            continue
         combination = _combination(valley, reach, moves, powers)
         if combination is not None:
             combinations.append(combination)
