@@ -18,6 +18,7 @@ from solver.study.fit import fit
 from solver.study.fit_report import messages
 from solver.study.measured_loop import CAN, LoopComparison, MeasuredLoop, branches, loop_in
 from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.valley import Side
 from solver.tables import read_table
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
@@ -197,7 +198,7 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start(
     assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.
     assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(1.0, rel=0.05)
-    only, apart = messages(found)
+    only, apart, *_ = messages(found)
     assert only.startswith(f"Only friction * {name} is known: ")
     assert "does not tell friction and" in apart
 
@@ -207,7 +208,7 @@ def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
     found = fit(stuck, made({"contact_stiffness": 8.0}, stuck), ["friction", "contact_stiffness"])
     assert found.nearest.values == pytest.approx([1e5, 8.0], rel=1e-6)
     assert np.isinf(found.errors).tolist() == [True, False]
-    assert messages(found)[0].startswith("The loop says nothing of friction")
+    assert messages(found)[0].startswith("The loop does not tell friction:")
 
 
 def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
@@ -217,6 +218,71 @@ def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     assert np.isinf(found.errors).all()
     assert found.nearest.values @ [5000.0, 1.0] == pytest.approx(0.37 * 5000.0 + 600.0, rel=1e-6)
     assert messages(found)[0].startswith("Only friction * cohesion^0.")
+
+
+FLAT = {**BAR, "elements": 16, "instants": 21, "substructures": 4}
+
+
+def flat_valley() -> tuple[Settings, dict[str, float], MeasuredLoop]:
+    """A bar of which friction and Young's modulus are known together, and a loop with noise."""
+    true = {"friction": 0.54, "young": 5.95e10}
+    start = scene_settings("bar").checked({**FLAT, "friction": 0.436, "young": 7.35e10})
+    return start, true, made(true, start, 0.01, seed=3)
+
+
+def test_margins_in_a_flat_valley_are_those_of_the_valley() -> None:
+    """Of a bar that slips in part its ends know E S mu p, whatever a slope of the misfit says."""
+    start, true, measured = flat_valley()
+    found = fit(start, measured, list(true))
+    values = np.array(list(true.values()))
+    assert ((found.lower <= values) & (values <= found.upper)).all()
+    assert np.isinf(found.errors).all()
+    (product,) = found.together
+    assert product.powers == pytest.approx({"friction": 1.0, "young": 1.0}, abs=0.05)
+    made_of = np.prod(values ** list(product.powers.values()))
+    assert product.lower <= made_of <= product.upper
+    assert product.error < 0.02
+    assert "friction * young" in messages(found)[0]
+
+
+def test_a_fit_leaves_a_valley_that_is_not_the_deepest() -> None:
+    """A front of few elements makes a valley for each of them."""
+    true = {"friction": 0.233, "young": 2.71e11}
+    sizes = {**FLAT, "elements": 25, "instants": 41, "peak": 233.0}
+    start = scene_settings("bar").checked({**sizes, "friction": 0.162, "young": 2.5e11})
+    measured = made(true, start, 0.01, seed=16)
+    found = fit(start, measured, list(true))
+    from_truth = fit(start.replace(**true), measured, ["friction"]).first.distance
+    assert found.nearest.distance < 1.1 * from_truth
+
+
+def test_where_a_loop_is_straight_in_a_setting_its_profile_has_the_error_of_the_slope() -> None:
+    settings = scene_settings("bar").checked({**FLAT, "friction_law": "compliant"})
+    found = fit(settings, made({"friction": 0.37}, settings, 0.001), ["friction"])
+    left = found.nearest.differences
+    step = 1e-3
+    moved = [
+        finished_run(
+            found.settings.replace(friction=found.nearest.values[0] * (1.0 + way)),
+            errors=False,
+            indicators=False,
+        ).displacement
+        for way in (-step, step)
+    ]
+    size = np.ptp(found.nearest.beside.measured.displacement)
+    slope = (moved[1] - moved[0]) / (2.0 * step * found.nearest.values[0] * size)
+    deviation = np.sqrt(left @ left / (len(left) - 1))
+    assert found.errors == pytest.approx(deviation / np.linalg.norm(slope), rel=0.1)
+
+
+def test_a_side_ends_where_the_misfit_last_rises_above_a_level() -> None:
+    distances = np.array([0.0, 1.0, 2.0, 3.0])
+    rises = np.array([0.0, 9.0, 1.0, 9.0])
+    side = Side(distances, rises, distances[:, None], is_at_bound=False)
+    assert side.end(4.0) == pytest.approx(2.5)
+    assert side.end(10.0) == np.inf
+    at_bound = Side(distances, rises, distances[:, None], is_at_bound=True)
+    assert at_bound.end(10.0) == 3.0
 
 
 def test_too_short_a_loop_is_refused() -> None:
@@ -271,7 +337,7 @@ def test_the_commands_compare_and_fit_and_write_what_they_found(tmp_path, capsys
     saved = settings_from_toml((out / "settings.toml").read_text())
     assert saved.friction == found["parameters"]["friction"]["value"]
     lines = (out / "parameters.csv").read_text().splitlines()
-    assert lines[0].startswith("setting,unit,start,value,standard_error,correlation_friction")
+    assert lines[0].startswith("setting,unit,start,value,standard_error,lower,upper")
     assert "<script" in (out / "fit.html").read_text()
     # The settings and the loop that were written are those that were found.
     assert main(["compare", str(out / "settings.toml"), "--with", str(table)]) == 0

@@ -33,6 +33,8 @@ ACCURACY = 1e-4
 """Of runs that are not certified."""
 FINE, MOST_STEPS = 1e-7, 40
 """Tolerance, and steps, of each."""
+ROUGH, FEW_STEPS = 1e-3, 10
+"""Tolerance of the misfit, and steps, where only the misfit is asked for."""
 STEP = 1e-4
 """Of differences, in z, of the method."""
 
@@ -126,18 +128,18 @@ class ComparedRuns:
         self.count = 0
         self.first = self.nearest = self.run(np.zeros(len(names)))
 
-    def changes(self, z: Array) -> dict[str, float]:
-        """Values of the settings by name, with as many digits as anybody writes."""
+    def values(self, z: Array) -> Array:
+        """Values of the settings, shape (p,), in SI."""
         with np.errstate(over="ignore"):
             values = np.where(
                 self.in_decades, self._start * np.exp(z), self._start + self._size * z
             )
-        values = np.clip(values, *self._ends)
-        return {name: float(f"{at:.12g}") for name, at in zip(self.names, values, strict=True)}
+        return np.asarray(np.clip(values, *self._ends))
 
-    def slopes(self, values: Array) -> Array:
-        """Changes of the values with z."""
-        return np.where(self.in_decades, values, self._size)
+    def changes(self, z: Array) -> dict[str, float]:
+        """Values of the settings by name, with as many digits as anybody writes."""
+        values = self.values(z)
+        return {name: float(f"{at:.12g}") for name, at in zip(self.names, values, strict=True)}
 
     def run(self, z: Array) -> ComparedRun:
         """Run at a place; `RefusedError` where settings do not fit or it does not converge."""
@@ -166,22 +168,54 @@ class ComparedRuns:
             self._watch(self.count, self.nearest)
         return self._known[key]
 
-    def jacobian(self, z: Array, step: float = STEP) -> Array:
-        """Derivatives of the differences, shape (n_rows, p), by steps both ways or where they go.
+    def jacobian(self, z: Array, step: float = STEP, ways: Array | None = None) -> Array:
+        """Derivatives of the differences along directions of z, by steps both ways in bounds.
 
-        The smallest step is taken one way only.
+        Directions have shape (q, p), those of the settings by themselves if there are none; the
+        derivatives (n_rows, q). The smallest step is taken one way only.
         """
+        if ways is None:
+            ways = np.eye(len(z))
         columns = []
-        for way, (low, high), at in zip(np.eye(len(z)), self.bounds.T, z, strict=True):
-            ends = [end for end in (at + step, at - step) if low <= end <= high]
+        for way in ways:
+            moves = [move for move in (step, -step) if self.holds(z + move * way)]
             if step == STEP:
-                ends = ends[:1]
-            tried = {end - at: self.differences(z + (end - at) * way) for end in ends}
-            known = {0.0: self.differences(z)} | tried
-            known = {move: left for move, left in known.items() if np.isfinite(left).all()}
-            first, last = min(known), max(known)
+                moves = moves[:1]
+            known = {0.0: self.differences(z)}
+            for move in moves:
+                tried = self.differences(z + move * way)
+                if np.isfinite(tried).all():
+                    known[move] = tried
+            first = min(known)
+            last = max(known)
             columns.append((known[last] - known[first]) / ((last - first) or 1.0))
-        return np.array(columns).T
+        return np.array(columns).reshape(len(ways), -1).T
+
+    def holds(self, z: Array) -> bool:
+        """Whether a place lies within the bounds of all settings."""
+        low, high = self.bounds
+        return bool(((low <= z) & (z <= high)).all())
+
+    def misfit(self, z: Array) -> float:
+        """Sum of the squared differences at a place; infinite where there is no run."""
+        found = float(np.sum(self.differences(z) ** 2))
+        return found if math.isfinite(found) else math.inf
+
+    def of_mesh(self, z: Array) -> float:
+        """Root of the sum of the squared changes of the differences with elements of half the size.
+
+        0 where no such run is to be had.
+        """
+        settings = self._settings.replace(**self.changes(z))
+        with contextlib.suppress(RefusedError):
+            finer = {name: 2 * getattr(settings, name) for name in settings.MESH}
+            run = finished_run(settings.replace(**finer), errors=False, indicators=False)
+            self.count += 1
+            beside = LoopComparison(self._measured, run.loop, run.problem)
+            differences, _ = beside.differences(run.displacement, run.force)
+            if run.solution.status.ending is Ending.CONVERGED:
+                return float(np.linalg.norm(differences - self.differences(z)))
+        return 0.0
 
     def coarse(self) -> Array:
         """Place to begin at: by large steps in one setting after the other, while they help.
@@ -218,3 +252,39 @@ class ComparedRuns:
             max_nfev=MOST_STEPS,
         )
         return np.asarray(found.x)
+
+    def across(self, z: Array, along: Array, bounds: Array) -> Array:
+        """Place of the least squares among those that are as far along a direction, (p,), as z.
+
+        It lies within bounds, (2, p). The setting that counts most in the direction follows from
+        the others.
+        """
+        pivot = int(np.abs(along).argmax())
+        free = np.delete(np.arange(len(z)), pivot)
+        if not len(free):
+            return z
+        ways = np.eye(len(z))[free]
+        ways[:, pivot] = -along[free] / along[pivot]
+
+        def place(moves: Array) -> Array:
+            return z + moves @ ways
+
+        def left(moves: Array) -> Array:
+            at = place(moves)
+            if not self.holds(at):
+                return np.full(len(self.first.differences), np.nan)
+            return self.differences(at)
+
+        if not np.isfinite(left(np.zeros(len(free)))).all():
+            return z
+        found = least_squares(
+            left,
+            np.zeros(len(free)),
+            jac=lambda moves: self.jacobian(place(moves), ways=ways),
+            bounds=bounds[:, free] - z[free],
+            ftol=ROUGH,
+            xtol=ROUGH * STEP,
+            gtol=FINE**2,
+            max_nfev=FEW_STEPS,
+        )
+        return place(found.x)

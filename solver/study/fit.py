@@ -6,12 +6,14 @@ The differences of `solver.study.measured_loop` are minimised in the sum of thei
 the logarithm of a setting over its start, where it is positive and spans decades, else its change
 over its size. From the best of some values of each setting alone a trust-region method (SciPy's
 `least_squares`) goes on within their bounds; every run starts from what stuck and slipped in the
-one before. With J = dr/dz, n rows, p settings and s^2 = |r|^2 / (n - p),
+one before. Then the valley is followed along its weakest direction, both ways, and along each
+setting: where a run is nearer, the method goes on from there.
 
-    standard errors = sqrt(diag(s^2 (J^T J)^-1)).
-
-A direction of z is not determined if its standard error s / (singular value of J) is above a fifth,
-as where a change of 20 % would be lost in the noise. It stays where it began.
+What is known of a setting is what its profile says (`solver.study.valley`): the values beyond which
+no run is as near, whatever the others are, by two standard errors of the noise. A setting is not
+determined if that goes farther than a factor of 1.5. It stays as near to where it began as the loop
+allows. What may still be known is a combination of such settings: a product of powers, across the
+direction in which the valley goes, with the margin that its own profile has.
 """
 
 from __future__ import annotations
@@ -28,26 +30,50 @@ from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
 from solver.study.measured_loop import MeasuredLoop
+from solver.study.valley import BROAD, LIMIT, SILENT, WALK, LowerPlace, Profile, Valley
 
 MOST = 4
 """Settings that are fitted at once."""
-NARROW, WIDE = 1e-5, 0.1
-"""Steps, in z, of the differences by which it is judged what the loop tells. Over a narrow one the
-nodes that a front has just reached count for more than the loop (friction and young of a bar, of
-which only the product is known: singular values 4.5 and 0.12, instead of 0.006); over a wide one a
-combination that is no product seems to be known."""
 LOOSE = 1e-4
 """Pull towards the start at first, so that what is not determined does not drift."""
-UNSURE = 0.2
-"""Standard error of a direction, in z, from which on it is not determined."""
-FLAT, RIGID, EXACT, BLIND = 0.02, 1e-4, 1e-6, 1e-6
-"""Singular values below which a direction is not determined: over the largest one, since meshes
-tell no more, or, where the run is as near as `EXACT`, since differences do not; and at all."""
 SHARE = 0.1
-"""Part in a direction that is not determined from which on a setting is not known alone."""
-ROUNDS = 3
-"""Of the least squares: with a loose pull, then with what is determined free, as often as that
-changes."""
+"""Power in a combination below which a setting has no part in it."""
+NEAR = 0.02
+"""Difference to a tenth below which a power is that."""
+ROUNDS = 8
+"""How often the method goes on from a lower place, at most."""
+WEAKER = 0.1
+"""Factor on the pull to the start, as often as it pulls a run too far from the loop."""
+PULLS = 4
+"""How many pulls are tried."""
+
+
+@dataclass(frozen=True)
+class Combination:
+    """A product of powers of settings that is known where they are not.
+
+    Attributes
+    ----------
+    powers
+        Of the settings by name.
+    value, lower, upper
+        The product in SI, and the ends of what is within two standard errors; NaN where some
+        setting has no logarithm.
+    factor
+        So far from its value each setting is looked at: a product of powers may not be what is
+        known farther away.
+    """
+
+    powers: dict[str, float]
+    value: float
+    lower: float
+    upper: float
+    factor: float
+
+    @property
+    def error(self) -> float:
+        """Standard error, as a share of the value: half of the distance to the farther end."""
+        return max(self.upper - self.value, self.value - self.lower) / (2.0 * self.value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,24 +82,36 @@ class Fit:
 
     Attributes
     ----------
-    errors
-        Standard errors of the p settings that were fitted, shape (p,); infinite where the loop does
-        not tell a value alone.
+    lower, upper
+        Ends of what is within two standard errors of the p settings that were fitted, shape (p,),
+        in SI; infinite where the loop gives none.
     correlation
         Of the values, shape (p, p); NaN where there is none.
     together
-        Combinations that are known of settings that are not: powers of settings by name, and the
-        standard error of the logarithm of their product; NaN where some are not logarithmic.
+        Combinations that are known of settings that are not.
+    for_the_mesh
+        Whether a setting would be known if it were not for the mesh, shape (p,).
+    mesh
+        Change of the loop on elements of half the size, as a share of the measured range.
     """
 
     settings: Settings
     names: tuple[str, ...]
-    errors: Array
+    lower: Array
+    upper: Array
     correlation: Array
-    together: list[tuple[dict[str, float], float]]
+    together: list[Combination]
+    for_the_mesh: Flags
+    mesh: float
     first: ComparedRun
     nearest: ComparedRun
     runs: int
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors, (p,): half of the distance to the farther end, infinite if open."""
+        values = self.nearest.values
+        return np.asarray(np.maximum(self.upper - values, values - self.lower) / 2.0)
 
 
 def fit(
@@ -97,68 +135,149 @@ def fit(
         can = f"one to {MOST} settings, each once, of {', '.join(fittable(settings))}"
         raise SettingError("fitted settings", ",".join(names), can, "name these")
     runs = ComparedRuns(settings, measured, names, watch)
-    rows, count = len(runs.first.differences), len(names)
+    rows = len(runs.first.differences)
+    count = len(names)
     if rows <= count + 1:
         can = f"at least {count + 2} rows for {count} settings"
         raise SettingError("the measured loop", measured.source, can, f"{rows} are in the run")
-    z, pull, blind = runs.coarse(), LOOSE * np.eye(count), 0
-    for _ in range(ROUNDS):
-        z = runs.solve(z, pull)
-        left = float(np.linalg.norm(runs.differences(z)))
-        noise = left / math.sqrt(rows - count + blind)
-        tried = [np.linalg.svd(runs.jacobian(z, step)) for step in (NARROW, WIDE)]
-        _, sizes, ways = min(tried, key=lambda found: float(found.S[-1]))
-        flat = FLAT if noise > EXACT else RIGID
-        least = max(noise / UNSURE, BLIND, flat * float(sizes[0]))
-        is_known = sizes > least
-        is_done, blind = blind == (~is_known).sum(), int((~is_known).sum())
-        if is_done:
-            break
-        pull = max(float(sizes[0]), 1.0) * ways[~is_known]
-    covariance = (ways[is_known].T * (noise / sizes[is_known]) ** 2) @ ways[is_known]
-    return _fitted(runs, settings, z, covariance, ways[~is_known])
-
-
-def _fitted(
-    runs: ComparedRuns, settings: Settings, z: Array, covariance: Array, blind: Array
-) -> Fit:
-    """What is found at a place, where some directions, (n, p), are not determined."""
-    nearest = runs.run(z)
-    slopes = runs.slopes(nearest.values)
-    deviations = np.sqrt(np.diag(covariance))
-    is_alone = np.abs(blind).max(axis=0, initial=0.0) < SHARE
-    with np.errstate(invalid="ignore", divide="ignore"):
-        correlation = covariance / np.outer(deviations, deviations)
-    correlation[~np.outer(is_alone, is_alone)] = np.nan
+    valley, profiles = _explored(runs)
+    is_known = np.array([profile.is_known for profile in profiles])
+    blind = _blind(valley, is_known)
+    z = _near_start(valley, blind)
+    combinations: list[Combination] = []
+    for reach in (WALK, LIMIT):
+        if not combinations and 0 < len(blind) < (~is_known).sum():
+            combinations = _combinations(valley.around(z, reach), reach, blind, is_known)
     return Fit(
         settings=settings.replace(**runs.changes(z)),
         names=runs.names,
-        errors=np.where(is_alone, np.abs(slopes) * deviations, np.inf),
-        correlation=correlation,
-        together=_known_together(runs, covariance, blind[:, ~is_alone], is_alone),
+        **_margins(valley, profiles),
+        correlation=_correlation(runs.jacobian(z, BROAD), blind, is_known),
+        together=combinations,
+        for_the_mesh=~is_known & [profile.is_known_to_noise for profile in profiles],
+        mesh=valley.mesh,
         first=runs.first,
-        nearest=nearest,
+        nearest=runs.run(z),
         runs=runs.count,
     )
 
 
-def _known_together(
-    runs: ComparedRuns, covariance: Array, blind: Array, is_alone: Flags
-) -> list[tuple[dict[str, float], float]]:
-    """Combinations that are determined of settings that are not, as `Fit` has them."""
-    names = [name for name, alone in zip(runs.names, is_alone, strict=True) if not alone]
-    covariance = covariance[np.ix_(~is_alone, ~is_alone)]
-    is_product = bool(runs.in_decades[~is_alone].all())
-    together = []
-    known = null_space(blind).T if len(blind) else blind
-    for powers in _echelon(known) if known.size else ():
-        margin = math.sqrt(powers @ covariance @ powers) if is_product else math.nan
-        together.append(({n: float(p) for n, p in zip(names, powers, strict=True) if p}, margin))
-    return together
+def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
+    """The valley of the nearest run that is found, and the profiles of all settings there."""
+    settings = np.eye(len(runs.names))
+    z = runs.solve(runs.coarse(), LOOSE * settings)
+    for rest in reversed(range(ROUNDS)):
+        valley = Valley(runs, z, seeks=rest > 0)
+        try:
+            valley.walk()
+            return valley, [valley.profile(along) for along in settings]
+        except LowerPlace as lower:
+            z = runs.solve(lower.z, LOOSE * settings)
+    raise AssertionError("the last round seeks no lower place")
+
+
+def _blind(valley: Valley, is_known: Flags) -> Array:
+    """Directions in which a valley goes on, orthonormal, shape (n, p)."""
+    if is_known.all():
+        return np.empty((0, len(is_known)))
+    moves = valley.moves
+    # Farther away a valley may bend, which makes it no wider.
+    moves = moves[np.abs(moves).max(axis=1) <= LIMIT * (1.0 + SILENT)]
+    # What is known moves a little with the rest, which makes it no part of a direction.
+    moves[:, is_known] = 0.0
+    ways = np.linalg.svd(moves)[2]
+    reaches = np.abs(moves @ ways.T).max(axis=0)
+    return np.asarray(ways[reaches > LIMIT / 2.0])
+
+
+def _near_start(valley: Valley, blind: Array) -> Array:
+    """Place on the floor of a valley that is nearest to the start, along directions, (n, p)."""
+    runs = valley.runs
+    pull = max(float(np.linalg.norm(valley.jacobian, 2)), 1.0) * blind
+    for _ in range(PULLS):
+        z = runs.solve(valley.z, pull)
+        if not len(blind) or runs.misfit(z) - valley.least <= valley.doubt / 4.0:
+            return z
+        pull = WEAKER * pull
+    return valley.z
+
+
+def _margins(valley: Valley, profiles: list[Profile]) -> dict[str, Array]:
+    """Lower and upper ends of settings by their profiles, as `Fit` has them."""
+    below, above = np.array([profile.ends() for profile in profiles]).T
+    with np.errstate(invalid="ignore"):
+        lower = valley.runs.values(valley.z - below)
+        upper = valley.runs.values(valley.z + above)
+    return {
+        "lower": np.where(np.isfinite(below), lower, -np.inf),
+        "upper": np.where(np.isfinite(above), upper, np.inf),
+    }
+
+
+def _combinations(valley: Valley, reach: float, blind: Array, is_known: Flags) -> list[Combination]:
+    """Combinations that are determined of settings that are not, so far around a place."""
+    is_open = np.flatnonzero(~is_known)
+    floor = [*blind]
+    if len(blind) > 1:
+        floor += [*np.eye(len(is_known))[is_open]]
+    for along in floor:
+        valley.profile(along, reach)
+    moves = valley.moves
+    ways = np.linalg.svd(moves[:, is_open])[2]
+    combinations = []
+    for row in _echelon(ways[len(blind) :]):
+        powers = np.zeros(len(is_known))
+        powers[is_open] = row
+        if np.count_nonzero(powers) == 1:
+            # A setting by itself has been asked for, and is not known.
+            continue
+        combination = _combination(valley, reach, moves, powers)
+        if combination is not None:
+            combinations.append(combination)
+    return combinations
+
+
+def _combination(valley: Valley, reach: float, moves: Array, powers: Array) -> Combination | None:
+    """A combination, of powers (p,), if it is known along the moves of a floor, (n, p)."""
+    profile = valley.profile(powers)
+    # A floor is bent, and no product of powers is the same all along it.
+    along = moves @ powers
+    below, above = profile.ends()
+    below -= float(along.min())
+    above += float(along.max())
+    if max(below, above) >= LIMIT:
+        return None
+    runs = valley.runs
+    places = np.flatnonzero(powers)
+    value = math.nan
+    if runs.in_decades[places].all():
+        value = float(np.prod(runs.values(valley.z) ** powers))
+    return Combination(
+        powers={runs.names[place]: float(powers[place]) for place in places},
+        value=value,
+        lower=value * math.exp(-below),
+        upper=value * math.exp(above),
+        factor=math.exp(reach),
+    )
+
+
+def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
+    """Correlation of settings that are known, (p, p), of the derivatives, (n_rows, p)."""
+    known = np.eye(len(is_known))
+    if len(blind):
+        known = null_space(blind)
+    covariance = known @ np.linalg.pinv(known.T @ jacobian.T @ jacobian @ known) @ known.T
+    deviations = np.sqrt(np.diag(covariance))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = covariance / np.outer(deviations, deviations)
+    is_told = np.outer(is_known, is_known)
+    return np.asarray(np.where(is_told, correlation, np.nan))
 
 
 def _echelon(rows: Array) -> Array:
-    """The same space by rows of which each has 1 where no other has anything; to a digit."""
+    """The same space by rows of which each has 1 where no other has anything, rounded."""
     pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
     reduced = np.linalg.solve(rows[:, pivots], rows)
-    return np.where(np.abs(reduced) < SHARE, 0.0, np.round(reduced, 1))
+    tenths = np.round(reduced, 1)
+    rounded = np.where(np.abs(reduced - tenths) < NEAR, tenths, np.round(reduced, 2))
+    return np.asarray(np.where(np.abs(reduced) < SHARE, 0.0, rounded))
