@@ -17,7 +17,8 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.definitions import CurveParameter
 from solver.scenes import CATALOGUE
-from solver.study.comparison import read_results
+from solver.study.comparison import CAN, results_in
+from solver.tables import read_table
 
 LOOKED_AT: dict[str, Any] = {
     "tab": "What if",
@@ -181,7 +182,7 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
         for j, t in enumerate(problem.instants.tolist())
     ]
     table = "\n".join(["x,t,friction force", *rows]).replace("np.float64(", "").replace(")", "")
-    brought = read_results(table, "other.csv", settings)
+    brought = results_in(read_table(table, "other.csv", "the results", CAN), settings)
     frame = runner.frame(Needs(frozenset({"beside"}), brought=brought))
     beside = frame.extras["beside"]
     assert beside["distance"] == pytest.approx(0.1 / 1.1, rel=1e-6)

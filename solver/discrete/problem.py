@@ -377,6 +377,11 @@ class Problem:
         return np.repeat([not law.is_spring for law in laws], [len(law.positions) for law in laws])
 
     @cached_property
+    def goes_on(self) -> bool:
+        """Whether it begins where sliders stand elsewhere than at rest, as another one ends."""
+        return any(law.tangential.start is not None for law in self.rubbing.values())
+
+    @cached_property
     def opens(self) -> bool:
         """Whether any interface may open."""
         return any(law.opens for law in self.rubbing.values())

@@ -170,9 +170,11 @@ class StopState:
         gives_up = status is not None and status.ending is not Ending.CONVERGED
         ends = self._may_finish and not self._searches
         is_due = gives_up or (ends and status is None and iterate.number % SELDOM == 0)
+        problem = iterate.problem
+        is_judged = not (problem.no_reference or problem.goes_on)
         if self.estimate.is_proven or not is_due or iterate.indicator > SOLVED:
             return math.nan
-        return kkt_residual(iterate, iterate.problem)
+        return kkt_residual(iterate, problem) if is_judged else math.nan
 
     def _billed(self, iterate: Iterate, began: float) -> float:
         """Seconds of the whole run, with those since `began`."""

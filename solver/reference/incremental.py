@@ -242,7 +242,7 @@ def incremental_solver(problem: Problem, stop: Callable[[], bool] | None = None)
     """
     if problem.no_reference:
         raise NoReferenceError(problem.no_reference)
-    if any(law.tangential.start is not None for law in problem.rubbing.values()):
+    if problem.goes_on:
         raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
     if rubs_on_supports(problem):
         return IncrementalRod(problem)
