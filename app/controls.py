@@ -15,7 +15,8 @@ from app.files.points import CurveDialog
 from app.state import PageState
 from app.units import typed, unit_of
 from app.widgets import button, looks, mask_of
-from solver.definitions import (
+from solver.scenes import CATALOGUE
+from solver.settings.definitions import (
     CurveParameter,
     Parameter,
     about,
@@ -23,7 +24,6 @@ from solver.definitions import (
     is_logarithmic,
     title_of,
 )
-from solver.scenes import CATALOGUE
 
 WIDTH = 286
 STEPS = 80

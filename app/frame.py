@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from solver.discrete.structure import Description
 from solver.latin import Status
 from solver.reference.closed_forms import ExactCurve
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.int8]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.frame import Frame
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
 

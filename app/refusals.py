@@ -6,9 +6,9 @@ import re
 from typing import Any
 
 from app.units import Unit, number, unit_of, units_of_points
-from solver.definitions import CurveParameter, about, allowed, title_of
 from solver.refusal import RefusedError
-from solver.settings import Settings
+from solver.settings.definitions import CurveParameter, about, allowed, title_of
+from solver.settings.scene import Settings
 
 EXACT = 10
 """Digits of what is refused: a value beside the end of a range is told from it."""

@@ -17,7 +17,7 @@ from app.messages import Needs, Order, Pace, Ready, Report, Start, Step
 from app.refusals import message_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
 

@@ -9,9 +9,9 @@ from functools import cache
 
 import param
 
-from solver.columns import size_in
-from solver.definitions import Parameter, about
+from solver.files.columns import size_in
 from solver.scenes import CATALOGUE
+from solver.settings.definitions import Parameter, about
 
 PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad")

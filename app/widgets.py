@@ -13,7 +13,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from solver.settings import Icon
+from solver.settings.scene import Icon
 
 SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(encoding="utf-8")
 

@@ -14,7 +14,7 @@ _is_heard = signal.getsignal(signal.SIGINT) is signal.default_int_handler
 if _is_heard:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
-from solver.cli import main  # noqa: E402
+from solver.commands.cli import main  # noqa: E402
 
 if _is_heard:
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -18,7 +18,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 TINY = {"elements": 24, "instants": 21, "substructures": 3}
 REACHED = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}

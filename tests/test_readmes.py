@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from packaging.specifiers import SpecifierSet
 
-from solver.cli import main
+from solver.commands.cli import main
 
 ROOT = Path(__file__).resolve().parents[1]
 FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"

@@ -12,8 +12,8 @@ from app.files.opener import TableOpener
 from app.files.tables import TABLES, axes_on
 from app.state import TABS, PageState
 from app.widgets import button
-from solver.definitions import title_of
-from solver.files import dump, settings_from_toml
+from solver.files.saved import dump, settings_from_toml
+from solver.settings.definitions import title_of
 from solver.study.compared_runs import fittable
 from solver.study.fit import MOST
 from solver.study.fit_report import LOOP

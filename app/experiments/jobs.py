@@ -18,8 +18,8 @@ from typing import ClassVar
 import panel as pn
 
 from app.worker.commands import LOG, command
-from solver.executors import opened, processors
 from solver.refusal import RefusedError
+from solver.study.sweep.executors import opened, processors
 from solver.study.sweep.plan import Plan, Row
 from solver.study.sweep.run import patience, sweep
 

@@ -17,9 +17,9 @@ from app.refusals import message_of
 from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
-from solver.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
 from solver.refusal import RefusedError
-from solver.settings import Settings
+from solver.settings.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
+from solver.settings.scene import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.quantity import Quantity
 from solver.study.sweep.plan import Plan, plan_of

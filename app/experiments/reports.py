@@ -13,7 +13,7 @@ from app.experiments.jobs import OUT, SETTINGS, Job, follow
 from app.experiments.questions import TEXTS
 from app.state import PageState
 from app.widgets import PlainText, button, download, looks, wrapped
-from solver.files import dump
+from solver.files.saved import dump
 from solver.study.proof import PAGE
 
 WORDS: dict[str, str] = TEXTS["reports"]

@@ -22,8 +22,8 @@ from app.experiments.questions import (
 from app.state import PageState, answer
 from app.units import unit_for
 from app.widgets import PlainText, button, download
-from solver.files import dump
-from solver.settings import Settings
+from solver.files.saved import dump
+from solver.settings.scene import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart
 from solver.study.quantities import QUANTITIES, reading

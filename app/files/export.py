@@ -30,8 +30,8 @@ from app.views.view import View
 from app.widgets import download
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
-from solver.files import dump
-from solver.settings import Settings
+from solver.files.saved import dump
+from solver.settings.scene import Settings
 
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\

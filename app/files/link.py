@@ -14,11 +14,11 @@ from app.frame import Selection
 from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from solver.definitions import SettingGroup, checked_value, parse, title_of
-from solver.files import dump
+from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.settings import Settings
+from solver.settings.definitions import SettingGroup, checked_value, parse, title_of
+from solver.settings.scene import Settings
 
 SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""

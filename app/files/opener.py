@@ -23,13 +23,13 @@ from app.files.tables import (
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.widgets import PlainText, button, dialog, download
-from solver.definitions import title_of
-from solver.files import dump, read_settings
+from solver.files.saved import dump, read_settings
+from solver.files.tables import Table
 from solver.refusal import RefusedError
-from solver.settings import Settings
+from solver.settings.definitions import title_of
+from solver.settings.scene import Settings
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.table_use import Use
-from solver.tables import Table
 
 HELP = (
     "Settings (.toml) that were saved here; or a table (.csv, .xlsx, ...): of time and load; of "

@@ -17,8 +17,8 @@ from app.state import PageState
 from app.units import units_of_points
 from app.views.colors import LATIN
 from app.widgets import PlainText, dialog
-from solver.definitions import title_of
 from solver.refusal import RefusedError
+from solver.settings.definitions import title_of
 
 MOST_DRAGGED = 200
 """Points up to which they are dragged and typed; longer tables come from files."""

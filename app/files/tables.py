@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from app.state import PageState
-from solver.columns import column_of
-from solver.curves import curve_of, path_doubts
-from solver.definitions import CurveParameter, about, title_of
 from solver.discrete.structure import Axes
-from solver.remarks import ends_of_tables
-from solver.settings import Settings
+from solver.files.columns import column_of
+from solver.files.curves import curve_of, path_doubts
+from solver.files.tables import Table, read_table
+from solver.scenes.remarks import ends_of_tables
+from solver.settings.definitions import CurveParameter, about, title_of
+from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults, results_in
 from solver.study.measured_loop import MeasuredLoop, loop_in
 from solver.study.table_use import Use, use_of
-from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv,.xlsx"
 USES = {"Measured loop": str(Use.LOOP), "Results of another program": str(Use.RESULTS)}

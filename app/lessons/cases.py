@@ -13,8 +13,8 @@ from app.lessons.catalogue import CASES, PENDING, settings_of
 from app.state import PageState
 from app.units import number, unit_for
 from app.widgets import button, looks, mask_of
-from solver.definitions import about
-from solver.settings import Settings
+from solver.settings.definitions import about
+from solver.settings.scene import Settings
 from solver.study.quantities.quantity import Quantity
 from solver.study.trade_case import Case
 

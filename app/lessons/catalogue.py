@@ -12,8 +12,8 @@ from app.state import SEARCH
 from app.units import number, percent, unit_for
 from app.views.catalogue import CARDS
 from app.views.view import View
-from solver.lessons import SUBJECTS, Lesson, lesson_from_file
-from solver.settings import Settings
+from solver.settings.scene import Settings
+from solver.study.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.study.quantities import reading
 from solver.study.trade_case import Case, all_cases
 

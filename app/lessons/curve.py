@@ -9,8 +9,8 @@ from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
 from app.views.view import legend
-from solver.definitions import title_of
-from solver.lessons import Lesson
+from solver.settings.definitions import title_of
+from solver.study.lessons import Lesson
 
 
 class DrawnCurve:

@@ -31,7 +31,7 @@ from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
 from app.widgets import button, dialog, download, looks
-from solver.lessons import SUBJECTS, Lesson
+from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
 WITHOUT = -1

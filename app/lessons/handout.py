@@ -19,7 +19,7 @@ from app.server import address_for_others
 from app.state import PageState
 from app.views.scene import Scene
 from app.views.view import View
-from solver.lessons import Lesson
+from solver.study.lessons import Lesson
 
 WIDTH, HEIGHT = 660, 230
 """Pixels of the picture; two plots stand side by side in its width."""

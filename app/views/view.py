@@ -36,7 +36,7 @@ from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
 from app.views.colors import CUT
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 SHORT = 200

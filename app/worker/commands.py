@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from solver.executors import left_alone
+from solver.study.sweep.executors import left_alone
 
 LOG = "log.txt"
 
 
 def command(arguments: Sequence[str], folder: Path) -> int:
     """Run a command with its output in the folder's log, which goes if the server is gone."""
-    from solver.cli import main
+    from solver.commands.cli import main
 
     # A process does one command and ends.
     os.chdir(folder)

@@ -14,12 +14,12 @@ from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.arrays import Array
-from solver.definitions import SettingError
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
+from solver.settings.definitions import SettingError
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of

@@ -12,11 +12,11 @@ from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.plane import von_mises
+from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 THICKNESS, PITCH = 0.08, 0.1
 """Of a rod as it is drawn, which has none in the model, and between two rods; shares of length."""

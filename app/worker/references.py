@@ -11,7 +11,7 @@ from solver.discrete import Problem
 from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference, fingerprint
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 MOST_JUMPS = 1500
 """Jumps up to which a reference takes no longer than some seconds; its time grows with their cube

@@ -12,8 +12,8 @@ from app.messages import WHOLE, Needs, Start
 from app.worker.references import ReferenceCache, has_reference
 from app.worker.sampling import Sampler
 from solver.latin import Ending, Iterate, Record, Status, judged, record
-from solver.latin.cost import RunCost, run_cost
-from solver.latin.status import collapses
+from solver.latin.end.cost import RunCost, run_cost
+from solver.latin.end.status import collapses
 from solver.reference.assembly import Interrupted
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import discretise

@@ -19,11 +19,11 @@ from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
-from solver.latin.status import CANCELLED
+from solver.latin.end.status import CANCELLED
 from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Reference
-from solver.remarks import remarks_on
-from solver.settings import Settings
+from solver.scenes.remarks import remarks_on
+from solver.settings.scene import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun
 

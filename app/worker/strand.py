@@ -20,10 +20,10 @@ from app.messages import Needs
 from app.worker.geometry import MOST_POINTS, Extras, StressField, floats, mesh_of, thinned
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.rope import Rope
-from solver.discrete.wire_forces import cut_at, stress_at, wire_forces, wire_stresses
+from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.wire_forces import cut_at, stress_at, wire_forces, wire_stresses
 from solver.latin import Iterate
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 A_TURN, FEWEST, MOST = 20, 40, 100
 """Steps along the strand for each turn of an outer wire, and their number in any case."""

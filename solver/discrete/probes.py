@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
-from solver.discrete.plane_parts import Inside
+from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
 
 if TYPE_CHECKING:

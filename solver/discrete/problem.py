@@ -40,7 +40,7 @@ from solver.laws.play import PLAIN
 from solver.refusal import RefusedError, Words
 
 if TYPE_CHECKING:
-    from solver.discrete.plane_parts import Inside
+    from solver.discrete.inside import Inside
 
 
 @dataclass(frozen=True)

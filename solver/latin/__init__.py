@@ -1,19 +1,19 @@
 """The multiscale LATIN method: parts to put one together, its iterates, and a driver to an end."""
 
 from solver.latin.anderson import Anderson
-from solver.latin.directions import Auto, Paper
-from solver.latin.from_status import FromStatus
+from solver.latin.direction.directions import Auto, Paper
+from solver.latin.direction.from_status import FromStatus
+from solver.latin.end.status import Decision, Ending, Status
+from solver.latin.end.status_step import StatusStep
+from solver.latin.end.stop import Stop, StopState
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
-from solver.latin.linear_stage import Full
 from solver.latin.method import Latin
-from solver.latin.pgd import PGD
 from solver.latin.slabs import solve_in_slabs
 from solver.latin.solve import Record, Solution, judged, record, solve
+from solver.latin.stages.linear import Full
+from solver.latin.stages.pgd import PGD
 from solver.latin.start import Nested
-from solver.latin.status import Decision, Ending, Status
-from solver.latin.status_step import StatusStep
-from solver.latin.stop import Stop, StopState
 
 __all__ = [
     "PGD",

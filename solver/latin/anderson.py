@@ -10,8 +10,8 @@ from scipy.linalg.lapack import dposv
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.blocks import Blocks
-from solver.latin.linear_stage import LinearStage
+from solver.latin.stages.blocks import Blocks
+from solver.latin.stages.linear import LinearStage
 
 MEMORY = 15
 """Differences that are remembered at most; from 5 to 50 iterations hardly differ (measured)."""

@@ -87,7 +87,7 @@ class Iterate:
     course
         How far the update of k has come, with the k of the next iteration.
     residual
-        Of an iterate that is a certified solution (`solver.latin.certified`), its KKT residual
+        Of an iterate that is a certified solution (`solver.latin.end.certified`), its KKT residual
         relative to the contact force; None of all others.
     force
         F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid motion the digits

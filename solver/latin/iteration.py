@@ -12,11 +12,11 @@ from solver.arrays import read_only
 from solver.checks import Numbers, Part, check_value
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
-from solver.latin.blocks import Blocks, one_blas_thread
 from solver.latin.iterate import Checkpoint, Iterate
-from solver.latin.linear_stage import LinearStage
-from solver.latin.local_stage import LocalStage
 from solver.latin.method import Latin
+from solver.latin.stages.blocks import Blocks, one_blas_thread
+from solver.latin.stages.linear import LinearStage
+from solver.latin.stages.local import LocalStage
 from solver.refusal import RefusedError
 
 STARTING = 0.5

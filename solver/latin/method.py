@@ -7,13 +7,13 @@ from types import NoneType
 
 from solver.checks import FLAG, Count, Number, Part, check
 from solver.latin.anderson import Anderson
-from solver.latin.directions import Auto, SearchDirection
-from solver.latin.from_status import FromStatus
-from solver.latin.linear_stage import Full
-from solver.latin.pgd import PGD
+from solver.latin.direction.directions import Auto, SearchDirection
+from solver.latin.direction.from_status import FromStatus
+from solver.latin.end.status_step import StatusStep
+from solver.latin.end.stop import Stop
+from solver.latin.stages.linear import Full
+from solver.latin.stages.pgd import PGD
 from solver.latin.start import Nested
-from solver.latin.status_step import StatusStep
-from solver.latin.stop import Stop
 
 
 @dataclass(frozen=True)

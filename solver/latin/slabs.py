@@ -16,14 +16,14 @@ import numpy as np
 
 from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
-from solver.latin.directions import SearchDirection
-from solver.latin.from_status import FromStatus
+from solver.latin.direction.directions import SearchDirection
+from solver.latin.direction.from_status import FromStatus
+from solver.latin.end.status import Decision, Ending
+from solver.latin.end.status_step import StatusStep
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.method import Latin
 from solver.latin.solve import Solution, record, solve
 from solver.latin.start import Nested
-from solver.latin.status import Decision, Ending
-from solver.latin.status_step import StatusStep
 from solver.reference.distance import Distance
 from solver.refusal import RefusedError
 

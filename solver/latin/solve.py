@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
-from solver.latin.blocks import one_blas_thread
+from solver.latin.end.status import CANCELLED, Decision, Ending, Status
+from solver.latin.end.stop import StopState
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iteration import iterations
 from solver.latin.method import Latin
-from solver.latin.status import CANCELLED, Decision, Ending, Status
-from solver.latin.stop import StopState
+from solver.latin.stages.blocks import one_blas_thread
 from solver.reference.distance import Distance
 
 

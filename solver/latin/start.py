@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.checks import FUNCTION, check
 from solver.discrete.problem import Problem
-from solver.latin.certified import balance_of_rows, known_forces
+from solver.latin.end.certified import balance_of_rows, known_forces
 from solver.latin.iterate import Checkpoint
 from solver.laws import Contact
 from solver.reference.assembly import Interrupted, NoReferenceError

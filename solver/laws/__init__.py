@@ -1,11 +1,11 @@
 """Interface laws: objects that own all that is said about them, all points at once."""
 
-from solver.laws.around import Bodies, Rod
 from solver.laws.contact import OPEN, Contact
 from solver.laws.friction import Friction, FrictionLaw
 from solver.laws.interface import Component, Interface
 from solver.laws.linear import Dirichlet, Neumann, Perfect
 from solver.laws.play import Strength
+from solver.laws.stiffness import Bodies, Rod
 from solver.laws.unilateral import Unilateral
 
 __all__ = [

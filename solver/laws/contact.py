@@ -19,7 +19,6 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.checks import Numbers, Part, check
-from solver.laws.around import Bodies, Rod
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
@@ -33,6 +32,7 @@ from solver.laws.interface import (
     squared,
 )
 from solver.laws.play import Strength
+from solver.laws.stiffness import Bodies, Rod
 from solver.laws.unilateral import ContactRule, Unilateral
 from solver.refusal import RefusedError, Words
 

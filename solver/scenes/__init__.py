@@ -13,7 +13,7 @@ from solver.scenes.layers import LayersSettings
 from solver.scenes.rope import RopeSettings
 from solver.scenes.strand import StrandSettings
 from solver.scenes.wall import WallSettings
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 CATALOGUE: dict[str, type[Settings]] = {
     settings.scene: settings

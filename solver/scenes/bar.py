@@ -10,17 +10,17 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import ANY, LOAD, POSITIVE, CurveParameter, SettingGroup
 from solver.discrete.problem import Problem
-from solver.discrete.rods import End, Rods
+from solver.discrete.rods.rods import End, Rods
 from solver.discrete.structure import LoopFields
 from solver.discrete.substructure import tributary
-from solver.loads import interpolate
-from solver.profiles import Profile, harmonic_means, means
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
-from solver.settings import Icon, Settings
+from solver.settings.definitions import ANY, LOAD, POSITIVE, CurveParameter, SettingGroup
+from solver.settings.load_paths import interpolate
+from solver.settings.profiles import Profile, harmonic_means, means
+from solver.settings.scene import Icon, Settings
 
 SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falling")}
 """Those that leave no element without a section."""

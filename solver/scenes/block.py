@@ -9,7 +9,16 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import (
+from solver.discrete.drives import Drive, loads_at
+from solver.discrete.plane.rigid_stack import loss_of_equilibrium
+from solver.discrete.plane.stack import Given, Side, Spring, Stack, Support
+from solver.discrete.problem import Problem
+from solver.discrete.structure import LoopFields
+from solver.reference.closed_forms import ExactCurve
+from solver.refusal import plain
+from solver.scenes.exact import exact_on_spring, exact_parabola
+from solver.scenes.plane import PlaneSettings
+from solver.settings.definitions import (
     BODY,
     CONTACT,
     Parameter,
@@ -19,19 +28,10 @@ from solver.definitions import (
     about,
     redefined,
 )
-from solver.discrete.drives import Drive, loads_at
-from solver.discrete.problem import Problem
-from solver.discrete.rigid_stack import loss_of_equilibrium
-from solver.discrete.stack import Given, Side, Spring, Stack, Support
-from solver.discrete.structure import LoopFields
-from solver.load_settings import POINTS, as_points
-from solver.loads import PRESETS
-from solver.profiles import UNSEEN, gap_at, off_nodes
-from solver.reference.closed_forms import ExactCurve
-from solver.refusal import plain
-from solver.scenes.exact import exact_on_spring, exact_parabola
-from solver.scenes.plane import PlaneSettings
-from solver.settings import Icon
+from solver.settings.load import POINTS, as_points
+from solver.settings.load_paths import PRESETS
+from solver.settings.profiles import UNSEEN, gap_at, off_nodes
+from solver.settings.scene import Icon
 
 BODY_FORCE = SettingGroup("Body force")
 LOADED_SIDES = ("left", "right", "top")

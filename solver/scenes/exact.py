@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.plane.rigid_stack import rigid_slide, wrench
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
-from solver.discrete.rigid_stack import rigid_slide, wrench
-from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack
+from solver.discrete.rods.rods import Rods
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms import ExactCurve
@@ -30,7 +30,7 @@ from solver.reference.closed_forms.pulled_bar import (
 
 SMALL = 0.12
 """Largest half-width of a contact, over the length and the height of its body, that is still that
-of a half-plane: to some 2 % (tests/test_hertz_and_cattaneo.py)."""
+of a half-plane: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
 UNCOUPLED = 0.49
 """Poisson's ratio from which on pressure and friction leave each other alone on a rigid support."""
 RIGID = 50.0

@@ -13,19 +13,27 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, CONTACT, LOAD, POSITIVE, SettingError, about, redefined
+from solver.discrete.plane.stack import Given, Side, Stack, Support
 from solver.discrete.probes import Probe
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Given, Side, Stack, Support
 from solver.discrete.structure import Act, Axes, Description, Hold, Loop, LoopFields
 from solver.laws import FrictionLaw
-from solver.loads import INJECTIONS, instants_of
-from solver.profiles import Profile
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
-from solver.settings import Icon
+from solver.settings.definitions import (
+    BODY,
+    CONTACT,
+    LOAD,
+    POSITIVE,
+    SettingError,
+    about,
+    redefined,
+)
+from solver.settings.load_paths import INJECTIONS, instants_of
+from solver.settings.profiles import Profile
+from solver.settings.scene import Icon
 
 PROFILES = {
     "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),
@@ -40,7 +48,7 @@ FINE = 4000
 """Intervals along the fault between which the strength of the closed form is linear."""
 INFINITE = 0.3
 """Largest front, over the sides of the body, that is still that of an infinite one: to 2 %
-(tests/test_a_fluid_drives_slip.py)."""
+(tests/scenes/test_a_fluid_drives_slip.py)."""
 MOST_SPREAD = 300_000_000
 """Nodes times instants times points of a path, at most, as each point spreads on its own."""
 OF_BOTH_SIDES = {

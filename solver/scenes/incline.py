@@ -12,18 +12,18 @@ from dataclasses import replace
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import BODY, CONTACT, LOAD, redefined
+from solver.discrete.plane.rigid_stack import loss_of_equilibrium
+from solver.discrete.plane.stack import Spring, Stack, Support
 from solver.discrete.problem import Problem
-from solver.discrete.rigid_stack import loss_of_equilibrium
-from solver.discrete.stack import Spring, Stack, Support
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
 from solver.laws.play import play
-from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.plane import PlaneSettings
-from solver.settings import Icon
+from solver.settings.definitions import BODY, CONTACT, LOAD, redefined
+from solver.settings.load_paths import PULLS
+from solver.settings.scene import Icon
 
 
 class InclineSettings(PlaneSettings):

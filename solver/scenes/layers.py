@@ -9,18 +9,18 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, LOAD, Rows, TablePreset, redefined
-from solver.discrete.bricks import Brick
-from solver.discrete.cut_stack import ends_along
+from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.cut_stack import ends_along
+from solver.discrete.plane.stack import Given, Side, Stack
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Given, Side, Stack
 from solver.discrete.structure import LoopFields
-from solver.loads import PRESETS
-from solver.profiles import UNSEEN
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings
-from solver.settings import Icon
+from solver.settings.definitions import BODY, LOAD, Rows, TablePreset, redefined
+from solver.settings.load_paths import PRESETS
+from solver.settings.profiles import UNSEEN
+from solver.settings.scene import Icon
 
 
 def _graduated(settings: LayersSettings) -> Rows:

@@ -14,7 +14,7 @@ from solver.latin import (
     StatusStep,
     Stop,
 )
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 
 def method_of(settings: Settings) -> Latin:

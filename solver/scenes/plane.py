@@ -11,11 +11,11 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import BODY, CONTACT, DECOMPOSITION, METHOD, POSITIVE, redefined
-from solver.discrete.stack import Stack
+from solver.discrete.plane.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
-from solver.settings import Settings
+from solver.settings.definitions import BODY, CONTACT, DECOMPOSITION, METHOD, POSITIVE, redefined
+from solver.settings.scene import Settings
 
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""

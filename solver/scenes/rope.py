@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import POSITIVE, Rows, TablePreset, redefined
-from solver.discrete.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
 from solver.discrete.problem import Problem
-from solver.discrete.rope import Rope, RopeWire
+from solver.discrete.rope.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
+from solver.discrete.rope.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
-from solver.loads import PRESSURES
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.refusal import RefusedError
-from solver.settings import Icon, Settings
+from solver.settings.definitions import POSITIVE, Rows, TablePreset, redefined
+from solver.settings.load_paths import PRESSURES
+from solver.settings.scene import Icon, Settings
 
 MOST_WIRES = 1000
 """Of a construction of one's own."""

@@ -11,7 +11,7 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import (
+from solver.settings.definitions import (
     CONTACT,
     LOAD,
     POSITIVE,
@@ -20,9 +20,9 @@ from solver.definitions import (
     SettingGroup,
     TablePreset,
 )
-from solver.loads import PRESETS, PRESSURES, Preset, interpolate
-from solver.profiles import Profile, means, shares_of
-from solver.settings import Settings
+from solver.settings.load_paths import PRESETS, PRESSURES, Preset, interpolate
+from solver.settings.profiles import Profile, means, shares_of
+from solver.settings.scene import Settings
 
 STRAND = SettingGroup("Strand")
 PROFILES = {

@@ -9,15 +9,15 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import LOAD, POSITIVE, redefined
 from solver.discrete.problem import Problem
-from solver.discrete.rods import End, Rods
+from solver.discrete.rods.rods import End, Rods
 from solver.discrete.structure import LoopFields
-from solver.loads import PULLS
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain
-from solver.settings import Icon, Settings
+from solver.settings.definitions import LOAD, POSITIVE, redefined
+from solver.settings.load_paths import PULLS
+from solver.settings.scene import Icon, Settings
 
 
 class StrandSettings(Settings):

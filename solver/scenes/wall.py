@@ -10,12 +10,12 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Indices
-from solver.definitions import BODY, DECOMPOSITION, LOAD, redefined
-from solver.discrete.bricks import Brick, bonded, grouped, with_opening
-from solver.discrete.stack import Given, Side, Stack, Support
-from solver.loads import PRESETS
+from solver.discrete.plane.bricks import Brick, bonded, grouped, with_opening
+from solver.discrete.plane.stack import Given, Side, Stack, Support
 from solver.scenes.plane import PlaneSettings
-from solver.settings import Icon
+from solver.settings.definitions import BODY, DECOMPOSITION, LOAD, redefined
+from solver.settings.load_paths import PRESETS
+from solver.settings.scene import Icon
 
 MOST_BRICKS = 1500
 """Bricks at most: with their joints they take some 2 GB."""

@@ -12,12 +12,12 @@ import param
 from scipy.optimize import least_squares
 
 from solver.arrays import Array
-from solver.definitions import SettingError, about, is_logarithmic
 from solver.latin import Ending
-from solver.latin.status_step import states_of
+from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.settings import Settings
+from solver.settings.definitions import SettingError, about, is_logarithmic
+from solver.settings.scene import Settings
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
 from solver.study.quantities.finished import FinishedRun, finished_run
 

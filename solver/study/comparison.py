@@ -25,12 +25,12 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from solver.arrays import Array, Flags, Indices
-from solver.columns import TableColumn, size_in
 from solver.discrete.problem import Problem
-from solver.disk import Refuse
+from solver.files.columns import TableColumn, size_in
+from solver.files.disk import Refuse
+from solver.files.tables import Reading, Table
 from solver.reference.distance import Fields, determinate_forces
-from solver.settings import Settings
-from solver.tables import Reading, Table
+from solver.settings.scene import Settings
 
 FRICTION, DISPLACEMENT = "friction force", "displacement"
 FEWEST = 4

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from solver.definitions import about
-from solver.disk import write
-from solver.files import dump
+from solver.files.disk import write
+from solver.files.saved import dump
 from solver.scenes.shared import listed
+from solver.settings.definitions import about
 from solver.study.fit import Combination, Fit
 from solver.study.measured_loop import MeasuredLoop, csv_of
 from solver.study.page import (

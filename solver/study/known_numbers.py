@@ -13,7 +13,7 @@ from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
 from solver.discrete.probes import reaction, reaction_moment
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods
+from solver.discrete.rods.rods import Rods
 from solver.discrete.structure import Loop, LoopFields
 from solver.latin import Solution
 from solver.reference.closed_forms.elastic_bodies import HalfPlane

@@ -25,13 +25,13 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.columns import KINDS, TableColumn, unit_doubt
-from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop, LoopFields
+from solver.files.columns import KINDS, TableColumn, unit_doubt
+from solver.files.tables import Table
+from solver.settings.definitions import SettingError
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
-from solver.tables import Table
 
 CAN = "CSV whose head names displacement and force of every row, and their time if it is known"
 ALIKE = 0.02

@@ -23,16 +23,16 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.definitions import SettingError
 from solver.latin import Ending, Solution, judged, solve
-from solver.latin.cost import run_cost
+from solver.latin.end.cost import run_cost
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.definitions import SettingError
+from solver.settings.scene import Settings
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
 """Errors of the friction force whose times make the table."""

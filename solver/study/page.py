@@ -19,7 +19,7 @@ from string import Template
 from typing import Literal
 
 from solver.arrays import Array, Flags, Indices
-from solver.disk import whole_file, write
+from solver.files.disk import whole_file, write
 
 GROUP = "slipfront.renderers"
 NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pip install slipfront"

@@ -17,7 +17,7 @@ from solver.latin import Ending, solve
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study import known_numbers
 from solver.study.known_numbers import Answer, Number
 from solver.study.mesh import size_of

@@ -16,9 +16,9 @@ import param
 from numpy.random import Generator
 
 from solver.arrays import Array
-from solver.definitions import CurveParameter, SettingError, about, is_logarithmic
 from solver.scenes import CATALOGUE
-from solver.settings import Settings
+from solver.settings.definitions import CurveParameter, SettingError, about, is_logarithmic
+from solver.settings.scene import Settings
 from solver.study.stability import NOT_WRONG, StabilityCase
 
 LARGEST_FIELD = 6_000

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.definitions import title_of
-from solver.executors import machine
-from solver.settings import Settings
+from solver.settings.definitions import title_of
+from solver.settings.scene import Settings
 from solver.study.measured_times import (
     GOAL,
     INCREMENTAL,
@@ -32,6 +31,7 @@ from solver.study.page import (
     write_csv,
     write_page,
 )
+from solver.study.sweep.executors import machine
 
 FILES = "curves.csv", "levels.csv", "map.csv", "study.html"
 Row = list[str]

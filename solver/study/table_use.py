@@ -8,11 +8,11 @@ from enum import StrEnum
 import numpy as np
 
 from solver.discrete.structure import Axes
+from solver.files.tables import Table
 from solver.refusal import RefusedError
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults, results_in
 from solver.study.measured_loop import MeasuredLoop, columns_of, loop_in
-from solver.tables import Table
 
 
 class Use(StrEnum):

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from solver.definitions import SettingError
-from solver.files import (
+from solver.files.saved import (
     check_controls,
     check_keys,
     fields_in,
@@ -16,7 +15,8 @@ from solver.files import (
     require,
     scene_settings,
 )
-from solver.settings import Icon, Settings
+from solver.settings.definitions import SettingError
+from solver.settings.scene import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 

@@ -15,15 +15,15 @@ from itertools import islice
 from multiprocessing import get_context
 from typing import Any
 
-from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.measured_times import incremental, latin, seconds_of
+from solver.study.sweep.executors import ONE_THREAD, machine
 
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""

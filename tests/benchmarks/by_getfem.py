@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane import elastic_matrix
+from solver.discrete.elements import elastic_matrix
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from solver.arrays import Array
-from solver.files import scene_settings
+from solver.files.saved import scene_settings
 from solver.study.quantities.finished import finished_run
 
 AT_BOUND = 1e-9

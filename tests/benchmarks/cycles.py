@@ -21,7 +21,6 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.executors import ONE_THREAD, machine
 from solver.latin import Iterate, iterations
 from solver.latin.iteration import Iteration
 from solver.latin.slabs import Slab, first_slab, next_slab
@@ -30,8 +29,9 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.measured_times import seconds_of
+from solver.study.sweep.executors import ONE_THREAD, machine
 
 GOAL, FIRST = 0.01, 0.5
 """Error of the contact force, and the share of it in the first slab: that goes on into the next."""

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.scenes.bar import BarSettings
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.fit import Fit, fit
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.finished import finished_run

@@ -1,7 +1,7 @@
 """A block on a rough support, solved by GetFEM: a program for whichever Python has that.
 
 It reads JSON and writes JSON, and imports nothing of this project. The elements are those of
-`solver.discrete.plane`, told in GetFEM's own language: bilinear, with the bending modes of
+`solver.discrete.elements`, told in GetFEM's own language: bilinear, with the bending modes of
 Taylor, Beresford and Wilson as unknowns of every element, two by two Gauss points. Contact and
 friction at the nodes are its basic contact brick, an augmented Lagrangian after Alart and Curnier;
 the unknowns are increments, so that friction is against what has moved since the instant before.

@@ -17,16 +17,16 @@ from reduction_cost import medians_of, samples_of
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
 from solver.latin import Full, Iterate, StopState, iterations, solve
-from solver.latin.blocks import Blocks
-from solver.latin.estimate import ErrorEstimate
+from solver.latin.end.estimate import ErrorEstimate
 from solver.latin.iteration import Iteration
-from solver.latin.linear_stage import LinearStage
-from solver.latin.local_stage import LocalStage
-from solver.latin.response import DenseResponse
+from solver.latin.stages.blocks import Blocks
+from solver.latin.stages.linear import LinearStage
+from solver.latin.stages.local import LocalStage
+from solver.latin.stages.response import DenseResponse
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 SIZES = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
 

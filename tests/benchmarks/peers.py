@@ -15,12 +15,12 @@ from collections.abc import Iterator
 
 from public_solvers import PUBLIC, PeerError, solve_by
 
-from solver.console import print_tables
-from solver.files import settings_from_command
+from solver.commands.console import print_tables
+from solver.files.saved import settings_from_command
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of, rubs_on_supports
 from solver.scenes import discretise
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.measured_times import error_against_time, seconds_of
 from solver.study.page import aligned
 from solver.study.study_report import conditions, table

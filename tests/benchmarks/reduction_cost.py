@@ -18,9 +18,9 @@ from solver.discrete import Problem
 from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.latin import PGD, Full, Paper, iterations
-from solver.latin.blocks import Blocks
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear_stage import LinearStage
+from solver.latin.stages.blocks import Blocks
+from solver.latin.stages.linear import LinearStage
 from solver.laws import Component, Contact, Friction
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from solver.executors import machine, opened, processors
 from solver.scenes.bar import BarSettings
+from solver.study.sweep.executors import machine, opened, processors
 from solver.study.sweep.plan import plan_of
 from solver.study.sweep.run import sweep
 

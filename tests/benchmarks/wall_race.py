@@ -25,15 +25,15 @@ from whole_cost import resident
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.executors import ONE_THREAD, machine
 from solver.latin import Ending, iterations, judged
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.measured_times import seconds_of
 from solver.study.quantities.finished import settle
+from solver.study.sweep.executors import ONE_THREAD, machine
 
 COURSES = (3, 5, 8, 12, 16, 32)
 """10, 27, 68, 150, 264, 1040 bricks."""

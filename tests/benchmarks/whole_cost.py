@@ -1,4 +1,4 @@
-"""What whole runs take beside what `solver.latin.cost` expects of them.
+"""What whole runs take beside what `solver.latin.end.cost` expects of them.
 
 `python tests/benchmarks/whole_cost.py`
 """
@@ -13,13 +13,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from solver.executors import ONE_THREAD, machine
-from solver.latin.cost import run_cost
+from solver.latin.end.cost import run_cost
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities.finished import finished_run, settle
+from solver.study.sweep.executors import ONE_THREAD, machine
 
 SIZES: tuple[tuple[str, dict[str, Any]], ...] = (
     *((scene, {}) for scene in CATALOGUE),

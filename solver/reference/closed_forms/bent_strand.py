@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection, WireLayer
+from solver.discrete.rope.cross_section import CrossSection, WireLayer
 from solver.reference.closed_forms.masing import masing
 
 

@@ -23,7 +23,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.rods import End, Rods
+from solver.discrete.rods.rods import End, Rods
 from solver.laws import FrictionLaw
 from solver.laws.play import play
 

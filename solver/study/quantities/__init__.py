@@ -13,7 +13,7 @@ import solver.study.quantities.contact_measures as contacts
 import solver.study.quantities.cycle_measures as cyclic
 import solver.study.quantities.reduction_measures as reductions
 import solver.study.quantities.run_measures as runs
-from solver.definitions import SettingError
+from solver.settings.definitions import SettingError
 from solver.study.quantities.quantity import Quantity
 
 QUANTITIES = {

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import RESIDUE, Array
+from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
-from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack
+from solver.discrete.rods.rods import Rods
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import (
     EQUAL,

@@ -8,12 +8,12 @@ import numpy as np
 
 from solver.arrays import RESIDUE, Array
 from solver.discrete.probes import AxialForce
-from solver.discrete.rope import Rope
-from solver.discrete.wire_forces import stress_ranges
+from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.wire_forces import stress_ranges
 from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of
 from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import CYCLE, quantity

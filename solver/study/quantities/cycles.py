@@ -19,7 +19,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.latin import Iterate
 from solver.laws import Contact
-from solver.settings import Settings
+from solver.settings.scene import Settings
 
 SMALLEST_SWING = 0.05
 """Share of the whole range that a path must turn back by to begin another half cycle."""

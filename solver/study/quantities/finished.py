@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.discrete.plane import von_mises
+from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
-from solver.latin.certified import finished
-from solver.latin.cost import costs_of
-from solver.latin.status import certified, jump_of, limit_of
-from solver.latin.status_step import status_step
+from solver.latin.end.certified import finished
+from solver.latin.end.cost import costs_of
+from solver.latin.end.status import certified, jump_of, limit_of
+from solver.latin.end.status_step import status_step
 from solver.laws import OPEN
 from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import distance_to
@@ -28,7 +28,7 @@ from solver.reference.rules import States
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities.cycles import LoadCycles, cycles_of, slips_of
 
 REFUSED, BROKEN = "refused", "broken"

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities.finished import FinishedRun
 
 

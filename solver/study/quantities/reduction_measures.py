@@ -10,7 +10,7 @@ from solver.latin import Iterate
 from solver.reduction.clips import Clips, clips_of
 from solver.reduction.sizes import Sizes, of_clips, of_products
 from solver.reduction.svd import decompose, decompositions
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import WITHIN, Quantity, quantity
 

@@ -13,7 +13,8 @@ import numpy as np
 import param
 
 from solver.arrays import Array
-from solver.definitions import (
+from solver.latin import Ending
+from solver.settings.definitions import (
     Parameter,
     SettingError,
     about,
@@ -23,8 +24,7 @@ from solver.definitions import (
     title_of,
     unknown,
 )
-from solver.latin import Ending
-from solver.settings import Settings
+from solver.settings.scene import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from solver.arrays import Array
-from solver.definitions import SettingError
-from solver.files import dump
+from solver.files.saved import dump
+from solver.settings.definitions import SettingError
 from solver.study.page import (
     Chart,
     Map,

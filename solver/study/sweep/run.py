@@ -23,11 +23,11 @@ from itertools import islice
 
 import numpy as np
 
-from solver.definitions import SettingError
 from solver.latin import Ending
-from solver.latin.status_step import states_of
+from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
+from solver.settings.definitions import SettingError
 from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run, settle
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 

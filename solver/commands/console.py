@@ -1,0 +1,151 @@
+"""What commands share: the scene that they are given, what they print beside results, and files."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from solver.discrete.problem import Problem
+from solver.files.disk import check_place, read_bytes, why
+from solver.files.saved import settings_from_command
+from solver.files.tables import Table, read_table
+from solver.latin.end.cost import run_cost
+from solver.scenes.method import method_of
+from solver.scenes.remarks import remarks_before
+from solver.settings.definitions import SettingError
+from solver.settings.scene import Settings
+from solver.study.page import NO_CHARTS, renderer
+
+INTERRUPTED = 130
+"""Exit code that shells have for a program that is ended by Ctrl-C."""
+
+
+def add_command(
+    commands: Any,
+    name: str,
+    purpose: str,
+    command: Callable[[argparse.Namespace], int],
+    *,
+    of_scene: bool = False,
+    to_folder: bool = False,
+) -> argparse.ArgumentParser:
+    """Add a command; one of a scene takes that and its settings, one with files their folder."""
+    parser: argparse.ArgumentParser = commands.add_parser(name, help=purpose)
+    parser.set_defaults(command=command)
+    if of_scene:
+        scene = "a name of the catalogue, or a saved settings file (.toml)"
+        parser.add_argument("scene", help=scene)
+        parser.add_argument(
+            "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes"
+        )
+    if to_folder:
+        parser.add_argument("--out", type=Path, default=Path(name), metavar="DIR")
+    return parser
+
+
+def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
+    """Settings that a command is given, and what was understood of their tables, by name.
+
+    Prints the latter, and what of the former does nothing.
+    """
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    print_tables(tables)
+    warn(*remarks_before(settings, chosen.changes))
+    return settings, tables
+
+
+def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
+    """Table of the file that `--with` names."""
+    data = read_bytes(chosen.file, partial(SettingError, "--with", str(chosen.file), allowed))
+    return read_table(data, chosen.file.name, "--with", allowed)
+
+
+def warn(*messages: str) -> None:
+    """Print messages to stderr, a line each."""
+    for message in messages:
+        print(f"slipfront: {message}", file=sys.stderr, flush=True)
+
+
+def print_tables(tables: Mapping[str, str]) -> None:
+    """Print to stderr what was understood of tables, by what they were given for."""
+    warn(*(f"{name}: {message}" for name, message in tables.items()))
+
+
+def print_files(names: str, folder: Path) -> None:
+    """Print where files are, and whether their page has charts."""
+    print(*([] if renderer() else [NO_CHARTS]), f"{names} in {folder}", sep="\n")
+
+
+def print_json(values: Mapping[str, Any]) -> None:
+    """Print values as JSON, with null for what is no finite number."""
+    print(json.dumps(_finite(values)), flush=True)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _finite(entry) for name, entry in value.items()}
+    if isinstance(value, list):
+        return list(map(_finite, value))
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def announce(
+    settings: Settings,
+    problem: Problem,
+    run: str = "this",
+    *,
+    reference: bool = False,
+    limit: float = math.inf,
+) -> None:
+    """Print what a long or large run will take, before it begins.
+
+    `run` is what it is called, `reference` whether there is one beside it, and `limit` the seconds
+    after which it ends.
+    """
+    cost = run_cost(problem, method_of(settings), settings.max_iterations, with_reference=reference)
+    if not cost.is_large:
+        return
+    line = f"{run} will take about {cost}"
+    if cost.reference > 0.2 * cost.seconds:
+        share = round(100.0 * cost.reference / cost.seconds)
+        line += f", {share} % of the time for the reference, which --no-reference leaves out"
+    if limit < cost.seconds:
+        line += f"; --limit ends it after {limit:g} s"
+    warn(line)
+
+
+@contextlib.contextmanager
+def refusing(out: Path, allowed: str) -> Iterator[None]:
+    """Refuse a place at which nothing can be written."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as problem:
+        raise SettingError("--out", str(out), allowed, why(problem)) from None
+
+
+@contextlib.contextmanager
+def writing(folder: Path, *files: str) -> Iterator[None]:
+    """Make a folder for files; refuse one that cannot be made or written to, before all work.
+
+    It goes again where nothing was written into it.
+    """
+    is_new = not folder.exists()
+    try:
+        with refusing(folder, "a folder that can be made and written to"):
+            folder.mkdir(parents=True, exist_ok=True)
+            for file in files or ("any",):
+                check_place(folder / file)
+            yield
+    finally:
+        if is_new:
+            with contextlib.suppress(OSError):  # as of one that holds files
+                folder.rmdir()

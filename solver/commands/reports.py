@@ -1,0 +1,189 @@
+"""The commands that write reports: `figures`, `study`, `stability`, `proof` and `sweep`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from concurrent.futures import BrokenExecutor
+from pathlib import Path
+from typing import Any
+
+from solver.commands.console import (
+    INTERRUPTED,
+    add_command,
+    given,
+    print_files,
+    print_tables,
+    warn,
+    writing,
+)
+from solver.files.disk import write
+from solver.files.saved import scene_settings, settings_from_command
+from solver.settings.definitions import SettingError
+from solver.study import proof, stability
+from solver.study import study_report as study
+from solver.study.measured_times import error_against_time, times_at_sizes
+from solver.study.page import aligned, head_of, line_of, write_page
+from solver.study.paper_figures import paper_figures
+from solver.study.paper_runs import FILE, paper_runs, write_figures
+from solver.study.random_runs import random_cases
+from solver.study.stability import Row, extreme_cases, judged_runs, passed
+from solver.study.sweep.executors import FORMS, opened
+from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
+from solver.study.sweep.plan import Row as SweepRow
+from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
+from solver.study.sweep.run import patience, sweep
+from solver.study.trade_case import case_from_file
+
+TABLE, PAGE = "sweep.csv", "sweep.html"
+LIMIT = 600.0
+"""Seconds that a run may take, unless somebody says otherwise."""
+OFTEN = 3.0
+"""Seconds between two lines of progress."""
+
+
+def add_reports(commands: Any) -> None:
+    """Add the commands that measure and write reports."""
+    purpose = "draw the paper's Figs. 3 to 8 again"
+    add_command(commands, "figures", purpose, _figures, to_folder=True)
+    purpose = "error against run time, all methods side by side"
+    parser = add_command(commands, "study", purpose, _study, of_scene=True, to_folder=True)
+    parser.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
+    parser.add_argument("--large", action="store_true", help="sizes that take minutes, too")
+    purpose = "stiff and extreme cases, or random runs, each with a verdict"
+    parser = add_command(commands, "stability", purpose, _stability, to_folder=True)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    kinds.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
+    parser.add_argument("--seed", type=int, default=1, help="of the random runs")
+    purpose = "what is known beside what is found, row by row"
+    parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
+    own = "cases of one's own (.toml)"
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
+    purpose = "quantities of a run over up to two settings"
+    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True, to_folder=True)
+    parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
+    parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
+    parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
+    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
+    parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
+
+
+def _figures(chosen: argparse.Namespace) -> int:
+    with writing(chosen.out, FILE):
+        figures = paper_figures(paper_runs())
+        write_figures(figures, chosen.out)
+    for figure in figures:
+        print(f"{figure.heading} ({figure.verdict})")
+        for finding in figure.findings:
+            print(f"  {'+' if finding.holds else '-'} {finding.text}")
+    print_files(FILE, chosen.out)
+    return 0
+
+
+def _study(chosen: argparse.Namespace) -> int:
+    if chosen.repeats < 1:
+        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+    settings, _ = given(chosen)
+    with writing(chosen.out):
+        # What is measured is written at once: the rest takes longer, and somebody may end it.
+        curves = error_against_time(settings, chosen.repeats)
+        study.write_curves(curves, chosen.out)
+        sizes = times_at_sizes(settings, large=chosen.large)
+        study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
+    print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
+    print(aligned(study.table(curves)))
+    print("", aligned(study.sizes_table(settings, sizes)), *study.notes(settings, sizes), sep="\n")
+    print_files(f"{len(study.FILES)} files", chosen.out)
+    return 0
+
+
+def _stability(chosen: argparse.Namespace) -> int:
+    scenes = [scene_settings(scene).scene for scene in chosen.scenes]
+    for name, least in (("random", 1), ("seed", 0)):
+        value = getattr(chosen, name)
+        if value is not None and value < least:
+            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
+    cases = extreme_cases(scenes, quick=chosen.quick)
+    if chosen.random is not None:
+        cases = random_cases(scenes, chosen.random, chosen.seed)
+    runs: list[Row] = []
+    with writing(chosen.out, *stability.FILES):
+        print(head_of(stability.SHOWN))
+        try:
+            for run in judged_runs(cases):
+                print(line_of(run, stability.SHOWN), flush=True)
+                runs.append(run)
+        finally:  # what is done by then is written
+            stability.write_stability(runs, chosen.out)
+            print("\n".join(stability.last_lines(runs)))
+            print(f"{len(stability.FILES)} files in {chosen.out}")
+    return 0 if all(map(passed, runs)) else 1
+
+
+def _proof(chosen: argparse.Namespace) -> int:
+    own = [proof.known_case(case_from_file(path)) for path in chosen.files]
+    rows = []
+    with writing(chosen.out, *proof.FILES):
+        print(head_of(proof.SHOWN))
+        for case in own or proof.cases():
+            for row in proof.rows_of(case):
+                print(line_of(row, proof.SHOWN), flush=True)
+                rows.append(row)
+        proof.write_proof(rows, chosen.out)
+    print(f"{proof.summary(rows)}\n{len(proof.FILES)} files in {chosen.out}")
+    return 0 if all(map(proof.holds, rows)) else 1
+
+
+def _sweep(chosen: argparse.Namespace) -> int:
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    # Without a range it is a run, which has one row.
+    vary = chosen.vary or [f"friction={settings.friction!r}"]
+    plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
+    if not chosen.limit > 0.0:
+        raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
+    print_tables(tables)
+    warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
+    with writing(chosen.out):
+        rows = rows_in(chosen.out / TABLE, plan)
+        is_ended = False
+        try:
+            _run(plan, rows, chosen)
+        except KeyboardInterrupt:
+            is_ended = True
+            warn("stopped; the same command goes on from here")
+        except BrokenExecutor as end:
+            warn(f"{end}; the same command goes on from here")
+        by_number = [rows[number] for number in sorted(rows)]
+        write(chosen.out / TABLE, csv_of(plan, by_number))
+        write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
+    print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
+    print_files(f"{TABLE} and {PAGE}", chosen.out)
+    if is_ended:
+        return INTERRUPTED
+    return 0 if len(rows) == plan.size and all(row.holds for row in by_number) else 1
+
+
+def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> None:
+    """Run what of a plan has no row yet, append its rows to the table, and print how far it is."""
+    known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
+    table = chosen.out / TABLE
+    with opened(chosen.on, patience(chosen.limit)) as executor:
+        # As a whole, in case that its last line was cut off
+        write(table, csv_of(plan, list(rows.values())))
+        with table.open("a", encoding="utf-8", newline="") as lines:
+            before, began = len(known), time.monotonic()
+            printed = began
+            runs = sweep(plan, executor, done=set(known), limit=chosen.limit, warm=not chosen.cold)
+            for row in runs:
+                rows[row.number] = known[row.number] = row
+                lines.write(lines_of(plan, [row]))
+                lines.flush()
+                now, done = time.monotonic(), len(known)
+                if now - printed > OFTEN:
+                    left = (now - began) / (done - before) * (plan.size - done)
+                    line = f"{done} of {plan.size} runs, {left:.0f} s left"
+                    print(line, file=sys.stderr, flush=True)
+                    printed = now

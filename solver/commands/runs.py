@@ -1,0 +1,186 @@
+"""The commands that set runs beside something: `mesh`, `compare`, `fit`, `lesson`."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from solver.commands.console import (
+    add_command,
+    announce,
+    given,
+    print_files,
+    print_json,
+    print_tables,
+    read_brought,
+    warn,
+    writing,
+)
+from solver.latin import Ending, solve
+from solver.scenes import discretise
+from solver.scenes.method import method_of
+from solver.settings.definitions import SettingError, about
+from solver.study.compared_runs import ComparedRun
+from solver.study.comparison import CAN, FEWEST, Comparison
+from solver.study.fit import MOST, fit
+from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
+from solver.study.lessons import check, lesson_from_file
+from solver.study.measured_loop import CAN as LOOP
+from solver.study.measured_loop import LoopComparison, MeasuredLoop, loop_in
+from solver.study.mesh import (
+    TIME_STEP,
+    Refinement,
+    answer,
+    decides,
+    size_of,
+    three_of,
+    value_on,
+    which_to_refine,
+)
+from solver.study.quantities import reading
+from solver.study.table_use import brought_in
+
+OFTEN = 0.3
+"""Seconds between two lines, and files, of how far a fit is."""
+
+
+def add_checks(commands: Any) -> None:
+    """Add the commands."""
+    purpose = "whether elements and instants are enough for a quantity"
+    mesh = add_command(commands, "mesh", purpose, _mesh, of_scene=True)
+    mesh.add_argument("--of", required=True, metavar="NAME", help="what is asked of a run")
+    purpose = "how far a run is from a measured loop, or another program"
+    compare = add_command(commands, "compare", purpose, _compare, of_scene=True)
+    compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
+    purpose = "settings that bring a run nearest to a measured loop"
+    fitting = add_command(commands, "fit", purpose, _fit, of_scene=True, to_folder=True)
+    most = f"up to {MOST} settings"
+    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
+    for parser in (compare, fitting):
+        parser.add_argument(
+            "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their table"
+        )
+        parser.add_argument("--json", action="store_true", help="print what was found as JSON")
+    lesson = add_command(commands, "lesson", "test what lessons claim", _lesson)
+    lesson.add_argument("files", nargs="+", type=Path, metavar="FILE", help="lessons (.toml)")
+
+
+def _mesh(chosen: argparse.Namespace) -> int:
+    settings, _ = given(chosen)
+    asked = reading(chosen.of)
+    if not decides(settings, asked):
+        can = "a quantity of what a run comes to, that this scene has"
+        raise SettingError("--of", chosen.of, can, "`python -m solver sweep` lists them")
+    values: dict[str, float] = {}
+    refinements = []
+    for names in (settings.MESH, ["instants"]):
+        runs, own = three_of(settings, names)
+        for run in runs:
+            size = size_of(run)
+            if size not in values:
+                announce(run, discretise(run), size)
+                values[size] = value_on(run, asked)
+                print(f"{size:>32}  {values[size]:.6g} {asked.unit}".rstrip(), flush=True)
+        coarse, middle, fine = (values[size_of(run)] for run in runs)
+        refinements.append(Refinement((coarse, middle, fine), own))
+    elements, instants = refinements
+    print(f"Elements: {answer(elements, asked.unit)}")
+    print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
+    if which := which_to_refine(elements, instants):
+        print(which)
+    return 0 if which else 1
+
+
+def _compare(chosen: argparse.Namespace) -> int:
+    settings, tables = given(chosen)
+    table = read_brought(chosen, f"{CAN}; or displacement and force")
+    structure = settings.structure()
+    brought = brought_in(table, settings, structure.axes)
+    problem = discretise(settings)
+    name, interface = chosen.file.name, chosen.interface
+    message = brought.message
+    beside: LoopComparison | Comparison
+    if isinstance(brought, MeasuredLoop):
+        beside = LoopComparison(brought, structure.loop(problem), problem)
+    else:
+        if interface and interface not in problem.rubbing:
+            can = ", ".join(problem.rubbing)
+            raise SettingError("--interface", interface, can, "choose one of these")
+        beside = Comparison(brought, problem, interface)
+        if beside.counted < FEWEST:
+            can = f"at least {FEWEST} rows that both cover"
+            raise SettingError("--with", str(chosen.file), can, "give points along this interface")
+    print_tables({name: message})
+    announce(settings, problem)
+    solution = solve(problem, method_of(settings))
+    figures = beside.figures(solution.iterate)
+    status = solution.status
+    if status.lost_from is not None:
+        time_lost = problem.instants[status.lost_from]
+        warn(f"no distance is told: no solution is found from {time_lost:.4g} s on")
+        figures |= dict.fromkeys(figures.keys() & {"distance", "distance_given"}, math.nan)
+    elif isinstance(beside, LoopComparison):
+        warn(*beside.drive_messages(figures["distance_given"]))
+        warn(*beside.measured.unit_doubts(*beside.loop.along(solution.iterate)))
+    if chosen.json:
+        print_json({**figures, "tables": {**tables, name: message}, "status": str(status.ending)})
+    else:
+        distance = figures["distance"]
+        far = "no distance" if math.isnan(distance) else f"{100.0 * distance:.4g} %"
+        rows = f"{figures['rows_compared']} of {figures['rows']} rows"
+        print(f"{figures['quantity']}: {far} from {name}, at {rows}")
+    return 0 if status.ending is Ending.CONVERGED else 1
+
+
+def _fit(chosen: argparse.Namespace) -> int:
+    settings, tables = given(chosen)
+    measured = loop_in(read_brought(chosen, LOOP), settings.structure().axes)
+    announce(settings, discretise(settings))
+    print_tables({measured.source: measured.message})
+    names = [name.strip() for name in chosen.vary.split(",")]
+    printed = 0.0
+
+    def watch(runs: int, nearest: ComparedRun) -> None:
+        """Print how far it is, and keep the loop of the nearest run so far in the folder."""
+        nonlocal printed
+        if not printed:
+            run = nearest.run
+            warn(*measured.unit_doubts(run.displacement, run.force))
+        if time.monotonic() - printed < OFTEN:
+            return
+        printed = time.monotonic()
+        values = ", ".join(
+            f"{name} {value:.4g} {about(settings.definitions()[name]).unit}".strip()
+            for name, value in zip(names, nearest.values, strict=True)
+        )
+        far = f"{100.0 * nearest.distance:.3g} % away"
+        print(f"{runs} runs: {values}, {far}", file=sys.stderr, flush=True)
+        write_loop(nearest.run, chosen.out)
+
+    with writing(chosen.out, *FILES):
+        found = fit(settings, measured, names, watch)
+        write_loop(found.nearest.run, chosen.out)
+        if chosen.json:
+            tables = {**tables, measured.source: measured.message}
+            print_json({**as_json(found), "tables": tables})
+        else:
+            print("\n".join(lines(found, measured)), flush=True)
+        write_fit(found, measured, chosen.out)
+    if not chosen.json:
+        print_files(", ".join(FILES), chosen.out)
+    return 0 if found.nearest.run.solution.is_certified else 1
+
+
+def _lesson(chosen: argparse.Namespace) -> int:
+    lessons = [lesson_from_file(path) for path in chosen.files]
+    missed = 0
+    for lesson in lessons:
+        print(f"{lesson.name}: {lesson.title}")
+        for holds, line in check(lesson):
+            print(f"  {line}", flush=True)
+            missed += not holds
+    return int(missed > 0)

@@ -1,0 +1,1 @@
+"""Bodies in the plane: data, meshes, condensation, cuts, joints."""

@@ -1,0 +1,1 @@
+"""Rods: data, and how they are cut."""

@@ -1,0 +1,302 @@
+"""A strand of helical wires that is bent: rods, each on a support that is stretched with it.
+
+Plane sections of the strand stay plane, so a curvature kappa stretches what a wire lies on by
+kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at which the wire stands.
+Of the wire's displacement only what it slips on its support is unknown, and that is a rod's on a
+rigid support under the body force that the support's stretch brings about (K.-O. Papailiou, On the
+bending stiffness of transmission line conductors, IEEE Trans. Power Delivery 12, 1997). Its growth
+of tension by friction (the capstan term) is left out, as are wires beside each other.
+
+Degrees of freedom run along wire after wire; each is what the wire slips on its support. Ends are
+held: neither an extreme fibre slips, nor what a clamp grips. So friction there could not be told
+from the reactions, and they are no points of the interfaces, one a wire, "wire LAYER.NUMBER".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.checks import (
+    ANY_NUMBER,
+    COUNT,
+    FLAG,
+    INSTANTS,
+    NON_NEGATIVE,
+    POSITIVE,
+    Count,
+    Each,
+    Either,
+    Numbers,
+    Part,
+    check,
+    check_value,
+)
+from solver.discrete.probes import Probe, constant
+from solver.discrete.problem import Problem
+from solver.discrete.rods.cut_rods import CutRods
+from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rope.cross_section import CrossSection, WireLayer
+from solver.discrete.structure import OUTWARD, Act, Axes, Description, Hold, Loop, on_side
+from solver.laws import FrictionLaw
+
+
+@dataclass(frozen=True, eq=False)
+class RopeWire:
+    """A wire of a strand, between two of its places that do not slip.
+
+    Attributes
+    ----------
+    layer, number
+        From 0 on, inside out and around.
+    made
+        Of what, and how it is laid: all wires of its layer.
+    radius, start, length
+        Of the helix of its centre line, R, m; polar angle theta at its beginning, from the
+        outermost fibre, rad; and length of the wire, m.
+    bound
+        Friction bound per length of wire, N/m: a number, or over time, shape (n_instants,).
+    curvature
+        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
+    tension
+        Its force before it is bent, shape (n_instants,), N.
+    stands_for
+        Number of wires that are this one, each at another place along the strand.
+    """
+
+    layer: int
+    number: int
+    made: WireLayer
+    radius: float
+    start: float
+    length: float
+    bound: float | Array
+    curvature: Array
+    tension: Array
+    stands_for: int = 1
+
+    def __post_init__(self) -> None:
+        over_time = Numbers(((None,),))
+        check(
+            self,
+            layer=Count(0),
+            number=Count(0),
+            made=Part(WireLayer),
+            radius=POSITIVE,
+            start=ANY_NUMBER,
+            length=POSITIVE,
+            bound=Either(NON_NEGATIVE, Numbers(over_time.shapes, low=0.0)),
+            curvature=Numbers(((None, None),)),
+            tension=over_time,
+            stands_for=COUNT,
+        )
+
+    @property
+    def name(self) -> str:
+        """What its interface is called: numbers of layer and wire, from 1 on."""
+        return f"wire {self.layer + 1}.{self.number + 1}"
+
+    @property
+    def arc(self) -> Array:
+        """Arc lengths of the nodes, shape (n_nodes,), m."""
+        return np.linspace(0.0, self.length, len(self.curvature))
+
+    @property
+    def along(self) -> Array:
+        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
+        return np.asarray(np.cos(self.made.lay) * self.arc)
+
+    @property
+    def angle(self) -> Array:
+        """Theta at the nodes, shape (n_nodes,), rad."""
+        return np.asarray(self.start + self.arc * np.sin(self.made.lay) / self.radius)
+
+    def stuck_force(self, columns: slice | Indices = slice(None)) -> Array:
+        """Change of its force in the elements while all sticks, (n_elements, n_columns), N."""
+        stuck = self._stuck_force(columns)
+        return np.asarray(0.5 * (stuck[1:] + stuck[:-1]))
+
+    def _stuck_force(self, columns: slice | Indices) -> Array:
+        """The same at the nodes."""
+        stretch = self.made.stiffness * self.radius * np.cos(self.made.lay) ** 2
+        return np.asarray((stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns])
+
+    def body_force(self) -> Array:
+        """Force per length that stands for the stretch of what it lies on.
+
+        It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the wire
+        included, in differences of the elements' forces: equilibrium holds exactly on the mesh.
+        Shape (n_nodes, n_instants), N/m.
+        """
+        stuck, arc = self._stuck_force(slice(None)), self.arc
+        force = np.concatenate([stuck[:1], 0.5 * (stuck[1:] + stuck[:-1]), stuck[-1:]])
+        length = np.concatenate([arc[:1], 0.5 * (arc[1:] + arc[:-1]), arc[-1:]])
+        return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
+
+    def levers(self, *, at_beginning: bool) -> Array:
+        """What a newton in each element adds to the moment of the strand, (n_elements,), N m.
+
+        Either to that at the wire's beginning, where the force follows from the first two elements,
+        in whose middles it is known; or to the mean, which as many wires, evenly laid, have
+        together at every section.
+        """
+        arc, arm = self.arc, self.radius * np.cos(self.made.lay)
+        if not at_beginning:
+            around = np.diff(np.sin(self.angle)) * self.radius / np.sin(self.made.lay)
+            return np.asarray(arm * around / (arc[-1] - arc[0]))
+        levers = np.zeros(len(arc) - 1)
+        shares = np.array([1.5, -0.5])[: len(levers)]
+        levers[:2] = arm * np.cos(self.start) * shares / shares.sum()
+        return levers
+
+
+@dataclass(frozen=True, eq=False)
+class Rope:
+    """Helical wires of a strand whose sections stay plane, so that none is tied to another.
+
+    Attributes
+    ----------
+    wires
+        All on equally many elements, in any order.
+    substructures
+        Parts that the elements of a wire are dealt to.
+    tension, curvature
+        Of the strand, N, for whoever draws it; and, uniform or at its clamp, 1/m: (n_instants,).
+    is_clamped
+        Whether the curvature falls away from a clamp, so that every wire is there; or it is the
+        same all along, and the wires of a layer differ by their phase alone.
+    instants, duration
+        Instants, shape (n_instants,), and length of the interval, s.
+
+    Raises
+    ------
+    RefusedError
+        For no wires, fields of another shape, or instants that do not increase.
+    """
+
+    wires: Sequence[RopeWire]
+    substructures: int
+    tension: Array
+    curvature: Array
+    is_clamped: bool
+    section: CrossSection
+    instants: Array
+    duration: float
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
+
+    def __post_init__(self) -> None:
+        check(
+            self,
+            wires=Each(Part(RopeWire)),
+            is_clamped=FLAG,
+            section=Part(CrossSection),
+            instants=INSTANTS,
+            duration=POSITIVE,
+            friction_law=Part(FrictionLaw),
+        )
+        instants = len(self.instants)
+        over_time = Numbers(((instants,),))
+        elements = Count(1, self.elements)
+        check(self, substructures=elements, tension=over_time, curvature=over_time)
+        along = Numbers(((self.elements + 1, instants),))
+        bound = Either(NON_NEGATIVE, over_time)
+        for number, wire in enumerate(self.wires):
+            name = f"Rope.wires[{number}]"
+            check_value(f"{name}.curvature", wire.curvature, along)
+            check_value(f"{name}.tension", wire.tension, over_time)
+            check_value(f"{name}.bound", wire.bound, bound)
+
+    @property
+    def elements(self) -> int:
+        """Of one wire."""
+        return len(self.wires[0].curvature) - 1
+
+    @property
+    def seen_length(self) -> float:
+        """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
+        longest = max(float(wire.along[-1]) for wire in self.wires)
+        return longest if self.is_clamped else 2.0 * longest
+
+    def discretise(self) -> Problem:
+        """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
+
+        Positions are those along the strand. Where a wire stands for its layer, over half a turn
+        of it, so does its interface, over the strand that is drawn.
+        """
+        problem = CutRods(
+            [self._rod(wire) for wire in self.wires],
+            [wire.along for wire in self.wires],
+            [wire.name for wire in self.wires],
+            rub_at_ends=(False, False),
+        ).problem()
+        if self.is_clamped:
+            return problem
+        interfaces = dict(problem.interfaces)
+        for wire in self.wires:
+            copies = wire.stands_for * self.seen_length / float(wire.along[-1])
+            interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
+        return replace(problem, interfaces=interfaces)
+
+    def _rod(self, wire: RopeWire) -> Rods:
+        held = End(displacement=np.zeros(len(self.instants)))
+        return Rods(
+            length=wire.length,
+            stiffness=wire.made.stiffness,
+            elements=self.elements,
+            substructures=self.substructures,
+            bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
+            left=held,
+            right=held,
+            instants=self.instants,
+            duration=self.duration,
+            body_force=wire.body_force(),
+            friction_law=self.friction_law,
+        )
+
+    def moment(self) -> Probe:
+        """Bending moment of the strand, N m, from what its wires slip.
+
+        At the clamp, or the mean along the strand, which is that of every section; with the wires
+        bent each about their own axis.
+        """
+        weights, stuck = [], self.section.slipping_bending * self.curvature
+        for wire in self.wires:
+            levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
+            spring = wire.made.stiffness * levers / np.diff(wire.arc)
+            weights.append(-np.diff(spring, prepend=0.0, append=0.0))
+            stuck = stuck + levers @ wire.stuck_force()
+        together = np.concatenate(weights)
+        dofs = np.flatnonzero(together)
+        return Probe(dofs, together[dofs], stuck)
+
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        title = "Curvature at the clamp" if self.is_clamped else "Curvature"
+        return (title, "1/m"), ("Moment", "N·m")
+
+    def loop(self, problem: Problem) -> Loop:
+        """Moment over the curvature, which drives it."""
+        across, moment = constant(self.curvature), self.moment().of
+        return Loop(*self.axes, across, moment)
+
+    def described(self) -> Description:
+        """The strand in words, for whoever draws it."""
+        end = on_side("right", [0.5])
+        acts = (
+            Act("right y", "κ", end, OUTWARD["top"], self.curvature, "1/m"),
+            Act("right x", "T", end, OUTWARD["right"], self.tension, "N"),
+        )
+        # Beside a clamp wires move, unlike a bar, as far as anywhere.
+        clamp = Hold("clamp", "left", moved=np.zeros(len(self.instants)))
+        return Description(
+            bodies=1,
+            length=self.seen_length,
+            height=self.section.diameter,
+            instants=self.instants,
+            acts=acts,
+            holds=(clamp,) if self.is_clamped else (),
+        )

@@ -1,0 +1,71 @@
+"""Workbooks (.xlsx) that have a table: the first sheet, read with openpyxl, which is optional."""
+
+from __future__ import annotations
+
+import io
+import warnings
+import zipfile
+
+from solver.files.disk import Refuse
+from solver.files.table_lines import Line, line_of
+
+UNPACKED = 20_000_000
+"""Bytes of a workbook's parts at most: some five times what is read of a text."""
+MISSING = (
+    "it is a workbook, which needs openpyxl: save the table as CSV, or install it with "
+    "`pip install 'slipfront[excel]'`"
+)
+OTHER = "it is no workbook (.xlsx) and no text: save the table as CSV"
+
+
+def is_archive(data: bytes) -> bool:
+    """Whether a file is an archive, as workbooks are, or a workbook of before 2007."""
+    return data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0"))
+
+
+def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
+    """Rows of the first sheet that are not empty, by their numbers, and words on the sheet."""
+    _check_archive(data, refuse)
+    try:
+        import openpyxl
+    except ImportError:
+        raise refuse(MISSING) from None
+    try:
+        # It warns of what it does not read: forms, charts, styles.
+        with warnings.catch_warnings(action="ignore"):
+            book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
+            sheet = book.worksheets[0]
+            rows = [list(map(_text_of, row)) for row in sheet.iter_rows(values_only=True)]
+            names = book.sheetnames
+            book.close()
+    except Exception as problem:  # whatever a file that is broken makes of its readers
+        raise refuse(f"{OTHER} ({type(problem).__name__})") from None
+    lines = [
+        line_of(number, " ".join(row), _without_end(row))
+        for number, row in enumerate(rows, start=1)
+    ]
+    several = f" of {len(names)}" if len(names) > 1 else ""
+    return [line for line in lines if line.cells], f"sheet {sheet.title!r}{several}"
+
+
+def _check_archive(data: bytes, refuse: Refuse) -> None:
+    """Refuse other archives, and one that is far larger than it seems."""
+    try:
+        parts = zipfile.ZipFile(io.BytesIO(data)).infolist()
+    except zipfile.BadZipFile:
+        raise refuse(OTHER) from None
+    if "xl/workbook.xml" not in [part.filename for part in parts]:
+        raise refuse(OTHER)
+    if sum(part.file_size for part in parts) > UNPACKED:
+        raise refuse(f"it has more than {UNPACKED // 1_000_000} MB when it is unpacked")
+
+
+def _text_of(value: object) -> str:
+    """A cell as text: numbers in all digits, with a decimal point."""
+    return "" if value is None else str(value).strip()
+
+
+def _without_end(cells: list[str]) -> list[str]:
+    """Cells without empty ones at the end."""
+    last = max((place for place, cell in enumerate(cells, start=1) if cell), default=0)
+    return cells[:last]

@@ -1,0 +1,1 @@
+"""Search directions, and their updates during a run."""

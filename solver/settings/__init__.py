@@ -1,0 +1,1 @@
+"""Settings: their definitions, and those that all scenes share."""

@@ -1,0 +1,173 @@
+"""Settings of the law of friction, which all scenes have."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.laws import FrictionLaw, Strength
+from solver.refusal import plain
+from solver.settings.definitions import ANY, CONTACT, Rows, TablePreset, about
+from solver.settings.method import MethodSettings
+
+SHORTEST_SLIP = 1e-12
+"""Between points of a strength, m."""
+LARGEST_FACTOR = 1e3
+"""Of a strength."""
+STIFFNESSES = 1e-9, 1e9
+"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are left."""
+
+
+STRENGTHS = {
+    "constant": TablePreset("1, whatever has slipped", lambda settings: settings.strength_points()),
+    "linear": TablePreset(
+        "from 1 evenly to friction_ratio at slip_length, where it stays",
+        lambda settings: settings.strength_points(),
+    ),
+}
+
+
+class FrictionSettings(MethodSettings):
+    """Settings of the law of friction, beside the coefficient."""
+
+    friction_law = CONTACT.choice(
+        "coulomb",
+        ["coulomb", "compliant", "slip-dependent", "general"],
+        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
+        "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
+        "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
+        "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
+        "and a cap.",
+    )
+    contact_stiffness = CONTACT.quantity(
+        100.0,
+        (1e-3, 1e9),
+        (1.0, 1e4),
+        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
+        "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
+        "multiple of the stiffest E S over the square of the longest L.",
+        applies=lambda settings: settings.friction_law == "compliant",
+    )
+    tangential_stiffness = CONTACT.quantity(
+        0.0,
+        (0.0, 1e18),
+        (1e4, 1e9),
+        "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
+        "bond, a soft layer. 0: rigid.",
+        unit="N/m^2",
+        applies=lambda settings: settings.is_general,
+    )
+    cohesion = CONTACT.quantity(
+        0.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Friction force per length of rod without any pressure, beside μ p.",
+        title="Cohesion c",
+        unit="N/m",
+        applies=lambda settings: settings.is_general,
+    )
+    friction_cap = CONTACT.quantity(
+        0.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
+        "none.",
+        unit="N/m",
+        applies=lambda settings: settings.is_general,
+    )
+    strength = CONTACT.curve(
+        "constant",
+        STRENGTHS,
+        {"slip": "m", "factor": ""},
+        "Factor on the largest friction force over the accumulated slip of a point: a preset, or "
+        "points (m, factor), the first (0, 1), such as a peak, softening and a residual; the last "
+        "one stays.",
+        bounds=(ANY, (0.0, LARGEST_FACTOR)),
+        title="Strength over slip",
+        applies=lambda settings: settings.is_general,
+    )
+
+    friction_ratio = CONTACT.quantity(
+        1.5,
+        (0.0, 1e3),
+        (0.5, 2.0),
+        "Last friction over the first: above 1 it hardens with slip, below it softens.",
+        title="Last friction over first",
+        applies=lambda settings: settings.is_linear_in_slip,
+    )
+    slip_length = CONTACT.quantity(
+        1e-4,
+        (1e-12, 1e6),
+        (1e-6, 1e-2),
+        "Accumulated slip of a point at which its friction is the last.",
+        unit="m",
+        applies=lambda settings: settings.is_linear_in_slip,
+    )
+
+    @property
+    def is_general(self) -> bool:
+        """Whether all parts of the friction law are given."""
+        return bool(self.friction_law == "general")
+
+    @property
+    def is_linear_in_slip(self) -> bool:
+        """Whether friction changes with slip by a ratio over a length."""
+        by_ratio = self.is_general and self.strength == "linear"
+        return by_ratio or bool(self.friction_law == "slip-dependent")
+
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`: N/m^2 along rods, N/m^3 in the plane."""
+        raise NotImplementedError
+
+    @property
+    def law(self) -> FrictionLaw:
+        """Law of friction, beside mu."""
+        if self.friction_law == "compliant":
+            return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
+        changes = self.is_linear_in_slip or (self.is_general and self.strength != "constant")
+        strength = Strength(*zip(*self.strength_points(), strict=True)) if changes else None
+        if not self.is_general:
+            return FrictionLaw(strength=strength)
+        return FrictionLaw(
+            stiffness=self.tangential_stiffness or np.inf,
+            cohesion=self.cohesion,
+            cap=self.friction_cap or np.inf,
+            strength=strength,
+        )
+
+    def strength_points(self) -> Rows:
+        """Points of the strength over the slip, or those that stand for its preset."""
+        table: str | Rows = self.strength
+        if not (self.is_linear_in_slip or isinstance(table, str)):
+            return table
+        last = self.friction_ratio if self.is_linear_in_slip else 1.0
+        return (0.0, 1.0), (self.slip_length, last)
+
+    def check_together(self) -> None:
+        """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
+        super().check_together()
+        table = self.strength
+        if self.is_general and not isinstance(table, str):
+            begins = len(table) > 1 and table[0] == (0.0, 1.0)
+            if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
+                raise self.refusal(
+                    "strength",
+                    "at least two points (slip, factor), the first (0, 1), and slips that grow by "
+                    f"{plain(SHORTEST_SLIP)} m",
+                    "the factor at slip 0 is 1, as the rest of the law says what friction is there",
+                )
+        if self.is_general:
+            for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
+                remedy = (
+                    "write 0 where nothing gives way, or take away friction where nothing holds"
+                )
+                self.check_digits(name, self.contact_unit, remedy)
+
+    def check_digits(self, name: str, size: float, remedy: str) -> None:
+        """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""
+        value, unit = getattr(self, name), about(self.definitions()[name]).unit
+        low, high = (share * size for share in STIFFNESSES)
+        if self.applies(name) and value and not low <= value <= high:
+            none = "0, or " if self.definitions()[name].bounds[0] == 0.0 else ""
+            allowed = f"{none}from {plain(low)} {unit} to {plain(high)} {unit} with such bodies"
+            raise self.refusal(name, allowed, remedy)

@@ -1,0 +1,305 @@
+"""Load paths over time, from a named preset or a table of points, and the instants of a run.
+
+A preset is a path over the phase of an interval, from 0 to 1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.settings.definitions import Rows
+
+RANDOM_POINTS = 12
+NO_LOAD = 1e-14
+"""What rounding makes of a whole number of half waves, where a load vanishes."""
+DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
+HELD = 0.25
+"""Share of the interval after which "hold" stays where it is, and "delayed" and "cycles" begin."""
+CYCLES = 6
+LOOSE = 0.2
+"""Share of its pressure that a bolt has left when it has loosened."""
+SAME = 1e-12
+"""Share of the interval by which rounding may set one time apart from another."""
+NO_KNOTS = np.zeros(0)
+Wave = Callable[[Array], Array]
+
+
+def interpolate(points: Rows | Array, where: Array) -> Array:
+    """Values of a table of (abscissa, value), linear in between and held outside."""
+    abscissae, values = np.array(points).T
+    between: Array = np.interp(where, abscissae, values)
+    steep = ~np.isfinite(between)
+    if steep.any():  # a slope beyond the largest number: points that all but coincide
+        between[steep] = values[np.searchsorted(abscissae, where[steep], side="right") - 1]
+    return between
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A path with a name: straight lines between points after a beginning that has the first.
+
+    The description is a line on it, where "the value" is the largest that it reaches.
+
+    Points, for a seed of what is random, are phases after the beginning, and ordinates. It begins
+    after a share of the interval, and comes back to where it is from another on, if at all. A wave
+    has ordinates at such phases in place of straight lines, where it bends.
+    """
+
+    description: str
+    points: Callable[[int], tuple[Array, Array]]
+    begins: float = 0.0
+    repeats: float | None = None
+    wave: Wave | None = None
+
+    def value(self, phase: Array, seed: int, cycles: int = 1) -> Array:
+        """Values at phases; what comes back is gone through so many times in the same time."""
+        if cycles > 1 and self.repeats is not None:
+            turns = cycles * (phase - self.repeats) / (1.0 - self.repeats)
+            again = self.repeats + (1.0 - self.repeats) * (turns - np.floor(turns))
+            phase = np.where(phase > self.repeats, again, phase)
+        after = np.maximum(phase - self.begins, 0.0) / (1.0 - self.begins)
+        return self.wave(after) if self.wave else np.interp(after, *self.points(seed))
+
+    def corners(self, seed: int, cycles: int = 1) -> Array:
+        """Phases inside the interval at which it turns back or bends."""
+        corners = self.begins + (1.0 - self.begins) * self.points(seed)[0][:-1]
+        corners = corners[corners > 0.0]
+        if cycles == 1 or self.repeats is None:
+            return corners
+        turn = np.append(self.repeats, corners[corners > self.repeats]) - self.repeats
+        later = (np.arange(cycles)[:, None] * (1.0 - self.repeats) + turn) / cycles
+        return np.append(corners[corners < self.repeats], self.repeats + later)
+
+
+def _lines(
+    description: str,
+    *ordinates: float,
+    begins: float = 0.0,
+    repeats: float | None = None,
+    wave: Wave | None = None,
+) -> Preset:
+    """Preset of ordinates that are evenly spaced."""
+    points = np.linspace(0.0, 1.0, len(ordinates)), np.array(ordinates)
+    return Preset(description, lambda seed: points, begins, repeats, wave)
+
+
+def _walk(seed: int) -> tuple[Array, Array]:
+    """Points of a random walk."""
+    steps = np.random.default_rng(seed).uniform(-1.0, 1.0, RANDOM_POINTS)
+    walk = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.linspace(0.0, 1.0, len(walk)), walk / np.max(np.abs(walk))
+
+
+def _size_of_walk(seed: int) -> tuple[Array, Array]:
+    """Points of a random walk's size: its own, and where it changes its sign."""
+    phases, walk = _walk(seed)
+    crossed = np.flatnonzero(walk[:-1] * walk[1:] < 0.0)
+    zeros = crossed + walk[crossed] / (walk[crossed] - walk[crossed + 1])
+    every = np.union1d(phases, zeros / RANDOM_POINTS)
+    return every, np.where(np.isin(every, phases), np.abs(np.interp(every, phases, walk)), 0.0)
+
+
+def _sine(phase: Array) -> Array:
+    wave = np.sin(2.0 * np.pi * phase)
+    return np.where(np.abs(wave) < NO_LOAD, 0.0, wave)
+
+
+QUARTERS = 0.0, 1.0, 0.0, -1.0, 0.0
+PRESETS: dict[str, Preset] = {
+    "ramp": _lines("rises evenly from 0 to the value, which it has at the end", 0.0, 1.0),
+    "triangle": _lines(
+        "rises evenly to the value in the middle of the interval, and falls back to 0",
+        *(0.0, 1.0, 0.0),
+        repeats=0.0,
+    ),
+    "cycle": _lines(
+        "goes to the value, to its opposite and to the value again, in straight lines",
+        *(*QUARTERS, 1.0),
+        repeats=0.2,
+    ),
+    "sine": _lines(
+        "a wave of a sine: to the value, to its opposite, and back to 0",
+        *QUARTERS,
+        repeats=0.0,
+        wave=_sine,
+    ),
+    "decaying": _lines(
+        "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, and to 0",
+        *(0.0, *DECAY, 0.0),
+        repeats=0.0,
+    ),
+    "random": Preset(
+        "a random walk of 12 straight lines, as the seed has it, whose largest size is the value",
+        _walk,
+    ),
+    "hold": Preset(
+        "rises evenly to the value in the first quarter of the interval, and stays there",
+        lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0])),
+    ),
+    "delayed": _lines(
+        "0 for the first quarter of the interval, then a wave of a sine: to the value, to its "
+        "opposite, and back to 0",
+        *QUARTERS,
+        begins=HELD,
+        repeats=HELD,
+        wave=_sine,
+    ),
+    "cycles": _lines(
+        "0 for the first quarter of the interval, then six times to the value, to its opposite "
+        "and back to 0, in straight lines",
+        *(0.0, *QUARTERS[1:] * CYCLES),
+        begins=HELD,
+        repeats=HELD,
+    ),
+}
+
+PULLS: dict[str, Preset] = {
+    **PRESETS,
+    "cycle": _lines(
+        "goes to the value, to 0, to the value, to 0 and to the value again, in straight lines",
+        *(0.0, 1.0, 0.0, 1.0, 0.0, 1.0),
+        repeats=0.2,
+    ),
+    "sine": _lines(
+        "two waves of a sine squared, from 0 to the value and back",
+        *QUARTERS,
+        repeats=0.0,
+        wave=lambda phase: _sine(phase) ** 2,
+    ),
+    "decaying": _lines(
+        "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the value, and to 0",
+        *(0.0, *(0.5 + 0.5 * DECAY), 0.0),
+        repeats=0.0,
+    ),
+    "random": Preset(
+        "the size of a random walk of 12 straight lines, as the seed has it, at most the value",
+        _size_of_walk,
+    ),
+    "delayed": _lines(
+        "0 for the first quarter of the interval, then two waves of a sine squared, from 0 to the "
+        "value and back",
+        *QUARTERS,
+        begins=HELD,
+        repeats=HELD,
+        wave=lambda phase: _sine(phase) ** 2,
+    ),
+    "cycles": _lines(
+        "0 for the first quarter of the interval, then six times to the value and back to 0, in "
+        "straight lines",
+        *(0.0, *[1.0, 0.0] * CYCLES),
+        begins=HELD,
+        repeats=HELD,
+    ),
+}
+"""Presets that never push, for what carries tension alone."""
+
+PRESSURES: dict[str, Preset] = {
+    "steady": _lines("the value from the beginning to the end", 1.0, 1.0),
+    "loosening": _lines(
+        "the value for the first quarter of the interval, then falls evenly to a fifth of it, as "
+        "of a bolt",
+        *(1.0, LOOSE),
+        begins=HELD,
+    ),
+    "tightening": _lines(
+        "a fifth of the value for the first quarter of the interval, then rises evenly to the "
+        "value",
+        *(LOOSE, 1.0),
+        begins=HELD,
+    ),
+    "shaken": _lines(
+        "the value for the first quarter of the interval, then six times down to a fifth of it and "
+        "back, in straight lines",
+        *(1.0, *[LOOSE, 1.0] * CYCLES),
+        begins=HELD,
+        repeats=HELD,
+    ),
+}
+"""Presets of what presses: all of it at first, or in the end, and never nothing."""
+
+INJECTIONS: dict[str, Preset] = {
+    "steady": PRESSURES["steady"],
+    "stopped": _lines(
+        "the value for half of the interval, then nothing; what has spread goes on",
+        *(1.0, 1.0, 0.0),
+        wave=lambda phase: np.where(phase <= 0.5, 1.0, 0.0),
+    ),
+    "rising": _lines("rises evenly from nothing to the value, which it has at the end", 0.0, 1.0),
+    "pulses": _lines(
+        "the value, then six times down to nothing and back, in straight lines",
+        *(1.0, *[0.0, 1.0] * CYCLES),
+        repeats=0.0,
+    ),
+    "random": PULLS["random"],
+}
+"""Presets of a fluid that is let in from the beginning."""
+
+
+def instants_of(
+    duration: float, number: int, knots: Array = NO_KNOTS, corners: Array = NO_KNOTS
+) -> Array:
+    """Instants spread over a time interval, s, with knots of paths among them.
+
+    Between knots they are evenly spaced, and no step is longer than one of `number` equal ones: of
+    instants from 0 on, or of a single one at the end. Knots outside do not count; corners, which
+    are those of presets, are an instant or a knot where they differ from it by rounding alone.
+    """
+    even = np.linspace(0.0, duration, number) if number > 1 else np.array([duration])
+    knots = np.unique(knots[(knots >= 0.0) & (knots <= duration)])
+    corners = np.unique(corners)
+    corners = corners[np.diff(corners, prepend=-duration) > SAME * duration]
+    every = np.union1d(knots, apart(corners, knots, SAME * duration))
+    if len(apart(every, even, SAME * duration)) == 0 and np.all(np.diff(every) > SAME * duration):
+        return even
+    every = np.union1d(every, even[[0, -1]])
+    shares = np.diff(every) * ((number - 1) / duration)
+    steps = np.maximum(np.ceil(shares - SAME * number), 1.0).astype(np.intp)
+    first = np.concatenate([[0], np.cumsum(steps)])
+    place = np.arange(first[-1]) - np.repeat(first[:-1], steps)
+    spread = np.repeat(every[:-1], steps) + place * np.repeat(np.diff(every) / steps, steps)
+    return np.append(spread, every[-1])
+
+
+def apart(times: Array, others: Array, least: float) -> Array:
+    """Times that are farther than that from all others, which are sorted."""
+    if len(others) == 0:
+        return times
+    after = np.searchsorted(others, times).clip(0, len(others) - 1)
+    nearest = np.minimum(np.abs(times - others[after]), np.abs(times - others[after - 1]))
+    return np.asarray(times[nearest > least])
+
+
+def turning_knots(knots: Array, values: Array) -> Array:
+    """Knots at which a path turns back, on its way from zero to values at all knots."""
+    steps = np.diff(values, prepend=0.0)
+    moves = np.flatnonzero(steps)
+    turns = np.sign(steps[moves[1:]]) != np.sign(steps[moves[:-1]])
+    return np.asarray(knots[moves[:-1][turns]])
+
+
+def thinned(points: Rows | Array, allowed: float) -> Array:
+    """Numbers of the points of a table that the others do not tell, within an allowed error.
+
+    The first and the last point stay, and the largest and the smallest value.
+    """
+    times, values = np.array(points).T.tolist()
+    kept, tops = [0], {values.index(max(values)), values.index(min(values))}
+    low, high = -math.inf, math.inf
+    for place in range(1, len(times)):
+        last = kept[-1]
+        slope = (values[place] - values[last]) / (times[place] - times[last])
+        if place - 1 > last and (place - 1 in tops or not low <= slope <= high):
+            last = place - 1
+            kept.append(last)
+            low, high = -math.inf, math.inf
+        span = times[place] - times[last]
+        low = max(low, (values[place] - allowed - values[last]) / span)
+        high = min(high, (values[place] + allowed - values[last]) / span)
+    if len(times) > 1:
+        kept.append(len(times) - 1)
+    return np.array(kept)

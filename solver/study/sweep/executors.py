@@ -1,0 +1,180 @@
+"""What runs many calls at once: processes of this machine, or the workers of a Dask cluster.
+
+All are executors as of `concurrent.futures`. A call that is cancelled while it runs is ended with
+its process, where that is one of this machine.
+"""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import signal
+import socket
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
+from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
+from multiprocessing import forkserver, resource_tracker
+from multiprocessing.context import BaseContext
+from typing import Any
+
+import numpy as np
+import scipy
+from pebble import ProcessPool
+from threadpoolctl import threadpool_limits
+
+from solver.settings.definitions import SettingError
+
+LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""What `python -m solver` sets to 1 before it imports NumPy, unless its user said otherwise."""
+ONE_THREAD = dict.fromkeys(LIMITS, "1")
+FORMS = "processes, processes:COUNT, or dask://HOST:PORT"
+DASK = "dask://"
+MOST_PROCESSES = 256
+NICENESS = 10
+"""Below everything that somebody waits for, a page's own runs among them."""
+PATIENCE = 10.0
+"""Seconds that a Dask scheduler has to answer."""
+PRELOADED = "solver.study.sweep.run"
+"""Module that a fork server imports once for all processes."""
+
+left_alone = ExitStack()
+"""What a process of `Processes` does before it ends because its parent is gone."""
+
+
+def processors() -> int:
+    """Number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def machine() -> str:
+    """Processors, BLAS threads and versions in a line."""
+    limits = {os.environ[name] for name in LIMITS if name in os.environ}
+    return (
+        f"{processors()} processors; BLAS threads: {', '.join(sorted(limits)) or 'not limited'}; "
+        f"Python {sys.version.split()[0]}, NumPy {np.__version__}, SciPy {scipy.__version__}"
+    )
+
+
+class Processes(Executor):
+    """Niced processes of this machine with one BLAS thread each, which end with this process.
+
+    A call that takes longer than `limit` seconds raises `TimeoutError`, and its process is ended.
+    After `n_calls` a process is replaced by a new one; 0 is never. One that is killed fails its
+    call with `pebble.ProcessExpired`. If none did a call, all that wait fail with
+    `BrokenProcessPool`, and can be submitted again.
+    """
+
+    def __init__(self, count: int, limit: float | None = None, n_calls: int = 0) -> None:
+        self._limit, self._is_shut_down = limit, False
+        self._started = partial(ProcessPool, count, n_calls, initializer=_begin, context=_context())
+        self._pool = self._started()
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Do a call in the next process that is free; all of it is picklable."""
+        if not (self._pool.active or self._is_shut_down):
+            # A pool is broken once a process is killed while none does a call.
+            self._pool.stop()
+            self._pool.join()
+            self._pool = self._started()
+        return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Begin no other call; if futures are to be cancelled, end the processes at once."""
+        self._is_shut_down = True
+        if cancel_futures:
+            self._pool.stop()
+        else:
+            self._pool.close()
+        if wait:
+            self._pool.join()
+
+
+def _context() -> BaseContext:
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([PRELOADED])
+    # Ctrl-C reaches all processes of a terminal. The server and what it forks inherit that they
+    # are deaf to it: who submits the calls ends them.
+    # The tracker, which it starts if there is none, would have this thread hear it again.
+    resource_tracker.ensure_running()
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
+    return context
+
+
+def _begin() -> None:
+    """Prepare a process for its calls."""
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    threadpool_limits(1)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        left_alone.close()
+        os._exit(0)
+
+
+@contextmanager
+def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Executor]:
+    """Open the executor that a text names, and close it in the end with all that still runs.
+
+    `limit` and `n_calls` are those of `Processes`; a cluster does not take them.
+
+    Raises
+    ------
+    SettingError
+        For a text that names none, or a cluster that cannot be reached.
+    """
+    kind, colon, rest = on.partition(":")
+    count = int(rest) if rest.isdecimal() else 0 if colon else processors()
+    if on.startswith(DASK) and on != DASK:
+        with _cluster(on.removeprefix(DASK)) as executor:
+            yield executor
+    elif kind == "processes" and 1 <= count <= MOST_PROCESSES:
+        executor = Processes(count, limit, n_calls)
+        try:
+            yield executor
+        finally:
+            executor.shutdown(cancel_futures=True)
+    else:
+        raise SettingError("--on", on, FORMS, f"name one, with at most {MOST_PROCESSES} processes")
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    """Executor of a Dask scheduler, which does the calls of lost workers again."""
+    try:
+        from distributed import Client
+    except ModuleNotFoundError as missing:
+        remedy = f"{missing.name} is not here: pip install 'slipfront[cluster]'"
+        raise SettingError("--on", DASK + address, FORMS, remedy) from None
+    # A scheduler that is gone is told in a line; the client logs it with its traceback besides.
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+    host, _, port = address.rpartition(":")
+    try:
+        # First of all, as a client that finds no scheduler is never closed.
+        socket.create_connection((host, int(port)), PATIENCE).close()
+        client = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, OverflowError) as problem:
+        answers = "the HOST:PORT of a Dask scheduler that answers"
+        reason = f"{type(problem).__name__}: {problem}".splitlines()[0]
+        raise SettingError("--on", DASK + address, answers, reason) from None
+    try:
+        # Equal calls are not one call: those that were lost are asked for again.
+        yield client.get_executor(pure=False)
+    finally:
+        # One that is gone takes no leave, whatever its client says to that.
+        with suppress(Exception):
+            client.close()

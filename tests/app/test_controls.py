@@ -1,0 +1,306 @@
+"""The controls at the side show every setting, and refuse at the control what does not hold."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import param
+import pytest
+
+from app.controls import POINTS, Controls, SettingControl
+from app.files.opener import TableOpener
+from app.messages import Start
+from app.state import PageState, default_settings
+from app.units import Unit, typed, unit_of
+from solver.files.saved import dump
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
+from solver.settings.definitions import CurveParameter
+
+
+@cache
+def names(scene: str) -> list[str]:
+    """Settings of a scene."""
+    return list(default_settings(scene).definitions())
+
+
+def of_scene(scene: str) -> PageState:
+    return PageState(default_settings(scene))
+
+
+def held(state: PageState, name: str) -> Any:
+    return getattr(state.settings, name)
+
+
+def holds(state: PageState, name: str, value: float) -> bool:
+    try:
+        state.settings.with_change(name, value)
+    except RefusedError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_the_widget_of_every_setting_shows_its_value_and_takes_another(scene: str) -> None:
+    for name in names(scene):
+        state = of_scene(scene)
+        control, definition = SettingControl(name, state), state.settings.definitions()[name]
+        value = held(state, name)
+        if control.slider is not None:
+            unit = unit_of(definition)
+            assert typed(control.field.value, unit, definition.metadata["about"].unit) == (
+                pytest.approx(value, rel=1e-9)
+            )
+            ends = *definition.softbounds[::-1], value
+            another = next(end for end in ends if holds(state, name, end))
+            control.field.value = f"{another / unit.factor:.12g}"
+            assert held(state, name) == pytest.approx(another, rel=1e-9), name
+        elif isinstance(definition, param.Boolean):
+            control.field.value = not value
+            assert held(state, name) is not value
+        elif others := [one for one in control.field.options if one not in (value, POINTS)]:
+            another = others[0]
+            control.field.value = another
+            assert held(state, name) == another or state.refusal, name
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(scene: str) -> None:
+    for name in names(scene):
+        for end in ("start", "end"):
+            state = of_scene(scene)
+            control = SettingControl(name, state)
+            if control.slider is None:
+                break
+            place = getattr(control.slider, end)
+            control.slider.value = place
+            with param.edit_constant(control.slider):
+                control.slider.value_throttled = place
+            assert control.slider.value == pytest.approx(place) or control.field.error_state, name
+            assert control.field.helper_text == (state.refusal if control.field.error_state else "")
+
+
+def test_a_field_keeps_its_unit_whatever_is_typed() -> None:
+    state = of_scene("incline")
+    control = SettingControl("weight", state)
+    assert control.field.label.endswith(", kN")
+    for text, newtons in (("-5", -5e3), ("900", 9e5), ("0,25", 250.0), ("3 MN", 3e6), ("7 N", 7.0)):
+        control.field.value = text
+        if newtons < 0.0:
+            assert "−5 kN" in control.field.helper_text
+        else:
+            assert held(state, "weight") == newtons
+        assert control.field.label.endswith(", kN")
+
+
+def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_holds_is_back() -> (
+    None
+):
+    state = of_scene("bar")
+    young, parts = SettingControl("young", state), SettingControl("substructures", state)
+    young.field.value = "-3"
+    assert young.field.value == "210"
+    assert young.field.error_state
+    assert "Young's modulus E cannot be −3 GPa" in young.field.helper_text
+    parts.field.value = "ten"
+    assert parts.field.helper_text == "Substructures cannot be “ten”: write a number."
+    parts.field.value = "60"
+    assert "raise Elements" in parts.field.helper_text
+    assert state.refusal == parts.field.helper_text
+    parts.field.value = "20"
+    parts.update()
+    assert not parts.field.error_state
+    assert not state.refusal
+
+
+def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words() -> None:
+    state = of_scene("bar")
+    state.change(pressure_load=[[0.0, 1.0], [1.0, -1.0]])
+    assert "pressures of at least 0 kN/m" in state.refusal
+    state.change(peak=2e15)
+    assert state.refusal.endswith("Allowed: any number (at most 1·10¹⁵ N in size).")
+    state.change(body_load="nothing")
+    assert "delayed, cycles, or a table of time and force" in state.refusal
+    state = of_scene("block")
+    state.change(substructures_up=state.settings.elements_up + 1)
+    assert "lower Substructures up or raise Elements up" in state.refusal
+
+
+def test_an_empty_field_is_the_default() -> None:
+    state = of_scene("bar")
+    control = SettingControl("peak", state)
+    control.field.value = "1200"
+    control.field.value = ""
+    control.update()
+    assert (held(state, "peak"), control.field.value) == (900.0, "900")
+
+
+def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_go() -> None:
+    state = of_scene("strand")
+    told: list[str] = []
+    state.param.watch(lambda event: told.append(event.new), "refusal")
+    control = SettingControl("friction", state)
+    assert control.slider is not None
+    for place in (0.2, 0.1, 0.0):
+        control.slider.value = place
+        assert state.is_dragged
+    least = held(state, "friction")
+    assert least == 0.2
+    with param.edit_constant(control.slider):
+        control.slider.value_throttled = 0.0
+    assert held(state, "friction") == least
+    assert control.field.value == f"{least:g}"
+    assert "Friction coefficient μ cannot be 0" in control.field.helper_text
+    assert not state.is_dragged
+
+
+def test_a_key_on_a_slider_starts_one_run_and_a_hand_that_drags_one_for_each_move() -> None:
+    state, orders = of_scene("bar"), list[object]()
+    control = SettingControl("friction", state)
+    state.send = orders.append
+    with param.edit_constant(control.slider):
+        control.slider.param.update(value=0.5, value_throttled=0.5)
+    assert [order.is_dragged for order in orders if isinstance(order, Start)] == [False]
+    for place in (0.6, 0.7):
+        control.slider.value = place
+    with param.edit_constant(control.slider):
+        control.slider.value_throttled = 0.7
+    assert [order.is_dragged for order in orders if isinstance(order, Start)][1:] == [
+        *(True, True, False),
+    ]
+    assert held(state, "friction") == 0.7
+
+
+def test_a_slider_ends_where_another_setting_has_it_end() -> None:
+    state = of_scene("strand")
+    control = SettingControl("broken", state)
+    assert control.slider is not None
+    assert control.slider.end == state.settings.ends["broken"]
+    state.change(wires=7)
+    control.update()
+    assert control.slider.end == state.settings.ends["broken"]
+
+
+def test_controls_that_do_nothing_here_are_hidden() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    seed = next(control for control in controls._controls if control.name == "seed")
+    assert not seed.view.visible
+    state.change(load="random")
+    assert seed.view.visible
+
+
+def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
+    for scene in CATALOGUE:
+        controls = Controls(of_scene(scene))
+        built = len(controls._controls)
+        groups = controls._groups
+        groups.active = list(range(len(groups)))
+        shown = {control.name for control in controls._controls}
+        definitions = default_settings(scene).definitions()
+        missing = set(definitions) - shown
+        assert built < len(shown)
+        assert all(len(getattr(definitions[name], "objects", "any")) == 1 for name in missing)
+
+
+def test_each_scene_keeps_its_settings() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    state.change(peak=1100.0)
+    controls._scene.value = "rope"
+    assert state.settings.scene == "rope"
+    controls._scene.value = "bar"
+    assert held(state, "peak") == 1100.0
+
+
+def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_do() -> None:
+    state = of_scene("bar")
+    control = SettingControl("load", state)
+    control.field.value = POINTS
+    dialog = control._dialog
+    assert dialog is not None
+    assert dialog.view.open
+    assert control.field.value == "sine"
+    dialog.text.value = "time [s],force [kN]\n0,0\n1,0.9\n1.5,0"
+    assert held(state, "load") == ((0.0, 0.0), (1.0, 900.0), (1.5, 0.0))
+    assert (state.settings.duration, control.field.value) == (1.5, "sine")
+    control.update()
+    assert control.field.value == POINTS
+    dialog.source.data = {"x": [0.0, 2.0, 1.0], "y": [0.0, 0.0, 500.0]}
+    assert held(state, "load") == ((0.0, 0.0), (1.0, 500.0), (2.0, 0.0))
+    dialog.text.value = "time,force\n0,0\n1,x"
+    assert dialog.text.error_state
+    assert "line 3" in dialog.text.helper_text
+    assert held(state, "load")[-1] == (2.0, 0.0)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> None:
+    for name in names(scene):
+        state = of_scene(scene)
+        if isinstance(state.settings.definitions()[name], CurveParameter):
+            if not state.settings.applies(name):
+                continue
+            control = SettingControl(name, state)
+            control.field.value = POINTS
+            dialog = control._dialog
+            assert dialog is not None
+            dialog._take(dialog.text.value, "the text")
+            assert isinstance(held(state, name), tuple), state.refusal
+
+
+def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:
+    state = of_scene("bar")
+    opener = TableOpener(state, "Open", ".toml,.csv", 280)
+    saved = dump(state.settings)
+
+    def open_file(name: str, text: str) -> str:
+        opener.file.filename = name
+        opener.file.value = text.encode()
+        return str(opener.message.object)
+
+    assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
+    assert state.settings.duration == 2.0
+    rows = "".join(f"{x},{t},{x * t}\n" for x in (0.2, 0.4) for t in (0.5, 1.0))
+    assert "4 points" in open_file("other.csv", f"x,t,friction force\n{rows}")
+    assert state.brought is not None
+    assert state.brought.source == "other.csv"
+    assert "outside of the body" in open_file("far.csv", "x,t,friction force\n3,0,0\n")
+    assert state.brought.source == "other.csv"
+    open_file("bar.toml", saved)
+    assert state.settings.values() == default_settings("bar").values()
+
+
+def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
+    assert typed("2 d", Unit("s"), "s") == 172800.0
+    assert typed("2 min", Unit("h", 3600.0), "s") == 120.0
+    assert typed("3 N/mm2", Unit("kPa", 1e3), "Pa") == 3e6
+
+
+def test_a_number_in_another_unit_is_refused() -> None:
+    for text in ("5 kg", "1e", "--3", "5 5"):
+        with pytest.raises(ValueError, match="write a number"):
+            typed(text, Unit("kN", 1e3), "N")
+
+
+def test_a_preset_of_a_path_is_described_where_it_is_chosen() -> None:
+    state = of_scene("bar")
+    control = SettingControl("load", state)
+    assert control.field.helper_text.startswith("A wave of a sine: to the value")
+    assert "triangle: rises evenly to the value in the middle" in control.field.description
+    control.field.value = "ramp"
+    control.update()
+    assert control.field.helper_text == "Rises evenly from 0 to the value, which it has at the end"
+    assert not control.field.error_state
+    state.change(load=[[0.0, 0.0], [1.0, 500.0]])
+    control.update()
+    assert control.field.helper_text == ""
+
+
+def test_a_file_of_before_is_said_to_have_given_the_slip_of_one_side() -> None:
+    opener = TableOpener(of_scene("bar"), "Open", ".toml", 200)
+    old = b'scene = "fault"\nfriction_law = "slip-dependent"\nslip_length = 1e-3\n'
+    opener.file.param.update(filename="old.toml", value=old)
+    assert "Slip length: the file is of a version whose slip" in opener.message.object
+    assert "give 0.002 m" in opener.message.object

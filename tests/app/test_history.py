@@ -1,0 +1,148 @@
+"""One goes back and forth among the iterates that were shown, though not each of them was."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+import app.browser
+from app.browser import Display
+from app.frame import Frame
+from app.messages import Needs, NewFrame, Ready, Start
+from app.state import History, PageState, default_settings
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.settings.scene import Settings
+
+
+@pytest.fixture(scope="module")
+def answer() -> Frame:
+    """The last frame of a run."""
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    runner = Runner(Start(0, settings, math.inf), ReferenceCache(), lambda: False)
+    while runner.rest() is not None:
+        runner.advance()
+    return runner.frame(Needs())
+
+
+def test_one_steps_from_each_kept_iterate_to_the_next_and_at_last_to_the_answer(
+    answer: Frame,
+) -> None:
+    last = answer.iteration
+    kept = [
+        replace(answer, iteration=number, is_answer=False, status=None)
+        for number in (1, 4, last - 2)
+    ]
+    state = PageState(answer.run.settings)
+    state.history = History()
+    for frame in (*kept, answer):
+        state.history.add(frame)
+    state.newest = answer
+    seen = []
+    state.seek(1)
+    while state.frame is not answer:
+        seen.append(state.frame)
+        state.step()
+    assert [frame.iteration for frame in seen] == [1, 4, last - 2]
+    state.seek(3)
+    assert state.frame is kept[0]
+
+
+def test_a_picture_whose_answer_got_lost_is_asked_for_again(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = PageState(answer.run.settings)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, None, lambda: None)
+    state.frame = answer
+    sent = display.pulse.sent
+    display.catch_up()
+    assert display.pulse.sent == sent
+    monkeypatch.setattr(app.browser, "LOST", 0.0)
+    display.catch_up()
+    assert display.pulse.sent == sent + 1
+    display.pulse.painted = display.pulse.sent
+    assert orders == [Ready(), Ready()]
+
+
+def test_of_many_pages_each_leaves_the_others_time(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    later: list[tuple[Callable[[], None], int]] = []
+    document = SimpleNamespace(add_timeout_callback=lambda *call: later.append(call))
+    state = PageState(answer.run.settings)
+    display = Display(state, document, lambda: None)
+    monkeypatch.setattr("app.browser.time.thread_time", itertools.count().__next__)
+    monkeypatch.setattr(app.browser.PAGES, "count", 31)
+    state.frame = answer
+    state.frame = replace(answer)
+    sent = display.pulse.sent
+    display.pulse.painted = sent
+    assert display.pulse.sent == sent
+    ((go_on, milliseconds),) = later
+    assert milliseconds > 20
+    go_on()
+    assert display.pulse.sent == sent + 1
+
+
+def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = PageState(answer.run.settings)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, None, lambda: None)
+    state.frame = answer
+    assert orders == [Ready()]
+    state.frame = replace(answer)
+    assert orders == [Ready()]
+    monkeypatch.setattr(app.browser, "LOST", 0.0)
+    display.catch_up()
+    assert display.pulse.sent == 2
+    assert orders == [Ready()]
+    display.pulse.painted = display.pulse.sent
+    assert orders == [Ready(), Ready()]
+
+
+def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(answer: Frame) -> None:
+    state = PageState(answer.run.settings, is_dragged=True)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, None, lambda: None)
+    state.frame = answer
+    assert orders == []
+    display.pulse.painted = display.pulse.sent
+    assert orders == [Ready()]
+    start = Start(0, answer.run.settings, math.inf, is_dragged=True)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    while runner.rest(is_seen=False) is not None:
+        runner.advance()
+    assert not runner.frame(Needs()).run.is_compared
+    assert runner.rest(is_seen=False) is None
+    while runner.rest() is not None:
+        runner.advance()
+    assert runner.frame(Needs()).run.is_compared
+
+
+def test_a_run_is_compared_with_others_of_its_scene_alone(answer: Frame) -> None:
+    state = PageState(answer.run.settings)
+
+    def show(settings: Settings) -> Frame | None:
+        state.adopt(settings)
+        run = replace(answer.run, number=state.number, settings=settings)
+        state.take(NewFrame(replace(answer, run=run)))
+        return state.ghost
+
+    bar = answer.run.settings
+    assert show(bar) is None
+    first = state.frame
+    assert show(bar.replace(friction=0.2)) is first
+    state.pin()
+    assert show(default_settings("rope")) is None
+    assert show(bar).run.settings.friction == 0.2

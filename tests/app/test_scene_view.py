@@ -1,0 +1,262 @@
+"""The living scene: what is drawn is there, is inside, and follows the hand."""
+
+import math
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from app.frame import Frame, Selection
+from app.messages import Needs, Start
+from app.state import PageState, default_settings
+from app.status import status_line
+from app.views.catalogue import CARDS
+from app.views.picture import bands
+from app.views.rope import WireSection
+from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
+from app.views.timeline import Timeline, paths_of
+from app.views.view import TEXT
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.scenes import CATALOGUE
+from solver.settings.scene import Settings
+
+SCENES = tuple(CATALOGUE)
+NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
+SMALL = {"elements": 24, "instants": 21}
+PHASES = np.linspace(0.0, 1.0, 7)
+
+
+def frame_of(
+    settings: Settings, *, extras: frozenset[str] = frozenset(), ends: bool = False
+) -> Frame:
+    """Frame of the second iterate, or that with which the run ends."""
+    runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    while ends and runner.rest() is not None:
+        runner.advance()
+    while len(runner.history) < 2 and runner.status is None:
+        runner._iterate()
+    return runner.frame(Needs(extras=extras))
+
+
+def small(scene: str) -> Settings:
+    settings = default_settings(scene)
+    return settings.checked({n: v for n, v in SMALL.items() if n in settings.definitions()})
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def frame(request: pytest.FixtureRequest) -> Frame:
+    return frame_of(small(request.param), extras=NEEDS)
+
+
+def shown(frame: Frame, phase: float = 0.75, kind: type[Scene] = Scene) -> Scene:
+    view = kind(PageState(frame.run.settings))
+    _ = view.figure
+    view.update(frame, Selection(phase), None)
+    return view
+
+
+def flat(values: object) -> np.ndarray:
+    lists = [np.ravel(one) for one in values]  # type: ignore[attr-defined]
+    return np.concatenate(lists) if lists else np.zeros(0)
+
+
+def test_everything_lies_inside_the_figure_at_every_instant(frame: Frame) -> None:
+    view = shown(frame)
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        for name, source in view.sources.items():
+            across, up = ("xs", "ys") if "xs" in source.data else ("x", "y")
+            for values, end in ((source.data[across], WIDTH), (source.data[up], HEIGHT)):
+                known = flat(values).astype(float)
+                known = known[np.isfinite(known)]
+                assert np.all((known > -3.0) & (known < end + 3.0)), name
+
+
+def test_words_beside_a_body_have_room_on_a_projector() -> None:
+    frame = frame_of(small("bar"))
+    view = shown(frame, 0.25)
+    view.magnify("22px")
+    view.update(frame, Selection(0.25), None)
+    words = view.sources["words"].data
+    (x,) = (x for x, text in zip(words["x"], words["text"], strict=True) if text[0] == "F")
+    end = view.picture.page(view.picture.nodes)[:, 0].max()  # type: ignore[union-attr]
+    assert x > end
+
+
+def test_bodies_in_the_plane_have_equal_axes(frame: Frame) -> None:
+    layout = shown(frame).picture.layout  # type: ignore[union-attr]
+    if frame.run.geometry.description.height is not None:
+        assert layout.scale[0] == layout.scale[1]
+
+
+@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
+@pytest.mark.parametrize("size", [TEXT, "36px"], ids=["page", "projector"])
+def test_words_are_whole(frame: Frame, size: str, width: float) -> None:
+    view = shown(frame)
+    view.magnify(size)
+    view.figure.trigger("inner_width", WIDTH, width)
+    view.update(frame, Selection(0.3), None)
+    words = view.sources["words"].data
+    for x, text, align in zip(words["x"], words["text"], words["text_align"], strict=True):
+        length = 0.5 * float(view.words.removesuffix("px")) * len(text)
+        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
+        assert left >= -1.0
+        assert left + length <= width
+
+
+@pytest.mark.parametrize("scene", ["block", "fault", "incline"])
+def test_words_leave_handles_free_in_a_picture_beside_plots(scene: str) -> None:
+    frame = frame_of(small(scene))
+    view = shown(frame)
+    view.figure.trigger("inner_width", WIDTH, 270.0)
+    view.figure.trigger("inner_height", HEIGHT, 420.0)
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        words = view.sources["words"].data
+        marks = {axis: np.asarray(view.sources["marks"].data[axis]) for axis in "xy"}
+        for x, y, text, align in zip(
+            words["x"], words["y"], words["text"], words["text_align"], strict=True
+        ):
+            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * 6.0 * len(text)
+            is_across = (marks["x"] > left - 5.0) & (marks["x"] < left + 6.0 * len(text) + 5.0)
+            assert not np.any(is_across & (np.abs(marks["y"] - y) < 12.0)), (phase, text)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_what_is_seen_first_of_a_scene_slips(scene: str) -> None:
+    frame = frame_of(default_settings(scene), ends=True, extras=frozenset({"axial force"}))
+    name = Selection().interface_of(frame.run)
+    assert frame.contact[name].status.any()
+    if scene == "rope":
+        assert list(frame.extras["axial force"]["names"]) == [name]
+
+
+def test_an_instant_sends_only_what_moves(frame: Frame) -> None:
+    view = shown(frame, 0.5)
+    before = {name: source.data for name, source in view.sources.items()}
+    view.update(frame, Selection(0.5), None)
+    assert all(view.sources[name].data is before[name] for name in before)
+
+
+def test_an_arrow_has_the_length_of_its_value() -> None:
+    frame = frame_of(small("bar"))
+    lengths = []
+    for phase in (0.75, 0.5 + math.asin(0.5) / (2.0 * math.pi)):
+        picture = shown(frame, phase).picture
+        assert picture is not None
+        arrows = next(each for each in picture.arrows if each.act.symbol == "F")
+        (line,), value = arrows.lines, arrows.act.values[round(phase * 20)]
+        lengths.append((np.hypot(*(line[-1] - line[0])), value))
+    (full, peak), (part, value) = lengths
+    assert part / full == pytest.approx(value / peak, rel=1e-6)
+
+
+def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
+    frame = frame_of(small("bar"))
+    state = PageState(frame.run.settings)
+    view = Scene(state)
+    _ = view.figure
+    view.update(frame, Selection(0.75), None)
+    sent: list[object] = []
+    state.send = sent.append
+    picture = view.picture
+    assert picture is not None
+    arrows = next(each for each in picture.draggable if each.setting == "peak")
+    half = picture.page(0.5 * (arrows.base[0] + arrows.handles[0]))
+    start = picture.page(arrows.handle)
+    view._hold(SimpleNamespace(x=start[0], y=start[1]))
+    view._drag(SimpleNamespace(x=half[0], y=half[1]))
+    assert isinstance(sent[-1], Start)
+    assert sent[-1].is_dragged
+    view._let_go(SimpleNamespace(x=half[0], y=half[1]))
+    assert state.settings.peak == pytest.approx(0.5 * frame.run.settings.peak, rel=1e-2)
+
+
+def test_the_magnification_holds_while_motion_is_seen() -> None:
+    layout = shown(frame_of(small("block"))).picture.layout  # type: ignore[union-attr]
+    factor = layout.fitting((1e-5, 2e-5), None)
+    assert layout.fitting((0.5e-5, 1e-5), factor) == factor
+    assert layout.fitting((1e-7, 2e-7), factor) > factor
+
+
+def test_bands_meet_between_points_of_different_status() -> None:
+    points = np.stack([np.arange(4.0), np.zeros(4)], axis=1)
+    lines = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
+    assert np.allclose(lines[0][:3, 0], [0.0, 1.0, 1.5])
+    assert np.allclose(lines[1][:3, 0], [1.5, 2.0, 3.0])
+    assert all(np.isnan(line[3:]).all() for line in lines.values())
+
+
+def test_bands_end_where_a_wire_goes_behind() -> None:
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, np.nan], [3.0, 0.0], [4.0, 0.0]])
+    lines = bands(points, np.zeros(5, dtype=np.intp), np.zeros(5, dtype=np.int8))
+    assert np.array_equal(lines[0][:5], points, equal_nan=True)
+
+
+def test_other_views_show_every_instant(frame: Frame) -> None:
+    state = PageState(frame.run.settings)
+    for kind in (Stress, Timeline, WireSection):
+        if kind.applies(frame.run.settings):
+            view = kind(state)
+            _ = view.figure
+            for phase in (0.0, 0.6):
+                view.update(frame, Selection(phase), None)
+    assert all(np.isfinite(values).all() for _, values in paths_of(frame.run))
+    _, _, values = frame.extras["stress"]
+    assert values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
+
+
+def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
+    # What goes behind within a step is cut off straight, which takes less than 1 %.
+    geometry = frame_of(small("rope")).run.geometry
+    corners = geometry.nodes[geometry.quads].astype(float)
+    x, y = corners[:, :, 0], corners[:, :, 1]
+    areas = 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
+    described = geometry.description
+    assert areas.sum() == pytest.approx(described.length * described.height, rel=1e-2)
+
+
+def test_a_tap_selects_the_substructure_that_is_there() -> None:
+    view = shown(frame_of(small("bar")))
+    geometry = view.picture.frame.run.geometry  # type: ignore[union-attr]
+    quad = int(np.flatnonzero(geometry.parts == 2)[0])
+    middle = view.picture.nodes[geometry.quads[quad]].mean(axis=0)  # type: ignore[union-attr]
+    x, y = view.picture.page(middle)  # type: ignore[union-attr]
+    view._select(SimpleNamespace(x=x, y=y))
+    assert view.state.selection.substructure == 2
+
+
+def wall(**changes: object) -> Settings:
+    small_wall = {"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "instants": 21}
+    return default_settings("wall").replace(**small_wall, **changes)
+
+
+def test_lines_of_thrust_bring_what_presses_on_a_wall_to_the_ground() -> None:
+    settings = wall(displacement=0.0, unit_weight=0.0)
+    frame = frame_of(settings, extras=frozenset({"thrust"}), ends=True)
+    shown_lines = frame.extras["thrust"]
+    lines, forces = shown_lines["lines"][..., -1], shown_lines["forces"][:, -1]
+    on_ground = np.all(lines[:, 1] == lines[:, 2], axis=1)
+    assert on_ground.sum() == 3
+    assert forces[on_ground].sum() == pytest.approx(1e6 * 3 * 0.25, rel=0.01)
+    assert np.all(lines[on_ground, 0, 1] > lines[on_ground, 1, 1])
+    view = shown(frame, 1.0, Thrust)
+    widths = view.sources["thrust"].data["line_width"]
+    assert 3 < len(widths) <= len(forces)
+    assert max(widths) == pytest.approx(WIDEST, rel=1e-3)
+
+
+def test_a_wall_that_collapses_says_its_limit_and_shows_by_which_mechanism() -> None:
+    frame = frame_of(wall(top="pulled", traction=2e6, unit_weight=0.0), ends=True)
+    assert frame.status is not None
+    assert re.search(r"no equilibrium beyond traction = \d+ Pa \(0\.\d+ times", frame.status.advice)
+    state = PageState(frame.run.settings)
+    state.frame = state.newest = frame
+    assert re.search(r"beyond Traction [\d.]+ [kM]Pa", status_line(state))
+    assert 0.25 < frame.run.collapses_at < 1.0
+    assert frame.run.mechanism is not None
+    assert float(np.abs(frame.run.mechanism).max()) > 0.0
+    assert len(shown(frame, 1.0).sources["ghost"].data["x"]) > 10
+    assert not len(shown(frame, 0.1).sources["ghost"].data["x"])

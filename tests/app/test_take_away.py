@@ -1,0 +1,131 @@
+"""What is taken away holds the numbers that are on the page."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+import runpy
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.files.export import history_table, offers, offline_page, plot_table, program
+from app.frame import Frame, Selection
+from app.messages import Needs, Start
+from app.state import PageState, default_settings
+from app.views.catalogue import CARDS
+from app.views.contact_force import ContactForce
+from app.views.scene import Scene
+from app.views.timeline import Timeline
+from app.views.view import View
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.files.saved import dump, settings_from_toml
+
+NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
+
+SMALL: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 20, "instants": 21, "substructures": 4},
+    "block": {"instants": 9},
+    "rope": {"instants": 9},
+}
+
+
+@cache
+def ended(scene: str) -> tuple[Runner, Frame]:
+    """A run that has ended, and what is shown of it."""
+    settings = default_settings(scene).replace(**SMALL[scene])
+    runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    while runner.rest() is not None:
+        runner.advance()
+    return runner, runner.frame(Needs(extras=NEEDS))
+
+
+def page(scene: str) -> tuple[PageState, list[View]]:
+    """The state of a page that shows that run, and every view that applies."""
+    _, frame = ended(scene)
+    state = PageState(frame.run.settings)
+    state.newest = state.frame = frame
+    kinds = [kind for card in CARDS for kind in card if kind.applies(state.settings)]
+    views = [kind(state) for kind in (Scene, Timeline, *kinds)]
+    for view in views:
+        assert view.figure is not None
+        view.update(frame, state.selection, None)
+    return state, views
+
+
+def rows_of(table: str) -> list[dict[str, str]]:
+    """Rows of a table behind its comments."""
+    lines = [line for line in table.splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(io.StringIO("\n".join(lines))))
+
+
+def test_the_program_gives_the_records_of_the_run_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runner, frame = ended("bar")
+    file = tmp_path / "run.py"
+    file.write_text(program(frame.run.settings), encoding="utf-8")
+    runpy.run_path(str(file))
+    *lines, ending = capsys.readouterr().out.splitlines()
+    records = [line.split() for line in lines]
+    assert ending == "converged"
+    assert [int(iteration) for iteration, _, _ in records] == [r.iteration for r in runner.history]
+    for (_, indicator, error), record in zip(records, runner.history, strict=True):
+        assert float(indicator) == record.indicator
+        assert float(error) == pytest.approx(record.error_force, abs=1e-15)
+
+
+def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
+    _, frame = ended("bar")
+    view = next(view for view in page("bar")[1] if isinstance(view, ContactForce))
+    table = plot_table(view, frame)
+    drawn = {float(row["latin"]) for row in rows_of(table) if row["latin"]}
+    assert drawn >= {float(value) for value in view.sources["friction"].data["latin"]}
+    head = "\n".join(line[2:] for line in table.splitlines() if line.startswith("# "))
+    saved = settings_from_toml(head[head.index("scene = ") :])
+    assert dump(saved) == dump(frame.run.settings)
+    iterations = rows_of(history_table(frame))
+    assert len(iterations) == len(frame.history["indicator"])
+    assert np.float32(iterations[-1]["indicator"]) == frame.history["indicator"][-1]
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_every_plot_of_every_kind_of_scene_is_a_table(scene: str) -> None:
+    for view in page(scene)[1]:
+        assert rows_of(plot_table(view, ended(scene)[1])), view.name
+
+
+def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
+    _, frame = ended("bar")
+    # As many plots as a page has in sight.
+    views = page("bar")[1][:6]
+    text = offline_page(frame, views, Selection(), None)
+    assert "<script src" not in text
+    assert "<link" not in text
+    match = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
+    assert match is not None
+    kept = json.dumps(json.loads(match[1]))
+    assert kept.count('"svg"') >= len(views)
+    captions = set(re.findall(r" At ([\d.]+) s of 1 s\.", kept))
+    assert captions == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
+    # The page's own figures are as they were.
+    assert {view.figure.output_backend for view in views} == {"canvas"}
+
+
+def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
+    state, views = page("bar")
+    offered = offers(state, views)
+    names = [getattr(offer, "filename", "") for offer in offered]
+    assert {"slipfront-bar.html", "slipfront-bar.py", "slipfront-bar-all-iterations.csv"} <= {
+        *names
+    }
+    assert sum(name.endswith(".csv") for name in names) == 1 + len(views)
+    for offer in offered[1:4]:
+        assert offer.callback().getvalue()

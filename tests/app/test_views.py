@@ -1,0 +1,332 @@
+"""Views show what a frame has: an iterate, the answer, a ghost, a reference."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from bokeh.core.serialization import Serializer
+from bokeh.document import Document
+from bokeh.models import DataRange1d
+
+from app.frame import Frame, Selection
+from app.live import Card
+from app.messages import Needs, Start
+from app.state import PageState, default_settings
+from app.views.bases import Spectra
+from app.views.catalogue import CARDS
+from app.views.contact_force import ContactForce
+from app.views.errors import Convergence
+from app.views.loops import HysteresisLoop
+from app.views.rope import AxialForces
+from app.views.status_map import StatusMap
+from app.views.view import View
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.settings.scene import Settings
+from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults
+
+VIEWS = [kind for card in CARDS for kind in card]
+NEEDS = frozenset(need for kind in VIEWS for need in kind.needs)
+SMALL = {
+    "bar": {"elements": 60},
+    "block": {},
+    "fault": {},
+    "incline": {},
+    "layers": {},
+    "strand": {},
+    "wall": {"bricks": 3, "courses": 3},
+}
+MORE = {
+    "bases": ("bar", {"elements": 60, "linear_stage": "pgd"}),
+    "two points": (
+        "block",
+        {
+            **{"gap": "flat", "length": 0.1, "height": 0.1, "elements": 1, "elements_up": 1},
+            **{"substructures": 1, "substructures_up": 1, "friction": 0.7, "duration": 8.0},
+            **{"top_normal_slope": 0.5, "top_tangential_load": "cycles", "instants": 65},
+        },
+    ),
+}
+
+
+def settings_of(case: str) -> Settings:
+    """Settings of a case, with a search that ends soon."""
+    scene, changes = MORE.get(case, (case, SMALL.get(case, {})))
+    settings = default_settings(scene)
+    return settings.replace(**changes, max_iterations=6)
+
+
+@cache
+def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
+    """First iterate, before any reference; one on the way; and the answer."""
+    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=NEEDS)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    runner.advance()
+    frames = [runner.frame(needs)]
+    while runner.rest() is not None:
+        runner.advance()
+        if len(runner.history) <= 5 and runner.status is None:
+            frames[1:] = [runner.frame(needs)]
+    return frames[0], frames[1], runner.frame(needs)
+
+
+def other_run(frame: Frame) -> Frame:
+    """The same frame, of another run."""
+    return replace(frame, run=replace(frame.run, number=2))
+
+
+def shown(view: View, frame: Frame, ghost: Frame | None = None, **chosen: object) -> View:
+    """Show a frame in a view."""
+    view.state.newest = view.state.frame = frame
+    view.update(frame, replace(Selection(), **chosen), ghost)
+    return view
+
+
+def view_of(kind: type[View], frame: Frame) -> View:
+    """A view of a page that shows a frame."""
+    view = kind(PageState(frame.run.settings))
+    assert view.figure is not None
+    return shown(view, frame)
+
+
+@pytest.mark.parametrize(
+    ("kind", "case"),
+    [(k, c) for k in VIEWS for c in (*SMALL, *MORE) if k.applies(settings_of(c))],
+)
+def test_each_view_that_applies_shows_each_frame(kind: type[View], case: str) -> None:
+    frames = frames_of(case)
+    view = kind(PageState(frames[0].run.settings))
+    assert view.figure is not None
+    first, last, answer = frames
+    pairs = [(first, None), (first, answer), (last, answer), (last, None), (answer, last)]
+    for frame, ghost in pairs:
+        shown(view, frame, ghost and other_run(ghost))
+        for axes in (view.figure.x_range, view.figure.y_range):
+            assert axes.start < axes.end
+        if frame is not first:
+            assert any(len(next(iter(s.data.values()))) for s in view.sources.values())
+
+
+def test_ranges_that_follow_data_have_some_before_a_view_is_updated() -> None:
+    # BokehJS would complain in the console.
+    views = [kind(PageState(default_settings("rope"))) for kind in VIEWS]
+    follow = [v for v in views if isinstance(v.figure.x_range, DataRange1d)]
+    assert follow
+    for view in follow:
+        assert any(np.isfinite(source.data["x"]).any() for source in view.sources.values())
+
+
+@pytest.mark.parametrize("case", ["bar", "block"])
+def test_logarithmic_axes_have_positive_finite_values_only(case: str) -> None:
+    for kind in VIEWS:
+        for frame in frames_of(case):
+            if not kind.applies(frame.run.settings):
+                continue
+            view = view_of(kind, frame)
+            is_log = "Log" in type(view.figure.y_scale).__name__
+            columns = [s.data.get(name, []) for s in view.sources.values() for name in ("y", "ys")]
+            values = [np.ravel(each) for column in columns for each in column]
+            shown_values = np.concatenate([*values, np.ones(1)])
+            assert not is_log or (np.isfinite(shown_values).all() and (shown_values > 0.0).all())
+
+
+@pytest.mark.parametrize("case", ["bar", "block", "strand"])
+def test_the_shaded_error_is_there_on_the_way_and_vanishes_at_the_answer(case: str) -> None:
+    _, last, answer = frames_of(case)
+    sizes = []
+    for frame in (last, answer):
+        data = view_of(ContactForce, frame).sources["friction"].data
+        latin, reference = np.array(data["latin"]), np.array(data["reference"])
+        sizes.append(np.abs(latin - reference).max() / np.abs(reference).max())
+    assert sizes[0] > 0.02
+    assert sizes[1] < 1e-3
+
+
+def test_the_contact_force_is_shown_in_the_unit_that_its_axis_says() -> None:
+    frame = frames_of("bar")[2]
+    view = view_of(ContactForce, frame)
+    column = frame.run.column(Selection().phase)
+    fields = next(iter(frame.contact.values()))
+    assert view.figure.yaxis[0].axis_label == "force, kN/m"
+    assert np.allclose(view.sources["friction"].data["latin"], 1e-3 * fields.friction[:, column])
+
+
+def test_the_axis_of_the_contact_force_stays_while_a_run_iterates() -> None:
+    _, last, _ = frames_of("bar")
+    view = view_of(ContactForce, last)
+    ends = view.figure.y_range.start, view.figure.y_range.end
+    smaller = {n: replace(f, friction=0.1 * f.friction) for n, f in last.contact.items()}
+    shown(view, replace(last, contact=smaller))
+    assert (view.figure.y_range.start, view.figure.y_range.end) == ends
+
+
+def test_the_reference_moves_neither_axis_nor_legend_of_a_run_like_the_last() -> None:
+    first, last, answer = frames_of("bar")
+    view = view_of(ContactForce, answer)
+
+    def look() -> tuple[Any, ...]:
+        names = [item.label.value for item in view.figure.legend[0].items if item.visible]
+        return round(view.figure.y_range.start, 9), round(view.figure.y_range.end, 9), names
+
+    view.state.ghost = answer
+    begun = other_run(first)
+    shown(view, begun, answer)
+    assert not len(view.sources["reference"].data["x"])
+    before = look()
+    shown(view, replace(begun, run=replace(last.run, number=begun.run.number)), answer)
+    assert len(view.sources["reference"].data["x"])
+    assert look() == before
+    # No frame follows one that was gone back to.
+    view.state.iteration = 1
+    shown(view, begun, answer)
+    assert "reference" not in look()[-1]
+
+
+def test_legends_name_only_what_is_drawn() -> None:
+    first, last, answer = frames_of("bar")
+
+    def names(view: View) -> set[str]:
+        return {i.label.value for i in view.figure.legend[0].items if i.visible}
+
+    view = view_of(ContactForce, first)
+    assert names(view) == {"LATIN", "±µp"}
+    assert {"reference", "error", "last run"} <= names(shown(view, last, other_run(answer)))
+    assert "pressure" not in names(view)
+
+
+def test_the_map_is_the_status_and_is_not_sent_again_when_the_instant_changes() -> None:
+    frame = frames_of("block")[1]
+    view = view_of(StatusMap, frame)
+    status = next(iter(frame.contact.values())).status
+    image = view.sources["status"].data["image"][0]
+    assert np.array_equal(image, status.T)
+    data = view.sources["status"].data
+    shown(view, frame, phase=0.3)
+    assert view.sources["status"].data is data
+    assert view.sources["now"].data["y"] == pytest.approx(
+        frame.run.instants[[frame.run.column(0.3)]]
+    )
+
+
+def test_of_curves_only_what_is_new_is_sent_and_not_each_by_itself() -> None:
+    frame = frames_of("bar")[0]
+    count = frame.run.settings.n_substructures
+
+    def of(second: float) -> Frame:
+        return replace(frame, extras={"spectra": count * [np.array([1.0, second])]})
+
+    view = view_of(Spectra, of(0.1))
+    document, sent = Document(), []
+    document.add_root(view.figure)
+    document.on_change(lambda event: sent.append(event) if hasattr(event, "cols") else None)
+    shown(view, of(0.2))
+    (event,) = sent
+    assert event.cols == ["ys"]
+    serializer = Serializer()
+    serializer.encode(event.data)
+    assert not serializer.buffers
+
+
+def test_the_ghosts_boundary_lies_where_its_status_changes() -> None:
+    _, last, answer = frames_of("bar")
+    view = shown(view_of(StatusMap, last), last, other_run(answer))
+    status = next(iter(answer.contact.values())).status
+    changes = np.count_nonzero(np.diff(status, axis=0)) + np.count_nonzero(np.diff(status, axis=1))
+    assert len(view.sources["ghost"].data["x0"]) == changes
+
+
+def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
+    frame = frames_of("bar")[1]
+    view = view_of(StatusMap, frame)
+    tap = type("Tap", (), {"x": 0.5, "y": 0.25 * float(frame.run.instants[-1])})
+    view._select(tap)
+    assert view.state.selection.phase == pytest.approx(0.25)
+    assert view.state.selection.place == pytest.approx(0.5)
+
+
+def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
+    answer = frames_of("bar")[2]
+    view = view_of(Convergence, answer)
+    assert list(view.sources["answer"].data["x"]) == [answer.iteration]
+    assert len(view.sources["error_force"].data["x"]) == len(answer.history["iteration"]) - 1
+
+
+def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
+    first, last, _ = frames_of("bar")
+    view = view_of(Convergence, last)
+    view.update(first, Selection(), None)
+    assert list(view.sources["shown"].data["x"]) == [first.iteration]
+    assert len(view.sources["indicator"].data["x"]) == len(last.history["iteration"])
+
+
+def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
+    last = frames_of("bar")[1]
+    history = {**last.history, "indicator": np.full_like(last.history["indicator"], 1e-9)}
+    view = view_of(Convergence, replace(last, history=history))
+    assert (view.figure.y_range.start, view.figure.y_range.end) == pytest.approx((1e-4, 10.0))
+
+
+def test_singular_values_wait_for_the_worker_to_send_them() -> None:
+    last = frames_of("bar")[1]
+    view = view_of(Spectra, last)
+    count = len(view.sources["values"].data["xs"])
+    shown(view, replace(last, extras={}))
+    assert count == last.run.settings.n_substructures == len(view.sources["values"].data["xs"])
+
+
+def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
+    frame = frames_of("bar")[1]
+    view = view_of(HysteresisLoop, frame)
+    column = frame.run.column(Selection().phase)
+    now, loop = view.sources["now"].data, view.sources["LATIN"].data
+    assert (now["x"][0], now["y"][0]) == (loop["x"][column], loop["y"][column])
+
+
+def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -> None:
+    frame = frames_of("bar")[1]
+    x, t = (grid.ravel() for grid in np.meshgrid([0.0, 0.5, 1.0], [0.0, 0.7, 1.0]))
+    theirs = OtherResults(FRICTION, x, t, 1000.0 * t, "theirs.csv", "bar", "")
+    view = view_of(ContactForce, replace(frame, extras={"beside": {"brought": theirs}}))
+    assert np.allclose(view.sources["beside"].data["y"], 0.7)
+    moved = {"brought": replace(theirs, quantity=DISPLACEMENT)}
+    view = view_of(HysteresisLoop, replace(frame, extras={"beside": moved}))
+    assert len(view.sources["beside"].data["x"]) == 3
+
+
+def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> None:
+    state = PageState(default_settings("strand"))
+    card = Card(CARDS[0], state)
+    card.fit()
+    assert isinstance(card.seen, ContactForce)
+    card.tabs.active = 1
+    state.settings = default_settings("block")
+    card.fit()
+    assert isinstance(card.seen, ContactForce)
+    state.settings = default_settings("strand")
+    card.fit()
+    assert isinstance(card.seen, AxialForces)
+
+
+def test_a_view_that_comes_in_sight_later_has_the_type_of_a_projector() -> None:
+    early, late = (HysteresisLoop(PageState(default_settings("bar"))) for _ in range(2))
+    assert early.figure is not None
+    for view in (early, late):
+        view.magnify("20px")
+        assert view.figure.legend[0].styles["font-size"] == "20px"
+        assert view.figure.xaxis[0].major_label_text_font_size == "20px"
+
+
+def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
+    frame = frames_of("bar")[1]
+    state = PageState(frame.run.settings, frame=frame, newest=frame)
+    card = Card((ContactForce, HysteresisLoop), state)
+    card.fit()
+    card.tabs.active = 1
+    card.fit()
+    assert isinstance(card.seen, HysteresisLoop)
+    assert len(card.seen.sources["LATIN"].data["x"]) == len(frame.run.instants)

@@ -1,0 +1,215 @@
+"""What if: runs reach the chart as they come. Reports: commands are run in turn, and read."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import nullcontext
+from typing import Any
+
+import pytest
+from sweeps import TINY, Here
+
+from app.experiments import jobs, reports
+from app.experiments.jobs import Job, Sweep, share_of
+from app.experiments.questions import READY, Question, iterations_over_k, question_of
+from app.experiments.whatif import WhatIf
+from app.state import PageState, default_settings
+from solver.scenes import CATALOGUE
+from solver.settings.scene import Settings
+
+LOADS = Question(("friction=0.2:0.4:3", "peak=600:900:2"), "dissipation")
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> Here:
+    """Runs take place in this process."""
+    pool = Here()
+    monkeypatch.setattr(jobs, "opened", lambda named, limit: nullcontext(pool))
+    return pool
+
+
+def tiny() -> Settings:
+    return default_settings("bar").replace(**TINY)
+
+
+def asked(question: Question) -> WhatIf:
+    """The tab, whose first chart is drawn."""
+    made = WhatIf(PageState(tiny(), tab="What if", question=str(question)))
+    assert made.sweep is not None
+    made.sweep.thread.join()
+    made.look()
+    return made
+
+
+@pytest.mark.usefixtures("here")
+def test_the_tab_opens_with_its_first_chart_drawn() -> None:
+    made = asked(LOADS)
+    chart = made.chart()
+    assert chart.runs.holds.sum() == 6
+    assert "6 of 6 runs: 6 converged" in made.message.object
+    rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "r")]
+    assert len(rows) == 6
+
+
+@pytest.mark.usefixtures("here")
+def test_rows_come_one_by_one_and_cancel_ends_them() -> None:
+    plan = Question(("friction=0.1:0.9:400",), "dissipation").plan(tiny())
+    running = Sweep(plan)
+    while not running.rows:
+        time.sleep(0.01)
+    assert not running.is_over
+    running.cancel()
+    running.thread.join()
+    assert running.message == "Cancelled."
+    assert 0 < len(running.rows) < plan.size
+
+
+@pytest.mark.usefixtures("here")
+def test_the_chart_is_of_another_question_once_one_goes_back_to_it() -> None:
+    made = asked(LOADS)
+    made.spans[1].name.value = ""
+    assert made.question.vary == LOADS.vary[:1]
+    assert made.sweep.plan.size == 6
+    peak = tiny().replace(peak=800.0)
+    made.state.param.update(settings=peak, question="friction=0.2:0.4:2 dissipation")
+    made.sweep.thread.join()
+    assert made.sweep.plan.size == len(made.sweep.rows) == 2
+
+
+@pytest.mark.usefixtures("here")
+def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
+    made = asked(LOADS)
+    first, second = made.spans
+    first.name.value = "length"
+    first.values.value = "0.5:2000 mm:3:log"
+    assert made.question.vary[0] == "length=0.5:2:3:log"
+    first.values.value = "500 mm, 1, 2"
+    assert made.question.vary[0] == "length=0.5,1,2"
+    first.values.value = "1, long"
+    assert "number" in made.message.object
+    for wrong in ("-1, 2", "1:2", "1:2:x"):
+        first.values.value = wrong
+        assert "cannot be" in made.message.object
+        assert made.question.vary[0] == "length=0.5,1,2"
+    first.values.value = "1, 2"
+    second.name.value = "acceleration"
+    assert made.question.vary[1] == "acceleration=none,anderson"
+    second.values.value = "anderson"
+    assert made.question.vary[1] == "acceleration=anderson"
+
+
+@pytest.mark.usefixtures("here")
+def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
+    made = asked(LOADS)
+    assert made.mesh.visible
+    made.state.question = str(iterations_over_k(made.state.settings))
+    assert not made.mesh.visible
+
+
+def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -> None:
+    settings = tiny()
+    assert question_of(str(LOADS), settings) == LOADS
+    energy = Question(("peak=240:2400:13:log",), "dissipation")
+    for text in ("", "friction=0:1:3", "no=1,2 dissipation", "friction=0.1 none", "friction=a of"):
+        assert question_of(text, settings) == energy
+
+
+@pytest.mark.usefixtures("here")
+def test_the_scale_of_the_values_is_linear_or_logarithmic_as_one_likes() -> None:
+    made = asked(LOADS)
+    for scale, is_logarithmic in (("logarithmic", True), ("linear", False)):
+        made._scale.value = scale
+        assert made.chart().y.logarithmic is is_logarithmic
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
+    settings = default_settings(scene)
+    offered = [question for make in READY.values() if (question := make(settings))]
+    assert len(offered) >= 3
+    for question in offered:
+        assert question.refusal(settings) == ""
+        assert question_of(str(question), settings) == question
+
+
+def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answer() -> None:
+    settings = tiny()
+    assert iterations_over_k(settings).asked(settings).finish == "accuracy"
+    assert LOADS.asked(settings).finish == "at-once"
+
+
+@pytest.mark.parametrize(
+    ("executor", "users", "share"),
+    [
+        ("processes:8", 1, "processes:8"),
+        ("processes:8", 3, "processes:2"),
+        ("processes:2", 9, "processes:1"),
+        ("dask://host:8786", 9, "dask://host:8786"),
+        ("processes:x", 2, "processes:x"),
+    ],
+)
+def test_pages_share_the_processes_of_a_server(executor: str, users: int, share: str) -> None:
+    assert share_of(executor, users) == share
+
+
+@pytest.fixture
+def no_queue() -> Iterator[None]:
+    """Nothing else waits for its turn, and nothing is left running."""
+    jobs.executor.cache_clear()
+    yield
+    jobs.executor().shutdown(cancel_futures=True)
+    jobs.executor.cache_clear()
+
+
+def wait_for(job: Job) -> None:
+    while not job.is_over:
+        time.sleep(0.05)
+
+
+@pytest.mark.usefixtures("no_queue")
+def test_commands_run_in_turn_to_their_end_and_a_cancelled_one_leaves_nothing() -> None:
+    short = ["mesh", "bar", "--of", "dissipation"]
+    short += [f"--set={name}={value}" for name, value in TINY.items()]
+    first, second, wrong = Job(short), Job(["proof"]), Job(["study", "no"])
+    assert second.progress.startswith("Waiting")
+    second.cancel()
+    wait_for(first)
+    wait_for(wrong)
+    assert first.failure == ""
+    assert any(line.startswith("Elements: ") for line in first.lines)
+    assert second.failure == "Cancelled."
+    assert "no" in wrong.failure
+    folder = first.folder
+    for job in (first, second, wrong):
+        job.close()
+    assert not folder.exists()
+
+
+class Done:
+    """A job that is over."""
+
+    is_over, failure, progress = True, "", ""
+
+    def __init__(self, *arguments: Any) -> None:
+        link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
+        self.files = {"proof.csv": b"a,b", "proof.html": f"<style></style>{link}".encode()}
+
+    def close(self) -> None:
+        """Nothing is left."""
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> reports.Reports:
+    """The tab, of a server whose commands are over at once."""
+    monkeypatch.setattr(reports, "Job", Done)
+    return reports.Reports(PageState(tiny(), tab="Reports"))
+
+
+def test_a_report_is_read_with_its_files_and_its_links_lead_here(made: reports.Reports) -> None:
+    made.kind.value = "Proof"
+    assert made.page.object == ""
+    made.start()
+    assert "a run" in made.page.object
+    assert "localhost" not in made.page.object
+    assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]

@@ -1,0 +1,442 @@
+"""All that acts, contact forces and reactions sum to zero at every instant, moments too."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+from ropes import SMALL_ROPE
+from small_scenes import SMALL
+
+from app.frame import Selection
+from app.messages import Needs
+from app.status import figures_line
+from app.units import percent
+from app.worker.sampling import Sampler
+from solver.arrays import Array
+from solver.discrete import Given, Side, Stack, Support
+from solver.discrete.plane.bricks import Brick
+from solver.discrete.probes import reaction, reaction_moment
+from solver.discrete.problem import Problem
+from solver.discrete.rods.rods import Rods
+from solver.discrete.structure import LoopFields
+from solver.latin import Latin, iterations
+from solver.reference.assembly import external_force
+from solver.reference.distance import kkt_residual
+from solver.reference.incremental import reference_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.settings.scene import Settings
+from solver.study.fit import fit
+from solver.study.measured_loop import MeasuredLoop
+from solver.study.quantities import reading
+from solver.study.quantities.finished import (
+    FinishedRun,
+    finished_run,
+)
+
+ROUNDING = 1e-9
+"""Share of the largest force up to which sums of forces vanish."""
+LAWS: dict[str, dict[str, Any]] = {
+    "coulomb": {},
+    "compliant": {"friction_law": "compliant"},
+    "hardening": {"friction_law": "slip-dependent", "friction_ratio": 1.4},
+    "softening": {"friction_law": "slip-dependent", "friction_ratio": 0.9},
+}
+"""Beside the general law, whose units are those of a scene."""
+GENERAL: dict[str, dict[str, Any]] = {
+    "rod": {"tangential_stiffness": 1e7, "cohesion": 300.0, "friction_cap": 1700.0},
+    "plane": {"tangential_stiffness": 1e13, "cohesion": 1e4, "friction_cap": 1e8},
+}
+END = st.sampled_from(["held", "spring", "pulled", "free"])
+SIDE = st.sampled_from(
+    ["free", "roller", "clamped", "displacement", "traction", "pushed", "dragged"]
+)
+HELD_TOP = st.sampled_from(["displacement", "pushed", "clamped"])
+
+
+def law_of(kind: str, name: str) -> dict[str, Any]:
+    if name == "general":
+        return {"friction_law": "general", **GENERAL[kind]}
+    return LAWS[name]
+
+
+def assert_vanish(total: Array, terms: list[Array]) -> None:
+    """Sums over time are nothing beside the largest of their terms."""
+    largest = max(float(np.abs(term).max()) for term in terms)
+    assert np.abs(total).max() <= ROUNDING * largest
+
+
+def assert_rods_balance(rods: Rods, problem: Problem, fields: LoopFields) -> None:
+    """Along rods: both ends, body forces and what supports rub."""
+    shares = np.full(rods.elements + 1, rods.length / rods.elements)
+    shares[[0, -1]] *= 0.5
+    terms = [rods.wires * rods.end_force(problem, side).of(fields) for side in ("left", "right")]
+    if rods.body_force is not None:
+        along = np.broadcast_to(rods.body_force, (len(shares), problem.n_instants))
+        terms.append(rods.wires * shares @ along)
+    if rods.wires == 1:
+        terms.append(fields.contact("friction").tangential_force.sum(axis=0))
+    assert_vanish(np.sum(terms, axis=0), terms)
+
+
+def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
+    """Resultants of all loads, N, and their moment about the origin, N m, (n_instants,) each."""
+    assert problem.inside is not None
+    force = external_force(problem) * problem.scales.force
+    (x, y), is_along = problem.positions.T, problem.inside.components == 0
+    return is_along @ force, ~is_along @ force, np.where(is_along, -y, x) @ force
+
+
+def on_supports(
+    problem: Problem, fields: LoopFields
+) -> tuple[list[Array], list[Array], list[Array]]:
+    """Forces along x and y of supports and springs, and their moments about the origin."""
+    x, y, moments = [], [], []
+    for name, law in problem.rubbing.items():
+        if not law.is_on_support:
+            continue
+        contact = fields.contact(name)
+        _, pairs = np.unique(law.points, return_index=True)
+        of_normal = contact.normal_force
+        if law.is_spring:
+            assert of_normal is not None
+            x.append(of_normal.sum(axis=0))
+            continue
+        along = problem.positions[problem.row_dofs[law.tangent.above[pairs]], 0]
+        x.append(contact.tangential_force.sum(axis=0))
+        if of_normal is not None:
+            y.append(of_normal.sum(axis=0))
+            moments.append(along @ of_normal)
+    return x, y, moments
+
+
+def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:
+    """In the plane: sides, loads, supports and springs, along x and y, and about the origin."""
+    loads = loads_of(problem)
+    every = [[load, *more] for load, more in zip(loads, on_supports(problem, fields), strict=True)]
+    for side in problem.held_dofs:
+        for component in (0, 1):
+            every[component].append(reaction(problem, side, component).of(fields))
+        every[2].append(reaction_moment(problem, side).of(fields))
+    length = float(np.ptp(problem.positions, axis=0).max())
+    forces = [*every[0], *every[1]]
+    for terms in every[:2]:
+        assert_vanish(np.sum(terms, axis=0), forces)
+    assert_vanish(np.sum(every[2], axis=0), [length * force for force in forces])
+
+
+def assert_balance(settings: Settings, fields: LoopFields, problem: Problem) -> None:
+    structure = settings.structure()
+    if isinstance(structure, Rods):
+        assert_rods_balance(structure, problem, fields)
+    elif settings.kind == "plane":
+        assert_bodies_balance(problem, fields)
+    else:
+        friction = [fields.contact(name).tangential_force.sum(axis=0) for name in problem.rubbing]
+        loads = external_force(problem).sum(axis=0) * problem.scales.force
+        ends = [reaction(problem, end).of(fields) for end in ("support", "load")]
+        terms = [*friction, *ends, loads]
+        assert_vanish(np.sum(terms, axis=0), [*terms, np.abs(external_force(problem)).sum(axis=0)])
+
+
+def small(scene: str, law: str) -> Settings:
+    kind = "plane" if CATALOGUE[scene].kind == "plane" else "rod"
+    sizes = SMALL[scene] | {"instants": 7, "substructures": 2}
+    if scene == "rope":
+        sizes = {**SMALL_ROPE, "elements": 6, "instants": 7}
+    if scene == "wall":
+        del sizes["substructures"]
+    return CATALOGUE[scene].checked({**sizes, **law_of(kind, law)})
+
+
+@pytest.mark.parametrize("law", [*LAWS, "general"])
+@pytest.mark.parametrize("scene", SMALL)
+def test_every_scene_balances_under_every_law(scene: str, law: str) -> None:
+    settings = small(scene, law)
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    assert reference.converged.all()
+    assert_balance(settings, reference, problem)
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_the_answer_of_a_run_balances(scene: str) -> None:
+    run = finished_run(small(scene, "coulomb"), errors=False, indicators=False)
+    assert run.solution.is_certified
+    assert_balance(run.settings, run.iterate, run.problem)
+
+
+LAW = st.sampled_from([*LAWS, "general"])
+
+
+@examples(max_examples=20)
+@given(left=END, right=END, law=LAW, seed=st.integers(0, 10**6), parts=st.integers(1, 3))
+def test_a_rod_balances_whatever_is_at_its_ends(
+    left: str, right: str, law: str, seed: int, parts: int
+) -> None:
+    generator = np.random.default_rng(seed)
+    sizes = generator.uniform(-1.0, 1.0, 7)
+    settings = CATALOGUE["bar"].checked(
+        {
+            "left_end": left,
+            "right_end": right,
+            "left_force": 300.0 * sizes[0],
+            "peak": 300.0 * sizes[1],
+            "support_displacement": 1e-3 * sizes[2],
+            "right_displacement": 1e-3 * sizes[3],
+            "right_load": "hold",
+            "right_spring": 10.0 ** generator.uniform(4.0, 8.0),
+            "temperature": 50.0 * sizes[4],
+            "settlement": 1e-3 * sizes[5],
+            "settlement_load": "random",
+            "body_force": 300.0 * sizes[6],
+            "seed": seed,
+            "elements": 6,
+            "instants": 7,
+            "substructures": parts,
+            **law_of("rod", law),
+        }
+    )
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    assert reference.converged.all()
+    assert_balance(settings, reference, problem)
+
+
+@examples(max_examples=16)
+@given(left=SIDE, right=SIDE, top=HELD_TOP, law=LAW, seed=st.integers(0, 10**6))
+def test_a_block_balances_whatever_is_at_its_sides(
+    left: str, right: str, top: str, law: str, seed: int
+) -> None:
+    generator = np.random.default_rng(seed)
+    sizes = generator.uniform(-1.0, 1.0, 8)
+    sides = {"left": left, "right": right, "top": top}
+    given_there = {
+        f"{side}_{name}": value
+        for side in sides
+        for name, value in {
+            "normal_displacement": -1e-5 * abs(sizes[0]),
+            "tangential_displacement": 2e-5 * sizes[1],
+            "normal_traction": -1e6 * abs(sizes[2]),
+            "tangential_traction": 1e6 * sizes[3],
+            "normal_slope": sizes[4],
+            "normal_load": "sine",
+        }.items()
+    }
+    settings = CATALOGUE["block"].checked(
+        {
+            **sides,
+            **given_there,
+            "top_normal_load": "hold",
+            "gap": "flat",
+            "body_force_y": -1e6 * abs(sizes[5]),
+            "body_force_x": 1e5 * sizes[6],
+            "elements": 6,
+            "elements_up": 2,
+            "instants": 7,
+            "substructures": 2,
+            "substructures_up": 1,
+            **law_of("plane", law),
+        }
+    )
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    assert reference.converged.all()
+    assert_balance(settings, reference, problem)
+
+
+MOVED_END = {"left_end": "free", "right_end": "held", "right_displacement": 1e-4, "friction": 0.3}
+PUSHED = {
+    "left": "pushed",
+    "left_normal_displacement": -1e-4,
+    "top": "traction",
+    "top_normal_traction": -1e7,
+    "gap": "flat",
+    "elements": 10,
+    "elements_up": 4,
+    "instants": 5,
+}
+ON_SPRING = {
+    "length": 0.4,
+    "height": 0.2,
+    "top": "free",
+    "gap": "flat",
+    "body_force_y": -1837.5,
+    "body_force_x": -3400.0,
+    "friction": 0.9,
+    "spring": 3e5,
+    "elements": 12,
+    "elements_up": 6,
+    "instants": 5,
+}
+
+
+def run_of(scene: str, **values: Any) -> FinishedRun:
+    return finished_run(CATALOGUE[scene].checked(values), errors=False, indicators=False)
+
+
+def largest(name: str, run: FinishedRun) -> float:
+    return reading(name)(run)
+
+
+@pytest.mark.parametrize("elements", [10, 25, 60])
+def test_the_force_of_an_end_is_that_of_its_closed_form_on_every_mesh(elements: int) -> None:
+    """900 N move the end of Table 1's bar by 0.409 mm, and whatever moves it so far needs 900 N."""
+    path = [[0.0, 0.0], [1.0, 900.0**2 / (2.0 * 659_400.0 * 1500.0)]]
+    held = {"right_end": "held", "right_load": path, "instants": 5, "elements": elements}
+    assert largest("right_force", run_of("bar", **held)) == pytest.approx(900.0, rel=1e-12)
+
+
+def test_a_moved_end_needs_what_a_stiff_spring_that_moves_it_carries() -> None:
+    moved = run_of("bar", **MOVED_END, instants=5)
+    stiff = {**MOVED_END, "right_end": "spring", "right_spring": 1e12}
+    sprung = run_of("bar", **stiff, instants=5)
+    assert largest("right_force", moved) == pytest.approx(444.7696, rel=1e-4)
+    assert largest("right_force", moved) == pytest.approx(largest("right_force", sprung), rel=1e-5)
+    np.testing.assert_allclose(moved.force, sprung.force, rtol=1e-5)
+
+
+def test_the_largest_axial_force_of_a_bar_is_what_pulls_its_end() -> None:
+    """The last element has lost half an element of friction in its middle."""
+    assert largest("axial_force", run_of("bar", load=[[0, 0], [1, 900]], instants=3)) == 900.0
+    moved = largest("axial_force", run_of("bar", **MOVED_END, instants=5))
+    assert moved == pytest.approx(444.7696, rel=1e-4)
+
+
+def test_a_pushed_side_carries_all_friction() -> None:
+    run = run_of("block", **PUSHED)
+    assert largest("left_force", run) == pytest.approx(3e5, rel=1e-9)
+    # What slides, the support carries.
+    assert np.abs(run.force).max() == pytest.approx(3e5, rel=1e-9)
+
+
+@pytest.mark.parametrize("elements", [10, 50])
+def test_a_clamp_carries_what_friction_leaves_of_a_pull_on_every_mesh(elements: int) -> None:
+    """1800 N pull Table 1's bar, of which friction holds 1500 N up to the clamp itself."""
+    pulled = {"load": [[0.0, 0.0], [1.0, 1800.0]], "instants": 5, "elements": elements}
+    run = run_of("bar", **pulled)
+    assert largest("left_force", run) == pytest.approx(-300.0, rel=1e-9)
+    assert largest("peak_friction", run) == pytest.approx(1500.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", [*LAWS, "general"])
+def test_the_force_of_an_end_stays_while_it_stands_still(law: str) -> None:
+    path = [[0.0, 0.0], [0.4, 3e-4], [1.0, 3e-4]]
+    held = {**MOVED_END, "right_load": path, "instants": 11, "elements": 10}
+    run = run_of("bar", **held, **law_of("rod", law))
+    np.testing.assert_allclose(run.force[4:], run.force[4], rtol=1e-9)
+
+
+DRIVEN: dict[str, tuple[str, dict[str, Any]]] = {
+    "an end that is moved to and fro": ("bar", MOVED_END | {"right_load": "cycle"}),
+    "an end that is moved and stands": ("bar", MOVED_END | {"right_load": "hold"}),
+    "an end that is held": ("bar", {"peak": 1700.0, "substructures": 5}),
+    "an end whose support settles": ("bar", {"settlement": 1e-4, "right_end": "free"}),
+    "a pushed side": ("block", PUSHED | {"left_normal_load": "hold"}),
+    "rollers": ("block", PUSHED | {"left": "roller", "top_tangential_traction": 1e6}),
+}
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_an_iterate_shares_friction_and_reaction_as_the_reference(name: str) -> None:
+    scene, values = DRIVEN[name]
+    settings = CATALOGUE[scene].checked({"elements": 10, "instants": 9, **values, "finish": "none"})
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    iterate = next(islice(iterations(problem, method_of(settings)), 200, None))
+    size = np.abs(reference.contact_force).max()
+    np.testing.assert_allclose(iterate.contact_force, reference.contact_force, atol=1e-5 * size)
+    assert kkt_residual(iterate, problem) < 1e-4
+    held = [*problem.held_dofs]
+    found = [reaction(problem, side).of(iterate) for side in held]
+    known = [reaction(problem, side).of(reference) for side in held]
+    np.testing.assert_allclose(found, known, atol=1e-5 * size)
+
+
+SPRUNG: dict[str, tuple[str, dict[str, Any]]] = {
+    "block": ("block", ON_SPRING),
+    "incline": ("incline", SMALL["incline"]),
+}
+
+
+def test_a_spring_carries_what_friction_leaves() -> None:
+    run = run_of("block", **ON_SPRING)
+    weight, push = 1837.5 * 0.08, 3400.0 * 0.08
+    assert largest("spring_force", run) == pytest.approx(push - 0.9 * weight, rel=1e-6)
+    assert largest("peak_friction", run) == pytest.approx(0.9 * weight, rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "weight"), [("block", 147.0), ("incline", 1000.0)])
+def test_a_spring_presses_on_no_surface_and_its_point_does_not_slip(
+    name: str, weight: float
+) -> None:
+    scene, values = SPRUNG[name]
+    run = run_of(scene, **values)
+    assert largest("peak_pressing", run) == pytest.approx(weight, rel=1e-9)
+    slips = np.abs(run.iterate.contact("support").status) == 1
+    assert largest("slipped_share", run) == slips.any(axis=1).mean()
+    foot = np.abs(run.iterate.contact("support").slip).max()
+    assert largest("peak_slip", run) <= foot
+
+
+def test_key_figures_of_the_page_leave_the_point_of_a_spring_out() -> None:
+    run = run_of("incline", **SMALL["incline"])
+    sampler = Sampler(run.problem, run.settings, 1)
+    frame = sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+    slips = np.abs(run.iterate.contact("support").status[:, 6]) == 1
+    assert f"Slips <b>{percent(slips.mean())}</b>" in figures_line(frame, Selection(phase=0.5))
+
+
+def test_friction_fitted_to_the_closed_form_of_a_moved_end_is_that_of_the_form() -> None:
+    """On a coarse mesh half an element of friction was taken for 6 % of mu."""
+    moved = np.linspace(0.0, 3e-4, 21)
+    needed = np.sqrt(2.0 * 659_400.0 * 0.1 * 5000.0 * moved)
+    measured = MeasuredLoop(moved, needed, None, ("m", "N"), "closed form", "")
+    path = [[0.0, 0.0], [1.0, 3e-4]]
+    settings = CATALOGUE["bar"].checked(
+        {"right_end": "held", "right_load": path, "elements": 25, "instants": 21, "friction": 0.2}
+    )
+    found = fit(settings, measured, ["friction"])
+    assert found.nearest.values[0] == pytest.approx(0.1, rel=2e-3)
+
+
+def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> None:
+    """Their ends move alike in the end: what rounding leaves of that is no slip."""
+    times = np.linspace(0.0, 1.0, 9)
+    free = Given(False, 0.0 * times)
+    turned = Given(True, 1e-5 * np.sin(6.0 * times), 1e-5 * np.minimum(3.0 * times, 1.0))
+    stack = Stack(
+        length=0.2,
+        height=0.1,
+        elements=(8, 4),
+        substructures=(2, 1),
+        young=1e9,
+        poisson=0.3,
+        instants=times,
+        duration=1.0,
+        friction=0.3,
+        bricks=[Brick(0, 0, 8, 4), Brick(0, 4, 8, 4)],
+        support=Support(gap=np.zeros(9), friction=0.2),
+        sides={
+            "left": Side(turned, free),
+            "top": Side(free, Given(False, -1e6 * np.minimum(4.0 * times, 1.0))),
+        },
+    )
+    problem = stack.discretise()
+    reference = reference_of(problem)
+    iterate = next(islice(iterations(problem, Latin()), 200, None))
+    for fields in (reference, iterate):
+        between = fields.contact("contact 1-2")
+        friction, bound = between.tangential_force[0], 0.3 * between.normal_force[0]
+        np.testing.assert_allclose(friction[1:3], bound[1:3], rtol=1e-6)
+        assert (np.abs(friction) <= (1.0 + 1e-9) * bound).all()
+        # Where both stand, as much per area as beside, where the share is whole.
+        beside = np.clip(0.5 * between.tangential_force[1], -bound, bound)
+        np.testing.assert_allclose(friction[5:], beside[5:], rtol=1e-6)
+    assert_bodies_balance(problem, reference)

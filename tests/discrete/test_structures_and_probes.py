@@ -1,0 +1,147 @@
+"""Structures need no scene: their probes give what the inside gives, their loops balance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.discrete import Given, Problem, Side, Stack, Support
+from solver.discrete.elements import von_mises
+from solver.discrete.plane.bricks import Brick
+from solver.discrete.probes import reaction, side_mean
+from solver.latin import PGD, Iterate, iterations
+from solver.reference.solution import fingerprint
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.settings.scene import Settings
+
+SMALL = {"elements": 12, "elements_up": 4, "instants": 9}
+PULLED = {"top": "traction", "top_normal_traction": -2e7, "top_tangential_traction": 4e6}
+HEAVY = {"body_force_y": -1e8, "body_force_x": 3e7}
+LAYERS = {**SMALL, "elements_up": 2, "layers": 3}
+
+
+def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Settings, Iterate]:
+    settings = CATALOGUE[scene].checked(values)
+    run = iterations(discretise(settings), method_of(settings))
+    return settings, next(islice(run, number - 1, None))
+
+
+def trapezoid(along: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Mean over a line of places, in any order; values (n_places, n)."""
+    order = np.argsort(along)
+    along, values = along[order], values[order]
+    pieces = np.diff(along)[:, None] * 0.5 * (values[1:] + values[:-1])
+    return np.asarray(pieces.sum(axis=0) / (along[-1] - along[0]))
+
+
+def whole(problem: Problem, iterate: Iterate) -> tuple[np.ndarray, np.ndarray]:
+    assert problem.inside is not None
+    return problem.inside.nodes, problem.inside.displacement(iterate.displacement, slice(None))
+
+
+@pytest.mark.parametrize("side", ["top", "left", "right"])
+@pytest.mark.parametrize("component", [0, 1])
+def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
+    side: str, component: int
+) -> None:
+    """Also where nothing is prescribed, and loads inside move the side beside the skeleton."""
+    _, iterate = iterate_of("block", {**SMALL, **PULLED, **HEAVY}, 4)
+    nodes, found = whole(iterate.problem, iterate)
+    axis = 1 if side == "top" else 0
+    outermost = nodes[:, axis].min() if side == "left" else nodes[:, axis].max()
+    on = nodes[:, axis] == outermost
+    expected = trapezoid(nodes[on, 1 - axis], found[on, component])
+    probe = side_mean(iterate.problem, side, component)
+    shown = probe(iterate.displacement)
+    assert shown == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
+
+
+def test_reaction_is_the_force_that_holds_the_prescribed_end() -> None:
+    _, iterate = iterate_of("layers", LAYERS, 120)
+    problem = iterate.problem
+    law: Any = problem.interfaces["right"]
+    expected = iterate.boundary_force[law.rows].sum(axis=0) * problem.scales.force
+    found = reaction(problem, "right").of(iterate)
+    assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
+
+
+def test_shear_force_on_the_support_is_the_traction_on_the_top() -> None:
+    settings, iterate = iterate_of("block", {**SMALL, **PULLED}, 200)
+    loop = settings.structure().loop(iterate.problem)
+    expected = settings.path("top_tangential_load") * settings.values()["length"]
+    assert loop.force(iterate) == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+
+
+def test_equivalent_stress_of_pure_shear_and_of_even_pressure() -> None:
+    shear = von_mises(np.array([[0.0, 0.0, 2.0]]), 0.3, "stress")
+    assert shear == pytest.approx([2.0 * np.sqrt(3.0)])
+    even = von_mises(np.array([[1.0, 1.0, 0.0]]), 0.5, "strain")
+    assert even == pytest.approx([0.0])
+    assert von_mises(np.array([[3.0, 0.0, 0.0]]), 0.3, "stress") == pytest.approx([3.0])
+
+
+T = np.linspace(0.0, 1.0, 9)
+DOWN = Given(prescribed=True, mean=-1e-6 * np.minimum(4.0 * T, 1.0))
+ALONG = Given(prescribed=True, mean=1e-6 * np.sin(2.0 * np.pi * T))
+BODY = Stack(
+    length=0.2,
+    height=0.1,
+    elements=(8, 4),
+    substructures=(2, 1),
+    young=1e9,
+    poisson=0.3,
+    instants=T,
+    duration=1.0,
+    support=Support(gap=np.zeros(9), friction=0.3),
+    sides={"top": Side(x=ALONG, y=DOWN)},
+)
+BEAMS = replace(
+    BODY,
+    bricks=[Brick(0, 4 * body, 8, 4) for body in range(3)],
+    support=None,
+    sides={
+        "left": Side(Given(True, 0.0 * T), Given(True, 0.0 * T)),
+        "right": Side(Given(False, 0.0 * T, 6e5 * T), Given(False, 0.0 * T)),
+    },
+)
+
+
+def test_a_side_that_is_not_named_is_free() -> None:
+    free = Side(Given(False, 0.0 * T), Given(False, 0.0 * T))
+    named = replace(BODY, sides={**dict.fromkeys(("left", "right", "bottom"), free), **BODY.sides})
+    assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
+    assert {act.where for act in BODY.described().acts} == {"top x", "top y"}
+    assert [hold.kind for hold in BODY.described().holds] == ["support"]
+
+
+@pytest.mark.parametrize(
+    ("name", "part", "change"),
+    [
+        ("Stack.sides", BODY, {"sides": {"Top": BODY.sides["top"]}}),
+        ("Stack.young", BODY, {"young": -210e9}),
+        ("Rods.stiffness", CATALOGUE["bar"].checked({}).structure(), {"stiffness": 0.0}),
+        ("Rods.length", CATALOGUE["bar"].checked({}).structure(), {"length": np.nan}),
+    ],
+)
+def test_bodies_that_cannot_be_are_refused(name: str, part: Any, change: dict[str, Any]) -> None:
+    with pytest.raises(RefusedError, match=name):
+        replace(part, **change)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    assert PGD(modes=np.arange(5, 9)[0]) == PGD(modes=5)
+
+
+def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
+    """Of an extreme s over three heights h each: 3 s h^2 / 6, against the clock where s is up."""
+    problem = BEAMS.discretise()
+    still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
+    force = BEAMS.loop(problem).force(still)
+    assert force == pytest.approx(-3.0 * 6e5 * T * 0.1**2 / 6.0)

@@ -1,0 +1,62 @@
+"""Runs of scenes that several tests make."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.latin import Iterate, Solution, iterations, solve
+from solver.reference.distance import Distance, distance_to
+from solver.reference.incremental import reference_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.settings.scene import Settings
+
+
+def settings_of(scene: str, **values: Any) -> Any:
+    return CATALOGUE[scene].checked(values)
+
+
+def distance_of(problem: Problem) -> Distance:
+    """Distance to the incremental solution."""
+    return distance_to(reference_of(problem), problem)
+
+
+def solved(settings: Settings, **rest: Any) -> Solution:
+    """Solution with its errors."""
+    problem = discretise(settings)
+    return solve(problem, method_of(settings), distance=distance_of(problem), **rest)
+
+
+def iterates(settings: Settings, number: int) -> list[Iterate]:
+    """First iterates of a run."""
+    return list(islice(iterations(discretise(settings), method_of(settings)), number))
+
+
+def sample(settings: Settings, number: int) -> Iterate:
+    """Iterate of some number."""
+    return next(islice(iterations(discretise(settings), method_of(settings)), number - 1, None))
+
+
+def errors(settings: Settings, number: int) -> Array:
+    """Error of the contact force after each of the first iterations."""
+    problem = discretise(settings)
+    distance = distance_of(problem)
+    found = islice(iterations(problem, method_of(settings)), number)
+    return np.array([distance.of_friction_force(one) for one in found])
+
+
+def assert_goes_on(settings: Settings, number: int, place: int) -> None:
+    """A run that is resumed at one of its iterates has the others again, to the bit."""
+    problem, method = discretise(settings), method_of(settings)
+    straight = list(islice(iterations(problem, method), number))
+    again = islice(iterations(problem, method, straight[place].checkpoint), number - place - 1)
+    for one, other in zip(again, straight[place + 1 :], strict=True):
+        assert (one.number, one.course.phase) == (other.number, other.course.phase)
+        for name in ("k", "outgoing", "incoming", "local_displacement", "local_incoming"):
+            assert np.array_equal(getattr(one, name), getattr(other, name)), name
+        assert [basis.n_modes for basis in one.bases] == [basis.n_modes for basis in other.bases]

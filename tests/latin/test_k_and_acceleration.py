@@ -1,0 +1,133 @@
+"""Automatic k and its update, Anderson, nested meshes: a shorter path to the same limit."""
+
+from __future__ import annotations
+
+from itertools import groupby
+
+import numpy as np
+import pytest
+from runs import assert_goes_on, distance_of, errors, iterates, solved
+
+from solver.latin import Ending
+from solver.latin.direction import from_status
+from solver.latin.direction.directions import sliding_share
+from solver.latin.direction.from_status import CALM, TRIAL
+from solver.scenes import discretise
+from solver.scenes.bar import BarSettings
+from solver.settings.load_paths import PRESETS
+
+FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
+
+
+def options(**changes: object) -> BarSettings:
+    return BarSettings.checked({"method": "paper", **FAST, **changes})
+
+
+def within(solution, level: float) -> int:
+    return next(entry.iteration for entry in solution.records if entry.error_force <= level)
+
+
+@pytest.mark.parametrize(
+    "changes", [*({"load": load} for load in PRESETS), {"peak": 300.0}, {"peak": 2400.0}], ids=str
+)
+def test_all_together_reach_one_percent_of_friction_force_early(changes):
+    assert within(solved(options(max_iterations=30, **changes)), 0.01) <= 30
+
+
+def test_a_run_starts_from_no_mesh_that_has_other_instants():
+    """The points of a table are all instants where a mesh is coarse, and few where it is fine."""
+    times = np.linspace(0.0, 1.0, 2000)
+    wave = 300.0 * np.sin(20.0 * np.pi * times)
+    fine = options(elements=1200, load=np.stack([times, wave], axis=1).tolist())
+    assert fine.n_instants < len(times)
+    for settings in (fine, options()):
+        assert all(len(coarse.instants) == settings.n_instants for coarse in settings.coarser())
+    assert len(next(options().coarser()).positions) == options().elements // 2 + 1
+
+
+@pytest.mark.parametrize(
+    ("setting", "sizes", "most"),
+    [("substructures", (1, 5, 50), 1.2), ("elements", (50, 200), 2.0)],
+    ids=str,
+)
+def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
+    early = {"tolerance": 1e-20, "max_iterations": 60}
+    found = [within(solved(options(**early, **{setting: size})), 0.01) for size in sizes]
+    assert max(found) <= most * min(found)
+
+
+@pytest.mark.parametrize("change", [{}, {"load": "random"}], ids=str)
+def test_the_limit_is_the_same(change):
+    solution = solved(options(tolerance=1e-24, max_iterations=3000, **change))
+    assert solution.status.ending is Ending.CONVERGED
+    assert solution.records[-1].error_force < 1e-8
+    assert solution.records[-1].error_displacement < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("change", "share"),
+    [
+        ({}, 0.6),
+        ({"peak": 300.0}, 0.2),
+        ({"peak": -300.0}, 0.2),
+        ({"peak": 4000.0}, 1.0),
+        ({"peak": 0.0}, 2.0 / 51.0),
+        ({"friction": 0.0}, 1.0),
+        ({"support_displacement": 1e-3}, 1.0),
+        ({"load": "ramp", "peak": 300.0, "body_force": 300.0}, 0.4),
+    ],
+    ids=str,
+)
+def test_the_sliding_share_is_load_over_capacity(change, share):
+    assert sliding_share(discretise(options(**change))) == pytest.approx(share)
+
+
+def updating(**changes: object) -> BarSettings:
+    return BarSettings.checked({"method": "paper", "k_update": "status", **changes})
+
+
+@pytest.mark.parametrize("load", PRESETS)
+def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
+    assert errors(updating(**FAST, load=load, relaxation=1.0), 150).min() <= 1e-6
+
+
+@pytest.mark.parametrize("substructures", [1, 10])
+def test_it_makes_the_plain_iteration_shorter(substructures):
+    chosen = updating(substructures=substructures)
+    updated, plain = (errors(one, 300) for one in (chosen, chosen.replace(k_update="none")))
+    assert sum(updated > 1e-3) < sum(plain > 1e-3)
+
+
+@pytest.mark.parametrize(
+    "change", [{"load": "random"}, {"multiscale": False, "substructures": 3}], ids=str
+)
+def test_the_limit_is_the_same_once_k_is_updated(change):
+    solution = solved(updating(**FAST, tolerance=1e-24, max_iterations=3000, **change))
+    assert solution.iterate.course.phase == "updated"
+    assert solution.status.ending is Ending.CONVERGED
+    assert solution.records[-1].error_force < 1e-8
+
+
+@pytest.mark.parametrize("acceleration", ["none", "anderson"])
+def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
+    monkeypatch.setattr(from_status, "SLIDING", 1e-9)
+    chosen = updating(**{**FAST, "acceleration": acceleration})
+    constant = iterates(chosen.replace(k_update="none"), CALM + 20)
+    found = iterates(chosen, 600)
+    phases = [iterate.course.phase for iterate in found]
+    assert [phase for phase, _ in groupby(phases)] == ["first", "updated", "returned"]
+    # An iterate says what follows: the next is the first with the new k.
+    start, back = phases.index("updated") + 1, phases.index("returned") + 1
+    assert (back - start) % TRIAL == 0
+    assert np.array_equal(found[back].k, constant[0].k)
+    if back - start == TRIAL:  # from the state before the update, as if it had never been
+        assert np.allclose(found[back].local_incoming, constant[start].local_incoming, atol=1e-15)
+    assert distance_of(found[-1].problem).of_friction_force(found[-1]) < 1e-3
+
+
+@pytest.mark.parametrize("harm", [1.0, 1e-9])
+def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, harm):
+    monkeypatch.setattr(from_status, "SLIDING", harm * from_status.SLIDING)
+    chosen = updating(**{**FAST, "acceleration": "none"})
+    for place in (2, CALM, CALM + 1, CALM + TRIAL):
+        assert_goes_on(chosen, CALM + TRIAL + 20, place)

@@ -1,0 +1,302 @@
+"""Sweeps have a row for every point, whatever becomes of it, and what closed forms say of it."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import BrokenExecutor
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pebble import ProcessExpired
+from processes import is_alive, started, wait_for
+from sweeps import Here, rows_in_table, rows_of, tiny
+
+from solver.commands import reports as report_commands
+from solver.commands.cli import main
+from solver.scenes import CATALOGUE
+from solver.settings.definitions import SettingError
+from solver.study.quantities.finished import finished_run
+from solver.study.sweep import run as runs
+from solver.study.sweep.executors import opened
+from solver.study.sweep.plan import Row
+from solver.study.sweep.report import growth
+from solver.study.sweep.run import sweep
+
+
+def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
+    plan = tiny(["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "iterations"])
+    rows = rows_of(plan)
+    assert [row.number for row in rows] == list(range(6))
+    assert all(row.holds and not row.reason for row in rows)
+    alone = finished_run(plan.settings_at(3), errors=False, indicators=False)
+    assert rows[3].values == tuple(reading(alone) for reading in plan.readings)
+    assert not any(row.was_warm for row in rows)
+    assert rows[3].values[1] == rows[3].iterations
+
+
+def test_processes_give_the_same_rows_as_this_one() -> None:
+    plan = tiny(["peak=300:900:13"], ["peak_displacement", "dissipation"])
+    with opened("processes:2") as executor:
+        rows = rows_of(plan, executor)
+    expected = np.array([row.values for row in rows_of(plan)])
+    assert np.array([row.values for row in rows]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_run_that_fails_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = tiny(["substructures=2,30"], ["iterations"])
+    fits, refused = rows_of(plan)
+    assert fits.holds
+    assert (refused.ending, refused.holds) == ("refused", False)
+    assert "substructures = 30 is refused" in refused.reason
+    assert math.isnan(refused.values[0])
+
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("at the third turn")
+
+    monkeypatch.setattr(runs, "finished_run", broken)
+    row = rows_of(plan)[0]
+    assert (row.ending, row.reason) == ("broken", "ZeroDivisionError: at the third turn")
+
+
+def test_what_a_run_had_come_to_is_kept_and_marked() -> None:
+    plan = tiny(["max_iterations=2,1000"], ["iterations", "peak_displacement"], method="paper")
+    short, whole = rows_of(plan)
+    assert (short.ending, short.holds, short.values[0]) == ("exhausted", False, 2)
+    assert short.reason
+    assert whole.holds
+
+
+def test_a_run_ends_itself_when_its_time_is_up() -> None:
+    plan = tiny(["peak=300,900"], ["iterations"], method="paper", accuracy=1e-9)
+    for row in rows_of(plan, limit=0.0):
+        assert (row.ending, row.iterations) == ("stuck", 1)
+        assert "--limit" in row.reason
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> None:
+    changes = {"elements_up": 8} if "elements_up" in CATALOGUE[scene].param else {}
+    if scene == "wall":  # of so few bricks that a step is soon worth a trial
+        changes = {"elements_up": 2, "bricks": 3, "courses": 3, "displacement": 5e-5}
+    plan = tiny(["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes)
+    warm, cold = rows_of(plan), rows_of(plan, warm=False)
+    assert all(row.was_warm for row in warm[1:])
+    assert not any(row.was_warm for row in cold)
+    apart = np.array([row.values for row in warm]) - np.array([row.values for row in cold])
+    assert (np.abs(apart) <= 1e-9 * np.abs([row.values for row in cold]).max(axis=0)).all()
+
+
+@pytest.mark.parametrize("of", ["iterations", "seconds", "error_force", "indicator@2"])
+def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of: str) -> None:
+    plan = tiny(["friction=0.4:0.42:6"], ["peak_displacement", of])
+    assert not any(row.was_warm for row in rows_of(plan))
+
+
+def test_a_process_that_is_killed_takes_one_row_with_it_and_says_so() -> None:
+    with opened("processes:1") as executor:
+        first = executor.submit(os.getpid).result()
+        calls = [executor.submit(time.sleep, 60.0), executor.submit(os.getpid)]
+        wait_for(calls[0].running)
+        os.kill(first, signal.SIGKILL)
+        assert calls[1].result() != first
+        with pytest.raises(ProcessExpired):
+            calls[0].result()
+
+
+def test_after_a_process_is_killed_that_did_nothing_the_next_sweep_has_all_rows() -> None:
+    plan = tiny(["peak=300:900:6"], ["stiffness"])
+    with opened("processes:1") as executor:
+        idle = executor.submit(os.getpid).result()
+        os.kill(idle, signal.SIGKILL)
+        with suppress(BrokenExecutor):
+            rows_of(plan, executor)
+        assert all(row.holds for row in rows_of(plan, executor))
+
+
+class Ending(Here):
+    """Loses the run of a point."""
+
+    def __init__(self, point: int, trouble: Exception) -> None:
+        super().__init__()
+        self.point, self.trouble = point, trouble
+
+    def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
+        if args[0] == self.point:
+            fn, args = _raise, (self.trouble,)
+        return super().submit(fn, *args, **kwargs)
+
+
+def _raise(trouble: Exception) -> None:
+    raise trouble
+
+
+@pytest.mark.parametrize(
+    ("trouble", "ending", "words"),
+    [(TimeoutError(), "stuck", "--limit"), (ProcessExpired("killed"), "lost", "killed")],
+)
+def test_only_the_run_whose_process_was_ended_has_no_answer(
+    trouble: Exception, ending: str, words: str
+) -> None:
+    rows = rows_of(tiny(["peak=300:900:6"], ["iterations"]), Ending(2, trouble))
+    assert [row.ending for row in rows] == ["converged"] * 2 + [ending] + ["converged"] * 3
+    assert words in rows[2].reason
+
+
+def test_an_executor_that_is_broken_ends_the_sweep() -> None:
+    executor = Ending(2, BrokenExecutor("it is gone"))
+    rows = sweep(tiny(["peak=300:900:6"], ["iterations"]), executor)
+    with pytest.raises(BrokenExecutor, match="it is gone"):
+        list(rows)
+
+
+def test_a_call_that_takes_too_long_is_ended_and_the_next_goes_on() -> None:
+    with opened("processes:1", 1.0) as executor:
+        first = executor.submit(os.getpid).result()
+        with pytest.raises(TimeoutError):
+            executor.submit(time.sleep, 60.0).result()
+        assert executor.submit(os.getpid).result() != first
+        wait_for(lambda: not is_alive(first))
+
+
+def test_a_call_that_is_cancelled_is_ended_and_the_next_goes_on() -> None:
+    with opened("processes:1") as executor:
+        first = executor.submit(os.getpid).result()
+        call = executor.submit(time.sleep, 60.0)
+        wait_for(call.running)
+        call.cancel()
+        assert executor.submit(os.getpid).result() != first
+        wait_for(lambda: not is_alive(first))
+
+
+def test_an_executor_ends_with_all_that_it_does() -> None:
+    with opened("processes:2") as executor:
+        processes = {executor.submit(_late_pid).result() for _ in range(4)}
+        for _ in range(4):
+            executor.submit(time.sleep, 60.0)
+    assert not any(map(is_alive, processes))
+    with pytest.raises(RuntimeError, match="not active"):
+        executor.submit(int)
+
+
+def _late_pid() -> int:
+    time.sleep(0.1)
+    return os.getpid()
+
+
+CALLS = """
+import time
+from solver.study.sweep.executors import opened
+
+with opened("processes:2") as executor:
+    calls = [executor.submit(time.sleep, 600.0) for _ in range(2)]
+    while not all(call.running() for call in calls):
+        time.sleep(0.01)
+    print("at work", flush=True)
+    time.sleep(600.0)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc").exists(), reason="no list of processes")
+def test_a_program_that_is_killed_leaves_no_process_whatever_these_do() -> None:
+    options = {"start_new_session": True, "stdout": subprocess.PIPE}
+    with started([sys.executable, "-c", CALLS], **options) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == b"at work\n"
+        assert len(in_session(program.pid)) > 2
+        program.kill()
+        wait_for(lambda: not in_session(program.pid))
+
+
+def test_a_sweep_that_is_killed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = ["sweep", "bar", "--vary", "peak=300:900:24", "--of", "iterations"]
+    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+    asked += ["--on", "processes:2", "--out", str(tmp_path)]
+    table = tmp_path / "sweep.csv"
+    with started([sys.executable, "-m", "solver", *asked]):
+        wait_for(lambda: rows_in_table(table) > 3)
+    rows = table.read_text(encoding="utf-8").splitlines()
+    monkeypatch.setattr(report_commands, "write_page", lambda *given: None)
+    assert main(asked) == 0
+    assert rows_in_table(table) == 24
+    assert {*rows[:-1]} <= {*table.read_text(encoding="utf-8").splitlines()}
+
+
+def in_session(leader: int) -> list[int]:
+    """Processes of a session that have not ended, whoever their parents are."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, _, _, session = process.read_text("utf-8").rpartition(")")[2].split()[:4]
+            if int(session) == leader and state not in "ZX":
+                found.append(int(process.parent.name))
+    return found
+
+
+@pytest.mark.parametrize(
+    "on", ["", "process", "processes:0", "processes:x", "processes:2:2", "processes:1000", "dask"]
+)
+def test_a_foolish_executor_is_refused_in_a_line(on: str) -> None:
+    with pytest.raises(SettingError, match=r"processes:COUNT, or dask://HOST:PORT") as refusal:
+        opened(on).__enter__()
+    assert "\n" not in str(refusal.value)
+
+
+def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
+    plan = tiny(["elements=10:40:3:log", "method=fast,paper"], ["iterations"])
+    rows = [
+        Row(n, "converged", "", (float(plan.point(n)["elements"] ** (1 + n % 2)),))
+        for n in range(6)
+    ]
+    assert growth(plan, rows) == [
+        "iterations, method=fast: elements^1.00, of 3 runs",
+        "iterations, method=paper: elements^2.00, of 3 runs",
+    ]
+    assert growth(tiny(["elements=10,20,40"], ["iterations"]), rows[:3]) == []
+
+
+def seen_at_its(moment: str, folder: Path) -> bool:
+    """Whether a sweep into a folder has come to a moment of its course."""
+    table = folder / "sweep.csv"
+    if moment == "first row":
+        return table.exists() and len(table.read_text().splitlines()) > 1
+    return folder.exists()
+
+
+@pytest.mark.parametrize("moment", ["first process", "first row"])
+def test_an_interrupt_from_a_terminal_ends_a_sweep_in_a_line(moment: str, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    command = [sys.executable, "-m", "solver", "sweep", "bar", "--out", str(folder)]
+    command += ["--vary", "friction=0.1:0.6:5000", "--of", "dissipation", "--on", "processes:1"]
+    options = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}
+    with started(command, start_new_session=True, **options) as process:
+        wait_for(lambda: seen_at_its(moment, folder))
+        # A terminal sends it to all processes of the command.
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate()
+    assert process.returncode == 130
+    assert len(said.decode().splitlines()) <= 1
+
+
+INTERRUPTED_IMPORT = """
+import os, runpy, signal, sys
+
+class Interrupts:
+    def find_spec(self, name, path, target=None):
+        if name == "scipy.optimize":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupts())
+runpy.run_module("solver", run_name="__main__")
+"""
+
+
+def test_an_interrupt_while_libraries_are_imported_ends_in_silence() -> None:
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED_IMPORT], capture_output=True)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
