@@ -259,3 +259,13 @@ def test_what_is_not_a_number_is_no_small_residual():
     force = found.contact_force.copy()
     force[3, 4] = np.nan
     assert not law_residuals(spoiled(found, force=force), problem).largest <= 1.0
+
+
+def test_a_body_that_flies_away_hides_no_force_that_is_missing():
+    values = {**PRESSED, "top": "traction", "top_normal_traction": -1e7}
+    problem = problem_of("block", values)
+    found = reference_of(problem)
+    assert law_residuals(found, problem).largest < ROUNDED
+    upward = problem.motions[:, [1]] * np.ones(problem.n_instants)
+    flown = spoiled(found, displacement=1e12 * upward, force=0.0 * found.contact_force)
+    assert law_residuals(flown, problem).balance > SEEN

@@ -25,6 +25,9 @@ from solver.reference.distance import Fields
 ROUNDED = 1e-4
 """Share of the displacement, of loads and of the forces inside elements that counts as a size of
 jumps and of contact forces: all leave rounding, and some are many digits larger."""
+HIDDEN = 100.0
+"""Largest size of forces over those that act: a body far away leaves rounding that would hide all
+of them, and a body that nothing holds is anywhere."""
 OPENED = 1e-9
 """Opening, as a share of the largest, from which on a bond is broken."""
 KNOWN = Contact, Dirichlet, Neumann, Perfect
@@ -34,8 +37,9 @@ KNOWN = Contact, Dirichlet, Neumann, Perfect
 class LawResiduals:
     """The largest violation of every kind of law over all places and instants.
 
-    Forces are a share of the largest contact force, or of `ROUNDED` of what else acts where that is
-    more; lengths a share of the largest jump, or of `ROUNDED` of the displacement.
+    Forces are a share of the largest contact force, or of `ROUNDED` of what else acts where
+    that is more, but at most `HIDDEN` times what acts; lengths a share of the largest jump, or
+    of `ROUNDED` of the displacement.
 
     Attributes
     ----------
@@ -106,14 +110,18 @@ def law_residuals(
     force = answer.contact_force / problem.scales.force
     outer = _outer_force(problem)
     inner, elastic = _inner_force(problem, displacement)
+    held, prescribed = _prescribed(problem)
+    missing = inner - outer - _contact_force(problem, force)
     force_size = _largest(force, ROUNDED * outer, ROUNDED * elastic)
+    acting = _largest(force, outer, missing[held])
+    if acting > 0.0:
+        force_size = min(force_size, HIDDEN * acting)
     points = list(_points(problem, displacement, force))
     moved = [field for point in points for field in point.jumps]
     length_size = _largest(*moved, ROUNDED * displacement)
 
-    held, prescribed = _prescribed(problem)
     free = np.setdiff1d(np.arange(problem.n_dofs), held)
-    balance = [(inner - outer - _contact_force(problem, force))[free]]
+    balance = [missing[free]]
     glued = 0.0
     if rows is not None:
         balance += _balance_of_parts(problem, displacement, rows.force)
