@@ -1,11 +1,11 @@
-"""Residuals of all laws: how far fields are from what a structure and its contacts obey.
+"""Residuals of all laws: how far fields are from balance and the laws of contact.
 
-Nothing here depends on how the fields were found, nor on what incremental solvers make of a
-problem: forces inside are those of each substructure, and every contact point is asked for its law
-in full, from the first instant to the last.
+Nothing here depends on how the fields were found, nor on what incremental solvers make
+of a problem: forces inside are those of each substructure, and every contact point is
+asked for its law in full, from the first instant to the last.
 
-Laws that say "one of two is zero" are measured by the smaller of both, each as a share of its own
-size: no stiffness has to make a force of a length.
+Laws that say "one of two is zero" are measured by the smaller of both, each as a share
+of its own size: no stiffness has to make a force of a length.
 """
 
 from __future__ import annotations
@@ -23,11 +23,14 @@ from solver.laws.interface import Component
 from solver.reference.distance import Fields
 
 ROUNDED = 1e-4
-"""Share of the displacement, of loads and of the forces inside elements that counts as a size of
-jumps and of contact forces: all leave rounding, and some are many digits larger."""
+"""Share of the displacement, of loads and of the forces inside elements that counts as
+a size of jumps and of contact forces: all leave rounding, and some are much larger."""
 HIDDEN = 100.0
-"""Largest size of forces over those that act: a body far away leaves rounding that would hide all
-of them, and a body that nothing holds is anywhere."""
+"""Largest size of forces over those that act: a body that nothing holds may be far
+away, and leaves rounding that would hide them all."""
+NOTHING = 1e-12
+"""Share of the forces inside elements up to which contact forces and reactions are but
+rounding."""
 OPENED = 1e-9
 """Opening, as a share of the largest, from which on a bond is broken."""
 KNOWN = Contact, Dirichlet, Neumann, Perfect
@@ -37,9 +40,9 @@ KNOWN = Contact, Dirichlet, Neumann, Perfect
 class LawResiduals:
     """The largest violation of every kind of law over all places and instants.
 
-    Forces are a share of the largest contact force, or of `ROUNDED` of what else acts where
-    that is more, but at most `HIDDEN` times what acts; lengths a share of the largest jump, or
-    of `ROUNDED` of the displacement.
+    Forces are a share of the largest contact force, or of `ROUNDED` of what else acts
+    where that is more, but at most `HIDDEN` times what acts; lengths a share of the
+    largest jump, or of `ROUNDED` of the displacement.
 
     Attributes
     ----------
@@ -95,33 +98,27 @@ def law_residuals(
     problem
         What they are to solve.
     rows
-        Of an answer that has them, what both sides of every interface have: then the balance is
-        also that of each substructure, and cuts are asked.
+        Fields of both sides of every interface, of an answer that has them: with these
+        the balance is also that of each substructure, and cuts are asked.
 
     Raises
     ------
     TypeError
         For an interface whose law is not one of the engine's.
     """
-    for name, law in problem.interfaces.items():
-        if not isinstance(law, KNOWN):
-            raise TypeError(f"the law of {name}, {type(law).__name__}, is not known here")
+    _check_known(problem)
     displacement = answer.displacement / problem.scales.displacement
     force = answer.contact_force / problem.scales.force
     outer = _outer_force(problem)
     inner, elastic = _inner_force(problem, displacement)
     held, prescribed = _prescribed(problem)
     missing = inner - outer - _contact_force(problem, force)
-    force_size = _largest(force, ROUNDED * outer, ROUNDED * elastic)
-    acting = _largest(force, outer, missing[held])
-    if acting > 0.0:
-        force_size = min(force_size, HIDDEN * acting)
+    force_size = _force_size(force, outer, elastic, missing[held])
     points = list(_points(problem, displacement, force))
-    moved = [field for point in points for field in point.jumps]
-    length_size = _largest(*moved, ROUNDED * displacement)
+    jumps = [jump for point in points for jump in point.jumps]
+    length_size = _largest(*jumps, ROUNDED * displacement)
 
-    free = np.setdiff1d(np.arange(problem.n_dofs), held)
-    balance = [missing[free]]
+    balance = [np.delete(missing, held, axis=0)]
     glued = 0.0
     if rows is not None:
         balance += _balance_of_parts(problem, displacement, rows.force)
@@ -135,6 +132,31 @@ def law_residuals(
     )
 
 
+def _check_known(problem: Problem) -> None:
+    """Refuse interfaces whose law is none of the engine's: they would count as obeyed."""
+    for name, law in problem.interfaces.items():
+        if not isinstance(law, KNOWN):
+            kind = type(law).__name__
+            raise TypeError(f"the law of {name}, {kind}, is not known here")
+
+
+def _force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> float:
+    """Size that violations of forces are a share of, scaled.
+
+    By contact forces, loads, the parts of forces inside elements without signs, and
+    reactions of what is held; each of shape (n, n_instants).
+    """
+    size = _largest(force, ROUNDED * outer, ROUNDED * elastic)
+    acting = _largest(outer)
+    carried = _largest(force, reaction)
+    # Where bodies move as they like, what holds them has rounding alone to hold.
+    if carried > NOTHING * _largest(elastic):
+        acting = max(acting, carried)
+    if acting > 0.0:
+        size = min(size, HIDDEN * acting)
+    return size
+
+
 @dataclass(frozen=True)
 class _Points:
     """Points of an interface: jumps and forces, shape (n_points, n_instants), scaled.
@@ -146,13 +168,13 @@ class _Points:
     slider, friction
         Position of the slider, and the friction force on the body above.
     opening, pressing
-        Distance of the sides with the compression between them, and the pressing force; None where
-        the pressure is known.
+        Distance of the sides with the compression between them, and the pressing force;
+        None where the pressure is known.
     jumps
         Jumps of the displacement, of all components.
     is_given
-        Whether the normal jump is prescribed, so that nothing says how much a point carries, shape
-        (n_points,).
+        Whether the normal jump is prescribed, so that nothing says how much a point
+        carries, shape (n_points,).
     """
 
     law: Contact
@@ -194,7 +216,7 @@ class _Points:
         return np.diff(self.slider, axis=1, prepend=before)
 
     def _bound(self, slip: Array) -> Array:
-        """Largest friction force b = g(s) min(r + mu N, cap), (n_points, n_instants)."""
+        """Largest friction force g(s) min(r + mu N, cap), (n_points, n_instants)."""
         law, along = self.law, self.law.tangential
         bound = law.by_point(along.bound) * np.ones_like(slip)
         if self.opening is not None and self.pressing is not None:
@@ -236,7 +258,7 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
 
 
 def _jump(problem: Problem, law: Contact, component: Component, displacement: Array) -> Array:
-    """Displacement above minus that below, at every point, shape (n_points, n_instants)."""
+    """Displacement above minus that below at points, shape (n_points, n_instants)."""
     jump = displacement[problem.row_dofs[component.above]]
     if component.below is not None:
         jump = jump - displacement[problem.row_dofs[component.below]]
@@ -274,7 +296,7 @@ def _outer_force(problem: Problem) -> Array:
 
 
 def _inner_force(problem: Problem, displacement: Array) -> tuple[Array, Array]:
-    """Forces that bend and stretch all substructures, and sums of their parts without signs.
+    """Forces that strain all substructures, and sums of their parts without signs.
 
     Both have the shape (n_dofs, n_instants).
     """
@@ -288,7 +310,7 @@ def _inner_force(problem: Problem, displacement: Array) -> tuple[Array, Array]:
 
 
 def _prescribed(problem: Problem) -> tuple[Indices, Array]:
-    """Degrees of freedom that are held, (n,), and where, (n, n_instants); some come twice."""
+    """Degrees of freedom that are held, (n,), and where, (n, n_instants); some twice."""
     given = [law for law in problem.interfaces.values() if isinstance(law, Dirichlet)]
     dofs = [problem.row_dofs[law.rows] for law in given]
     values = [law.values for law in given]
