@@ -92,6 +92,12 @@ def test_the_rod_that_is_pulled_has_one_equilibrium_at_each_instant():
     assert numbers_of_equilibria(found).tolist() == [1] * 5
 
 
+def test_a_rod_that_leaves_a_ridge_says_that_there_are_several_equilibria():
+    found = reference_of(discretise(settings_of("bar", **STRETCHED)))
+    assert found.ambiguous.any()
+    assert np.all(numbers_of_equilibria(found)[found.ambiguous] > 1)
+
+
 def drawn_rod(seed):
     """A short rod with any ends, loads and strength, on a support that may move."""
     random = np.random.default_rng(seed)

@@ -144,6 +144,15 @@ def with_jump(status: Status, problem: Problem, certificate: Certificate | None)
     return replace(status, advice=status.advice + message)
 
 
+def obeyed(residual: float) -> Status:
+    """Status of a run whose iterate is a solution, by the residual of the equations."""
+    return Status(
+        Ending.CONVERGED,
+        f"{_CERTIFIED} in this iterate itself, which no status step had to find (residual "
+        f"{residual:.0e}).",
+    )
+
+
 def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
     """Status of a run at its limit, of iterations or seconds.
 

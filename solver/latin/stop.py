@@ -12,7 +12,7 @@ import numpy as np
 
 from solver.latin.certified import finished
 from solver.latin.cost import WAIT
-from solver.latin.estimate import LAST, ErrorEstimate
+from solver.latin.estimate import LAST, SOLVED, ErrorEstimate
 from solver.latin.iterate import Iterate
 from solver.latin.pgd import PGD
 from solver.latin.status import (
@@ -25,9 +25,11 @@ from solver.latin.status import (
     certified,
     diverged,
     exhausted,
+    obeyed,
     stalled,
     with_jump,
 )
+from solver.reference.distance import kkt_residual
 from solver.refusal import check_range
 
 if TYPE_CHECKING:
@@ -44,6 +46,8 @@ SHARE = 8
 """What may be low enough is computed again at the latest after this part of the iterations."""
 WINDOW = 200
 """Iterations without a lower indicator after which a run is called stalled."""
+OBEYED = 1e-10
+"""KKT residual up to which an iterate is a solution of the discrete problem by itself."""
 FACTOR = 0.99
 """A lower indicator is one below this part of the lowest so far."""
 SELDOM = 16
@@ -127,7 +131,19 @@ class StopState:
             return Decision(self._billed(iterate, began), status=diverged(iterate.number))
         error, status = self._ending(iterate)
         certificate = self.estimate.certificate
+        residual = self._residual(iterate, status)
+        if residual <= OBEYED:
+            status = obeyed(residual)
         decision = Decision(self._billed(iterate, began), error, status, certificate)
+        if residual <= OBEYED and self._may_finish:
+            answer = replace(
+                iterate,
+                number=iterate.number + 1,
+                residual=residual,
+                is_answer=self._searches,
+            )
+            last = replace(decision, estimated_error=residual)
+            return replace(decision, status=None, finished=(answer, last))
         goes_on = self._searches and status is None
         if certificate is None or not self._may_finish or goes_on:
             return decision
@@ -139,6 +155,19 @@ class StopState:
         end = certified(answer, certificate, error, status.advice if status and gave_up else "")
         last = Decision(self._billed(iterate, began), certificate.residual, end, certificate)
         return replace(decision, estimated_error=error, status=None, finished=(answer, last))
+
+    def _residual(self, iterate: Iterate, status: Status | None) -> float:
+        """KKT residual of an iterate that may be a solution though none is certified, or NaN.
+
+        It may be where the stages agree up to rounding. It is dear: so it is computed now and then,
+        and where a run would end without an answer.
+        """
+        gives_up = status is not None and status.ending is not Ending.CONVERGED
+        ends = self._may_finish and not self._searches
+        is_due = gives_up or (ends and status is None and iterate.number % SELDOM == 0)
+        if self.estimate.is_proven or not is_due or iterate.indicator > SOLVED:
+            return math.nan
+        return kkt_residual(iterate, iterate.problem)
 
     def _billed(self, iterate: Iterate, began: float) -> float:
         """Seconds of the whole run, with those since `began`."""

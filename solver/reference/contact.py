@@ -89,7 +89,8 @@ class IncrementalContact:
                 break
             for field, values in zip(done, instants(instant), strict=True):
                 field[:, instant] = values
-            turned[instant], reached[instant] = instants.system.turned, True
+            turned[instant] = instants.system.turned or instants.has_others
+            reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
         return self._judged(instants, done, turned, reached)

@@ -160,7 +160,7 @@ def determinate_forces(problem: Problem) -> Flags:
 
 
 def kkt_residual(fields: Fields, problem: Problem) -> float:
-    """Largest violation of equilibrium and laws, as a share of the forces in play.
+    """Largest violation of equilibrium, laws and what is prescribed, as a share of the forces.
 
     By the equations alone, at every instant, however the fields were found: relative to the largest
     contact force, or to a small share of what the displacement makes of forces inside elements,
@@ -170,7 +170,9 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     force = fields.contact_force / problem.scales.force
     stiffness, all_jumps = assembled_stiffness(problem), jumps(problem)
     outer = external_force(problem)
-    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
+    fixed, prescribed = problem.prescribed
+    free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
+    missed = stiffness.diagonal()[fixed, None] * np.abs(displacement[fixed] - prescribed)
     inner = stiffness @ displacement
     unbalanced = (inner - outer - all_jumps.T @ force)[free]
     elastic = abs(stiffness) @ np.abs(displacement)
@@ -184,7 +186,8 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     jump = all_jumps @ displacement + rules.compliance[:, None] * force
     opening, slip = jump + rules.gap[:, None], np.diff(jump, axis=1, prepend=0.0)
     broken = broken_laws(rules, unit, force, opening, slip) * determinate_forces(problem)
-    largest = max(float(np.abs(part).max(initial=0.0)) for part in (unbalanced, broken))
+    wrong = unbalanced, broken, missed
+    largest = max(float(np.abs(part).max(initial=0.0)) for part in wrong)
     return largest / size if size > 0.0 else largest
 
 

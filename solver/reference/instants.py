@@ -41,9 +41,12 @@ class Instants:
     ----------
     jumps_at
         First instant at which no solution goes on from the one before; None while all do.
+    has_others
+        Whether another solution of the last instant was met, which is not stable.
     """
 
     jumps_at: int | None = None
+    has_others = False
 
     def __init__(
         self,
@@ -78,6 +81,7 @@ class Instants:
         (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
         """
         condensed, rules = self._condensed, self._rules
+        self.has_others = False
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
             return Increment(*map(np.zeros_like, still))
@@ -128,13 +132,13 @@ class Instants:
         # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
         # or slips as a whole.
         known = [states[:, instant] for states in self._guesses]
-        guesses = [self._states, *known]
-        # Where there may be several solutions, the one that goes on from the instant before.
-        if self._has_guess and self._starts.from_guess and not rules.is_curved:
-            guesses[:2] = guesses[1::-1]
         still = np.zeros_like(sides.held)
         nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
         begin = InstantSolution(self._states, nothing, still)
+        guesses = begin.guesses(known)
+        # Where there may be several solutions, the one that goes on from the instant before.
+        if self._has_guess and self._starts.from_guess and not rules.is_curved:
+            guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
         if solved is None and not self._is_lost:
             if rules.is_curved:
@@ -178,7 +182,7 @@ class Instants:
         while share < 1.0:
             target = min(share + length, 1.0)
             part = begin.towards(end, target)
-            following = newton_at(target).follow(at, part, [at.states, *known])
+            following = newton_at(target).follow(at, part, at.guesses(known))
             if following is not None:
                 at, share, length = following, target, 2.0 * length
             elif length > SHORTEST:
@@ -214,6 +218,7 @@ class Instants:
             near = self._newton.near(at, end)
             if near is not None and self._newton.is_stable(near, end):
                 return near
+            self.has_others |= near is not None
             if near is not None and _are_equal(at.slip, before.slip):
                 at = self._newton.leave(near, end)
         return None
@@ -231,7 +236,7 @@ class Instants:
         """
         before, after = fallen
         newton = self._newton.with_friction_left(after)
-        slid = newton.follow(at, sides[1], [at.states, *known])
+        slid = newton.follow(at, sides[1], at.guesses(known))
         if slid is not None:
             return slid
         slid, share = self._followed(

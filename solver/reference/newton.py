@@ -101,21 +101,21 @@ class Newton:
         return slope if self._fallen is None else np.maximum(slope, 0.0)
 
     def follow(
-        self, at: InstantSolution, sides: Sides, guesses: Iterable[States]
+        self, at: InstantSolution, sides: Sides, guesses: Iterable[InstantSolution]
     ) -> InstantSolution | None:
         """Go on to other right sides, None where no guess leads there or to another branch."""
-        for states in guesses:
-            reached = self.seek(self.system, states, sides, at)
+        for guess in guesses:
+            reached = self.seek(self.system, guess, sides)
             if reached and (not self._softens or self._goes_on(at, reached, sides)):
                 return reached
         return None
 
-    def approach(self, at: InstantSolution, sides: Sides) -> Iterator[States]:
-        """States that have come to rest with softer and softer springs, from those of a solution.
+    def approach(self, at: InstantSolution, sides: Sides) -> Iterator[InstantSolution]:
+        """Solutions with softer and softer springs, whose states have come to rest.
 
-        None where there are too many jumps.
+        The first is sought from a solution. None where there are too many jumps.
         """
-        condensed, states, share = self._condensed, at.states, FIRST
+        condensed, share = self._condensed, FIRST
         if len(condensed.stiffness) > MOST_JUMPS:
             return
         alone, moved = np.diagonal(condensed.stiffness), np.zeros_like(sides.load)
@@ -124,12 +124,12 @@ class Newton:
             held = condensed.elastic + np.diagflat(springs)
             sprung = LinearSystem(condensed, held, condensed.gauge[:, :0], self.system.stop)
             pulled = replace(sides, load=sides.load + springs * moved)
-            solved = self.seek(sprung, states, pulled, at)
+            solved = self.seek(sprung, at, pulled)
             if solved is not None:
-                before, states, moved = states, solved.states, solved.step.strained
+                before, at, moved = at, solved, solved.step.strained
                 share = max(SOFTER * share, SOFTEST)
-                if np.array_equal(states, before):
-                    yield states
+                if np.array_equal(at.states, before.states):
+                    yield at
             elif share < STIFFEST:
                 share *= STIFFER
             else:
@@ -137,7 +137,7 @@ class Newton:
 
     def near(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
         """The solution near what is none yet, stable or not; None where none is."""
-        return self.seek(self.system, at.states, sides, at)
+        return self.seek(self.system, at, sides)
 
     def is_stable(self, at: InstantSolution, sides: Sides) -> bool:
         """Whether no slip of a solution costs less than it gains."""
@@ -170,10 +170,11 @@ class Newton:
         return at._replace(slip=at.states * np.maximum(slip + 0.5 * length * way, 0.0))
 
     def seek(
-        self, system: LinearSystem, states: States, sides: Sides, near: InstantSolution
+        self, system: LinearSystem, guess: InstantSolution, sides: Sides
     ) -> InstantSolution | None:
-        """Seek states and slip, from those of a solution nearby; None where they cycle."""
-        rules, slip, force = self._rules, near.slip, near.step.force
+        """Seek states and slip, from those of a guess; None where they cycle."""
+        rules, states = self._rules, guess.states
+        slip, force = guess.slip, guess.step.force
         pieces: list[bytes] = []
         for _ in range(NEWTON_LIMIT):
             tangent, piece = sides, states.tobytes()
@@ -211,7 +212,10 @@ class Newton:
         return replace(sides, bound=bound), is_capped
 
     def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides) -> bool:
-        """Whether forces balance, and friction is what slip has left, not only by its tangent."""
+        """Whether forces balance, and friction is what slip has left, not only by its tangent.
+
+        What sticks carries no more: its cap was that of the step before.
+        """
         slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest, slack):
             return False
@@ -219,9 +223,12 @@ class Newton:
         if not rules.is_curved:
             return True
         most = rules.before_slip(sides.bound, force)
-        wrong = np.abs(force + at.states * self._factor(np.abs(at.slip)) * most)
+        most = self._factor(np.abs(at.slip)) * most
+        sticks = (at.states == HELD) & ~rules.normal
+        excess = np.where(sticks, np.abs(force) - most - slack, 0.0)
+        wrong = np.where(np.abs(at.states) == 1, np.abs(force + at.states * most), excess)
         largest = max(self.largest, np.abs(force).max())
-        return bool(wrong[np.abs(at.states) == 1].max(initial=0.0) <= SETTLED * largest)
+        return bool(wrong.max(initial=0.0) <= SETTLED * largest)
 
     def _goes_on(self, at: InstantSolution, reached: InstantSolution, sides: Sides) -> bool:
         """Whether a solution is the one that another goes over into.

@@ -7,6 +7,7 @@ where the contact is open or there is no friction.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -221,6 +222,10 @@ class InstantSolution(NamedTuple):
     states: States
     step: Increment
     slip: Array
+
+    def guesses(self, known: Iterable[States]) -> list[InstantSolution]:
+        """The solution, and the same with other states."""
+        return [self, *(self._replace(states=states) for states in known)]
 
 
 class Starts:
