@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from small_scenes import SMALL
 
-from solver.latin import solve
+from solver.latin import Ending, solve
 from solver.laws import Perfect
 from solver.reference.assembly import jumps
+from solver.reference.distance import kkt_residual
 from solver.reference.incremental import reference_of
 from solver.reference.laws_obeyed import RowFields, law_residuals
 from solver.reference.rules import rules_of
@@ -269,3 +270,34 @@ def test_a_body_that_flies_away_hides_no_force_that_is_missing():
     upward = problem.motions[:, [1]] * np.ones(problem.n_instants)
     flown = spoiled(found, displacement=1e12 * upward, force=0.0 * found.contact_force)
     assert law_residuals(flown, problem).balance > SEEN
+    assert kkt_residual(flown, problem) > SEEN
+
+
+def test_a_run_whose_body_flies_away_is_not_called_solved():
+    # Held up along its left side and moved along its top, it may turn about their corner: it
+    # came to 1e11 m, where rounding hid all that did not balance.
+    values = {
+        "elements": 8,
+        "elements_up": 4,
+        "substructures": 1,
+        "substructures_up": 2,
+        "multiscale": False,
+        "cycles": 2,
+        "instants": 3,
+        "young": 6671583237.097,
+        "height": 0.13731224608003947,
+        "radius": 7546.249705798802,
+        "left": "dragged",
+        "left_normal_traction": -20091.111858427146,
+        "left_normal_slope": 0.13308225528605333,
+        "left_tangential_displacement": -6.070302211682257e-07,
+        "top": "dragged",
+        "top_normal_traction": -20091.111858427146,
+        "top_normal_load": "delayed",
+        "top_tangential_displacement": -3.3688562948928447e-07,
+        "body_force_y": 622301449.6919417,
+    }
+    settings = CATALOGUE["block"].checked(values)
+    run = solve(discretise(settings), method_of(settings))
+    assert run.status.ending is not Ending.CONVERGED
+    assert not run.is_certified

@@ -20,17 +20,11 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
 from solver.laws import Contact, Dirichlet, Neumann, Perfect
 from solver.laws.interface import Component
-from solver.reference.distance import Fields
+from solver.reference.distance import Fields, force_size
 
 ROUNDED = 1e-4
-"""Share of the displacement, of loads and of the forces inside elements that counts as
-a size of jumps and of contact forces: all leave rounding, and some are much larger."""
-HIDDEN = 100.0
-"""Largest size of forces over those that act: a body that nothing holds may be far
-away, and leaves rounding that would hide them all."""
-NOTHING = 1e-12
-"""Share of the forces inside elements up to which contact forces and reactions are but
-rounding."""
+"""Share of the displacement that counts as a size of jumps: it leaves rounding, and may
+be much larger."""
 OPENED = 1e-9
 """Opening, as a share of the largest, from which on a bond is broken."""
 KNOWN = Contact, Dirichlet, Neumann, Perfect
@@ -40,9 +34,8 @@ KNOWN = Contact, Dirichlet, Neumann, Perfect
 class LawResiduals:
     """The largest violation of every kind of law over all places and instants.
 
-    Forces are a share of the largest contact force, or of `ROUNDED` of what else acts
-    where that is more, but at most `HIDDEN` times what acts; lengths a share of the
-    largest jump, or of `ROUNDED` of the displacement.
+    Forces are a share of `force_size`; lengths a share of the largest jump, or of
+    `ROUNDED` of the displacement where that is more.
 
     Attributes
     ----------
@@ -113,7 +106,7 @@ def law_residuals(
     inner, elastic = _inner_force(problem, displacement)
     held, prescribed = _prescribed(problem)
     missing = inner - outer - _contact_force(problem, force)
-    force_size = _force_size(force, outer, elastic, missing[held])
+    size = force_size(force, outer, elastic, missing[held])
     points = list(_points(problem, displacement, force))
     jumps = [jump for point in points for jump in point.jumps]
     length_size = _largest(*jumps, ROUNDED * displacement)
@@ -122,13 +115,13 @@ def law_residuals(
     glued = 0.0
     if rows is not None:
         balance += _balance_of_parts(problem, displacement, rows.force)
-        glued = _glued(problem, rows, length_size, force_size)
+        glued = _glued(problem, rows, length_size, size)
     return LawResiduals(
-        balance=_share(_largest(*balance), force_size),
+        balance=_share(_largest(*balance), size),
         held=_share(_largest(displacement[held] - prescribed), length_size),
         glued=glued,
-        pressing=_largest(*(point.across(length_size, force_size) for point in points)),
-        friction=_largest(*(point.along(length_size, force_size) for point in points)),
+        pressing=_largest(*(point.across(length_size, size) for point in points)),
+        friction=_largest(*(point.along(length_size, size) for point in points)),
     )
 
 
@@ -138,23 +131,6 @@ def _check_known(problem: Problem) -> None:
         if not isinstance(law, KNOWN):
             kind = type(law).__name__
             raise TypeError(f"the law of {name}, {kind}, is not known here")
-
-
-def _force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> float:
-    """Size that violations of forces are a share of, scaled.
-
-    By contact forces, loads, the parts of forces inside elements without signs, and
-    reactions of what is held; each of shape (n, n_instants).
-    """
-    size = _largest(force, ROUNDED * outer, ROUNDED * elastic)
-    acting = _largest(outer)
-    carried = _largest(force, reaction)
-    # Where bodies move as they like, what holds them has rounding alone to hold.
-    if carried > NOTHING * _largest(elastic):
-        acting = max(acting, carried)
-    if acting > 0.0:
-        size = min(size, HIDDEN * acting)
-    return size
 
 
 @dataclass(frozen=True)
