@@ -22,6 +22,11 @@ next to nothing beside pressure has no digits that a run could find."""
 ELASTIC = 1e-4
 """Share of the forces inside elements that counts like a contact force: they leave so much more
 rounding. In slender bodies they are 1e5 times what acts on them."""
+HIDDEN = 100.0
+"""Largest size of forces over those that act: a body that nothing holds may be far away, and leaves
+rounding that would hide them all."""
+NOTHING = 1e-12
+"""Share of the forces inside elements up to which contact forces and reactions are but rounding."""
 
 
 class Fields(Protocol):
@@ -174,11 +179,10 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
     missed = stiffness.diagonal()[fixed, None] * np.abs(displacement[fixed] - prescribed)
     inner = stiffness @ displacement
-    unbalanced = (inner - outer - all_jumps.T @ force)[free]
+    missing = inner - outer - all_jumps.T @ force
+    unbalanced = missing[free]
     elastic = abs(stiffness) @ np.abs(displacement)
-    size = max(
-        float(np.abs(part).max(initial=0.0)) for part in (ELASTIC * elastic, ELASTIC * outer, force)
-    )
+    size = force_size(force, outer, elastic, missing[fixed])
     rules = rules_of(problem)
     # Lengths become forces by the stiffness of the jump's own degrees of freedom.
     unit = abs(all_jumps) @ stiffness.diagonal()
@@ -189,6 +193,22 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     wrong = unbalanced, broken, missed
     largest = max(float(np.abs(part).max(initial=0.0)) for part in wrong)
     return largest / size if size > 0.0 else largest
+
+
+def force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> float:
+    """Size that violations of forces are a share of, scaled.
+
+    By contact forces, loads, the parts of forces inside elements without signs, and reactions of
+    what is held; each of shape (n, n_instants).
+    """
+    sizes = [force, ELASTIC * outer, ELASTIC * elastic]
+    size = max(float(np.abs(part).max(initial=0.0)) for part in sizes)
+    acting = float(np.abs(outer).max(initial=0.0))
+    carried = max(float(np.abs(part).max(initial=0.0)) for part in (force, reaction))
+    # Where bodies move as they like, what holds them has rounding alone to hold.
+    if carried > NOTHING * float(elastic.max(initial=0.0)):
+        acting = max(acting, carried)
+    return min(size, HIDDEN * acting) if acting > 0.0 else size
 
 
 def broken_laws(rules: Rules, unit: Array, force: Array, opening: Array, slip: Array) -> Array:

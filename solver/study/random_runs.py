@@ -2,7 +2,8 @@
 
 Every setting is drawn by its own definition, over the range that its slider shows, so that a new
 one is drawn as well. What has to fit together is drawn together: elements and their aspect, and
-loads, which are measured by what friction can carry.
+loads, which are measured by what friction can carry, and lengths and stiffnesses of the law of
+friction, which are measured by how far bodies move and how stiff they are.
 """
 
 from __future__ import annotations
@@ -40,12 +41,35 @@ CHANGED = 0.15
 """How often a setting differs from its default."""
 SELDOM = 0.2
 """How often there is a load that a scene has not by itself."""
+OFTEN = {
+    "friction_law": 0.6,
+    "strength": 0.8,
+    "left": 0.6,
+    "right": 0.6,
+    "top": 0.6,
+    "left_end": 0.6,
+    "right_end": 0.6,
+    "grip": 0.6,
+    "bending": 0.6,
+    "linear_stage": 0.3,
+    "cycles": 0.3,
+    "temperature": 0.4,
+    "settlement": 0.4,
+}
+"""How often a setting is drawn that makes another problem, or has another method, of a scene: all
+kinds of ends, sides, laws and loads are to come together. Of a load, how often there is one."""
+WITH_OPENING = 0.4
+"""How often a wall that has room for an opening has one."""
 SMALLEST, LARGEST, OF_BRICKS = 0.03, 10.0, 0.5
 """Loads over what friction carries; of bricks, which hang on nothing, the largest."""
 PRESSING = "pressure", "normal_stress", "tension"
 """Loads that are as large as what presses."""
 WITHOUT_PATH = "normal_stress", "shear_stress", "unit_weight", "body_force_x", "body_force_y"
 """Loads that do not go on over time."""
+SLIPS = 0.01, 10.0
+"""Slip at which friction is the last, over how far bodies move."""
+SPRINGS = 1.0, 1e4
+"""Stiffness of contacts over that of bodies."""
 TRIALS = 10_000
 
 
@@ -113,7 +137,7 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     for name, definition in definitions.items():
         is_method = about(definition).group == "Method" and name != "linear_stage"
         # What does nothing by itself is taken back, unless another setting is drawn to go with it.
-        often = CHANGED if rest.applies(name) else 0.5
+        often = OFTEN.get(name, CHANGED if rest.applies(name) else 0.5)
         if name in values or name in KEPT or (is_method and not is_mixed):
             continue
         if generator.random() < often:
@@ -134,6 +158,7 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
 
 def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> None:
     """Change what was drawn to what fits the mesh."""
+    definitions = kind.definitions()
     if "friction_factors" in values:
         some = {n: values[n] for n in ("layers", "wires", "construction") if n in values}
         each = kind.checked(some).points("friction_factors")
@@ -142,10 +167,15 @@ def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> No
         shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
         values["layer_lengths"] = [[n, s] for n, s in enumerate(generator.permutation(shares), 1)]
     if "elements_up" in values:  # elements up to a hundred times as long as high, or as wide
-        length = values.setdefault("length", kind.definitions()["length"].default)
+        length = values.setdefault("length", definitions["length"].default)
         power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
         aspect = 10.0 ** generator.uniform(-power, power)
         values[kind.across] = length * values["elements_up"] / (values["elements"] * aspect)
+    if "opening" in definitions and generator.random() < WITH_OPENING:
+        room = values["bricks"] - 2, values["courses"] - 1
+        if min(room) > 0:
+            sizes = generator.integers(1, np.add(room, 1)).tolist()
+            values["opening"], values["opening_height"] = sizes
     if "cycles" in values:
         # Every cycle takes instants of its own.
         values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))
@@ -165,7 +195,7 @@ def _loads(kind: Any, values: Mapping[str, Any], generator: Generator) -> dict[s
         record = about(definition)
         is_load = (record.path or name in WITHOUT_PATH) and record.unit in scales
         is_seldom = not definition.default and rest.applies(name)
-        if not is_load or (is_seldom and generator.random() > SELDOM):
+        if not is_load or (is_seldom and generator.random() > OFTEN.get(name, SELDOM)):
             continue
         share = log_uniform(generator, SMALLEST, largest)
         factor = mu * (share if generator.random() < 0.7 else -share)
@@ -177,22 +207,70 @@ def _loads(kind: Any, values: Mapping[str, Any], generator: Generator) -> dict[s
             factor = -1.0 if generator.random() < 0.9 else 1.0
         sizes[name] = factor * scales[record.unit]
     for name in ("cohesion", "friction_cap"):
-        if name in values and (pressing := sizes.get("pressure", sizes.get("normal_stress"))):
+        pressing = sizes.get("pressure", sizes.get("normal_stress"))
+        pressing = pressing or scales.get(about(definitions[name]).unit)
+        if name in values and pressing:
             sizes[name] = given["friction"] * pressing * log_uniform(generator, 0.01, 10.0)
+    sizes |= _law_of_friction(kind, given, scales["m"], values, generator)
     if "radius" in definitions:
         flat = given["length"] ** 2 / (8.0 * scales["m"])
         sizes["radius"] = flat * 10.0 ** generator.uniform(-1.5, 1.5)
     return sizes
 
 
-def _scales(kind: Any, given: Mapping[str, Any], generator: Generator) -> dict[str, float]:
-    """What presses on a scene, and strains it as much, by unit."""
+def _law_of_friction(
+    kind: Any,
+    given: Mapping[str, Any],
+    moved: float,
+    values: Mapping[str, Any],
+    generator: Generator,
+) -> dict[str, Any]:
+    """Lengths and stiffnesses of what was drawn of the law of friction.
+
+    Slips are measured by how far bodies move, m; springs by the stiffness of bodies.
+    """
+    sizes: dict[str, Any] = {}
+    if "slip_length" in values:
+        sizes["slip_length"] = moved * log_uniform(generator, *SLIPS)
+    if isinstance(table := values.get("strength"), list):
+        last = moved * log_uniform(generator, *SLIPS)
+        sizes["strength"] = [[last * slip / table[-1][0], factor] for slip, factor in table]
+    stiffness = _stiffness(kind, given)
+    for name in ("tangential_stiffness", "normal_stiffness"):
+        if name in values:
+            sizes[name] = stiffness * log_uniform(generator, *SPRINGS)
+    return sizes
+
+
+def _stiffness(kind: Any, given: Mapping[str, Any]) -> float:
+    """Stiffness of a body, per length along a rod, N/m^2, or per area, N/m^3."""
+    length: float = given["length"]
     if "construction" in given:
-        names = {"construction", "layers"} & given.keys()
-        section = kind.checked({name: given[name] for name in names}).section
+        return float(_section(kind, given).stiffness) / length**2
+    if "section" in given:
+        return float(given["young"] * given["section"]) / length**2
+    return float(given["young"]) / length
+
+
+def _section(kind: Any, given: Mapping[str, Any]) -> Any:
+    """Section of a rope."""
+    names = {"construction", "layers"} & given.keys()
+    return kind.checked({name: given[name] for name in names}).section
+
+
+def _scales(kind: Any, given: Mapping[str, Any], generator: Generator) -> dict[str, float]:
+    """What presses on a scene, how far that moves it, and strains it as much, by unit."""
+    if "construction" in given:
+        section = _section(kind, given)
         strain = 10.0 ** generator.uniform(-4.0, -2.0)
-        bent = strain * abs(math.sin(section.layers[-1].lay)) / section.radii[-1]
-        return {"N": section.stiffness * strain, "1/m": bent}
+        inclined, radius = abs(math.sin(section.layers[-1].lay)), section.radii[-1]
+        tension = section.stiffness * strain
+        return {
+            "N": tension,
+            "1/m": strain * inclined / radius,
+            "N/m": tension * inclined**2 / radius,
+            "m": strain * radius,
+        }
     length = given["length"]
     if "section" in given:
         pressed = given["pressure"] * length
@@ -200,7 +278,8 @@ def _scales(kind: Any, given: Mapping[str, Any], generator: Generator) -> dict[s
         warm = strain / given.get("expansion", math.inf)
         return {"N": pressed, "N/m": given["pressure"], "m": strain * length, "K": warm}
     if "slack" in given:
-        return {}
+        weight, spring = given["weight"], given["spring"]
+        return {"Pa": weight / length, "m": weight / spring}
     height = given[kind.across] * given.get("layers", 1) * given.get("courses", 1)
     strain = 10.0 ** generator.uniform(-7.0 if "layers" in given else -6.0, -3.0)
     pressure = strain * given["young"]

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from solver.latin import Ending, Solution
-from solver.reference.distance import distance_to, kkt_residual
+from solver.reference.distance import distance_to
+from solver.reference.laws_obeyed import LawResiduals, RowFields, law_residuals
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.study.page import aligned, bullets, html_table, line_of, text_of, write_csv, write_page
@@ -37,15 +38,30 @@ class Verdict(StrEnum):
     WRONG = "wrong"
 
 
+class Judge(StrEnum):
+    """The judge of a run."""
+
+    LAWS = "laws"
+    REFERENCE = "reference"
+    NOTHING = "nothing"
+
+
 MEANING: dict[str, str] = {
-    Verdict.RIGHT: "the errors are as small as they have to be; or certified, and the equations "
-    "hold up to rounding where there are several solutions",
+    Verdict.RIGHT: "balance and all laws hold up to rounding; or the distance to a reference that "
+    "obeys them is as small as it has to be",
     Verdict.UNSOLVED: "not the right answer, and the run says so, and what to try",
     Verdict.REFUSED: "a problem without a solution, or senseless, is refused in words",
     Verdict.UNCLEAR: "called converged, not certified, and not judged, as the reference finds "
-    "several solutions or none",
-    Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
-    "not finite, or ended in a warning or an exception",
+    "several solutions or none, or breaks a law",
+    Verdict.WRONG: "called converged with a larger error, certified and breaks a law, not finite, "
+    "or ended in a warning or an exception",
+}
+JUDGES: dict[str, str] = {
+    Judge.LAWS: "the answer obeys balance and all laws up to rounding, or is certified and does "
+    "not; a certified answer is what the reference's own solver finds, so its distance to the "
+    "reference says nothing",
+    Judge.REFERENCE: "by the distance to a reference that obeys them",
+    Judge.NOTHING: "no judge is needed, or there is none: not solved, refused, broken off, unclear",
 }
 NOT_WRONG = "not wrong"
 PASSING = {
@@ -59,7 +75,7 @@ PASSING = {
 PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 AT_ROUNDING = 1e-8
-"""Residual of a certified solution, at most, by the equations alone."""
+"""Largest violation of any law that rounding may leave, as a share of what is in play."""
 APART = 1e-6
 """Distance from which on two fields that solve the equations are two solutions."""
 RIGHT_UP_TO = 1e-6
@@ -69,7 +85,8 @@ METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"
 FILES = "stability.csv", "stability.html"
 COLUMNS = (
     *("scene", "case", "method", "expected", "verdict", "passed", "status", "certified"),
-    *("iterations", "estimated_error", "error_displacement", "error_force", "residual"),
+    *("judged_by", "laws", "worst_law", "reference_laws"),
+    *("iterations", "estimated_error", "error_displacement", "error_force"),
     *("indicator", "behaviour", "seconds", "doubt", "advice", "settings"),
 )
 LONG = "doubt", "advice", "settings"
@@ -79,11 +96,15 @@ SHOWN = {
     **{"method": ("method", 12), "status": ("status", 10), "certified": ("certified", 9)},
     **{"iterations": ("iter.", 5), "estimated_error": ("estimate", 8), "seconds": ("s", 6)},
     **{"error_displacement": ("error W", 8), "error_force": ("error F", 8)},
+    **{"judged_by": ("judged by", 9), "laws": ("laws", 8)},
 }
 """Columns of a console."""
 NOTES = (
-    "A run passes if it comes to what is expected of it. Right are errors of at most 1e-6, and of "
-    "random runs errors of the contact force of at most the accuracy.",
+    "A run passes if it comes to what is expected of it. Right is an answer that breaks no law by "
+    "more than 1e-8; of runs that are not certified also errors of at most 1e-6, and of random "
+    "runs errors of the contact force of at most the accuracy.",
+    "Laws: the largest violation of balance, held displacements, cuts, Signorini's and Coulomb's "
+    "law at any place and instant, as a share of the largest contact force, or jump.",
     "Errors: distance to the reference solution over space and time, as a share of it; where it is "
     "zero, as a share of the load, or in m and N.",
 )
@@ -138,9 +159,10 @@ class Outcome:
     ----------
     ending, advice
         Its status; `REFUSED` or `BROKEN`, and why.
-    residual, floor
-        Of a certified run by `kkt_residual`, and, where it is above rounding, of the reference,
-        below which rounding lets nobody come: layers of 5000 times their thickness have 3e-7.
+    laws, worst_law
+        Largest violation of any law by the answer, and by which kind of law.
+    reference_laws
+        The same of the reference; one that breaks a law judges no answer.
     doubt
         Why the reference is not the one solution, or empty.
     """
@@ -155,8 +177,9 @@ class Outcome:
     behaviour: float = math.nan
     error_displacement: float = math.nan
     error_force: float = math.nan
-    residual: float = math.nan
-    floor: float = 0.0
+    laws: float = math.nan
+    worst_law: str = ""
+    reference_laws: float = math.nan
     doubt: str = ""
 
 
@@ -177,19 +200,16 @@ def run(scene: str, values: Mapping[str, object]) -> Outcome:
 
 
 def _measured(solution: Solution) -> Outcome:
-    """Compare a solution with the reference, and with the equations if it is certified."""
+    """Compare a solution with the laws, and with the reference where there is one."""
     iterate, status, problem = solution.iterate, solution.status, solution.iterate.problem
     if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
         return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
+    rows = RowFields(iterate.boundary_displacement, iterate.boundary_force)
+    laws = law_residuals(iterate, problem, rows)
     reference, doubt, _ = known_reference(problem)
     distance = None if reference is None else distance_to(reference, problem)
-    residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
+    of_reference = None if reference is None else law_residuals(reference, problem)
     error = distance.of_friction_force(iterate) if distance else math.nan
-    floor = 0.0
-    if reference and (residual > AT_ROUNDING or (solution.is_certified and error > APART)):
-        floor = kkt_residual(reference, problem)
-    if error > APART and max(residual, floor) <= AT_ROUNDING:
-        doubt = doubt or "there are several solutions: this one, and the reference"
     last = solution.records[-1] if solution.records else None
     return Outcome(
         status.ending,
@@ -202,41 +222,66 @@ def _measured(solution: Solution) -> Outcome:
         behaviour=iterate.behaviour,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=error,
-        residual=residual,
-        floor=floor,
-        doubt=doubt,
+        laws=laws.largest,
+        worst_law=laws.worst,
+        reference_laws=of_reference.largest if of_reference else math.nan,
+        doubt=doubt or _doubt(laws, of_reference, error),
     )
 
 
-def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Verdict:
+def _doubt(laws: LawResiduals, of_reference: LawResiduals | None, error: float) -> str:
+    """Why a reference is not the one solution, from its own laws and those of an answer."""
+    if of_reference is None:
+        return ""
+    if not of_reference.largest <= AT_ROUNDING:
+        return f"the reference breaks a law ({of_reference.worst}) by {of_reference.largest:.1e}"
+    if laws.largest <= AT_ROUNDING and error > APART:
+        return "there are several solutions: this one, and the reference"
+    return ""
+
+
+class Judgement(NamedTuple):
+    """A verdict, and the judge that found it."""
+
+    verdict: Verdict
+    by: Judge
+
+
+def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Judgement:
     """Judge an outcome by its numbers and its status alone.
 
-    It is right up to these errors of contact force and displacement.
+    Laws come first, and of a certified answer they alone count. Otherwise it is right up to these
+    errors of contact force and displacement.
     """
     if outcome.ending == BROKEN or not outcome.advice:
-        return Verdict.WRONG
+        return Judgement(Verdict.WRONG, Judge.NOTHING)
     if outcome.ending == REFUSED:
-        return Verdict.REFUSED
-    if outcome.certified and not outcome.residual <= max(AT_ROUNDING, 2.0 * outcome.floor):
-        return Verdict.WRONG
-    if outcome.error_force <= force and outcome.error_displacement <= displacement:
-        return Verdict.RIGHT
+        return Judgement(Verdict.REFUSED, Judge.NOTHING)
+    if outcome.laws <= AT_ROUNDING:
+        return Judgement(Verdict.RIGHT, Judge.LAWS)
+    if outcome.certified:
+        return Judgement(Verdict.WRONG, Judge.LAWS)
+    has_reference = outcome.reference_laws <= AT_ROUNDING
+    is_near = outcome.error_force <= force and outcome.error_displacement <= displacement
+    if has_reference and is_near:
+        return Judgement(Verdict.RIGHT, Judge.REFERENCE)
     if outcome.ending != Ending.CONVERGED:
-        return Verdict.UNSOLVED
+        return Judgement(Verdict.UNSOLVED, Judge.NOTHING)
     if outcome.doubt:
-        # One solution of several is right.
-        return Verdict.RIGHT if outcome.certified else Verdict.UNCLEAR
-    return Verdict.WRONG
+        return Judgement(Verdict.UNCLEAR, Judge.NOTHING)
+    by = Judge.REFERENCE if has_reference else Judge.NOTHING
+    return Judgement(Verdict.WRONG, by)
 
 
 def row_of(case: StabilityCase, outcome: Outcome) -> Row:
     """A run as it is written: a case, what it came to, and what that is worth."""
-    verdict = judge(outcome, case.error_force, case.error_displacement)
+    judgement = judge(outcome, case.error_force, case.error_displacement)
     return {
         **{**vars(case), **vars(outcome)},
         "case": case.title,
-        "verdict": str(verdict),
-        "passed": "pass" if verdict in PASSING[case.expected] else "FAIL",
+        "verdict": str(judgement.verdict),
+        "judged_by": str(judgement.by),
+        "passed": "pass" if judgement.verdict in PASSING[case.expected] else "FAIL",
         "status": str(outcome.ending),
         "settings": json.dumps(case.values),
         "command": case.command,
@@ -260,14 +305,24 @@ def summary(runs: Sequence[Row]) -> str:
 
 def counts(runs: Sequence[Row]) -> list[list[str]]:
     """Numbers of runs by verdict, and what each means; with a head."""
-    numbers = Counter(run["verdict"] for run in runs)
-    rows = ([name, str(numbers[name]), text] for name, text in MEANING.items())
-    return [["verdict", "runs", "what it means"], *rows]
+    return _counted(runs, "verdict", MEANING)
+
+
+def judges(runs: Sequence[Row]) -> list[list[str]]:
+    """Numbers of runs by what judged them, and what each means; with a head."""
+    return _counted(runs, "judged_by", JUDGES)
+
+
+def _counted(runs: Sequence[Row], column: str, meaning: Mapping[str, str]) -> list[list[str]]:
+    numbers = Counter(run[column] for run in runs)
+    rows = ([str(name), str(numbers[name]), text] for name, text in meaning.items())
+    return [[column.replace("_", " "), "runs", "what it means"], *rows]
 
 
 def last_lines(runs: Sequence[Row]) -> list[str]:
     """What a console ends with; what did not pass, with the command that repeats it."""
-    lines = ["", summary(runs), aligned(counts(runs)), "", *NOTES]
+    tables = [aligned(counts(runs)), "", aligned(judges(runs))]
+    lines = ["", summary(runs), *tables, "", *NOTES]
     for run in runs:
         if not passed(run):
             lines += ["", line_of(run, SHOWN), f"      {run['advice']}", f"      {run['command']}"]
@@ -284,7 +339,8 @@ def write_stability(runs: Sequence[Row], folder: Path) -> None:
         every += [[text_of(row[column]) for column in short], [escape(words)]]
     write_csv(folder / FILES[0], COLUMNS, cells)
     sections = [
-        f"<p><b>{escape(summary(runs))}</b></p>\n{html_table(counts(runs))}\n{bullets(NOTES)}",
+        f"<p><b>{escape(summary(runs))}</b></p>\n{html_table(counts(runs))}\n"
+        f"{html_table(judges(runs))}\n{bullets(NOTES)}",
         f"<h2>Every run</h2>\n{html_table(every)}",
     ]
     write_page(folder / FILES[1], "Stability on extreme or random runs", sections)

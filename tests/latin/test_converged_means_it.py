@@ -54,7 +54,7 @@ def test_the_papers_method_ends_right_or_told_on_a_hard_command(command):
     # Its own tolerance, 1e-10, would hide what the accuracy says, and take long.
     settings = settings.replace(method="paper", tolerance=settings.tolerance, max_iterations=1000)
     outcome = outcome_of(settings)
-    assert judge(outcome, settings.accuracy) is not Verdict.WRONG, outcome
+    assert judge(outcome, settings.accuracy).verdict is not Verdict.WRONG, outcome
 
 
 @pytest.mark.parametrize("command", HARD)

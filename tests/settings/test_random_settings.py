@@ -56,4 +56,4 @@ def test_any_run_is_right_or_says_that_it_is_not_or_is_refused(scene: str) -> No
         values = values_of(scene, row)
         outcome = run(scene, values)
         accuracy = values.get("accuracy", CATALOGUE[scene].checked({}).accuracy)
-        assert judge(outcome, accuracy) is not Verdict.WRONG, (values, outcome)
+        assert judge(outcome, accuracy).verdict is not Verdict.WRONG, (values, outcome)

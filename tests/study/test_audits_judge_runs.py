@@ -14,15 +14,15 @@ from small_scenes import SMALL
 from solver.commands import reports as report_commands
 from solver.commands.cli import main
 from solver.latin import Ending
-from solver.reference.distance import kkt_residual
 from solver.reference.incremental import reference_of
-from solver.scenes import CATALOGUE, discretise
-from solver.study.quantities.finished import BROKEN, REFUSED
+from solver.scenes import CATALOGUE
+from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.random_runs import draw, random_case
 from solver.study.stability import (
     AT_ROUNDING,
     COLUMNS,
     METHODS,
+    Judge,
     Outcome,
     StabilityCase,
     Verdict,
@@ -30,6 +30,7 @@ from solver.study.stability import (
     extreme_cases,
     judge,
     judged_runs,
+    judges,
     last_lines,
     row_of,
 )
@@ -43,6 +44,8 @@ GOOD = Outcome(
     behaviour=1e-9,
     error_displacement=1e-9,
     error_force=1e-8,
+    laws=1e-5,
+    reference_laws=1e-14,
 )
 
 
@@ -51,29 +54,47 @@ def changed(**changes):
 
 
 @pytest.mark.parametrize(
-    ("outcome", "verdict"),
+    ("outcome", "verdict", "by"),
     [
-        (GOOD, Verdict.RIGHT),
-        (changed(error_force=1e-5), Verdict.WRONG),
-        (changed(error_displacement=0.5), Verdict.WRONG),
-        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.UNSOLVED),
-        (changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""), Verdict.WRONG),
-        (changed(ending=Ending.STALLED), Verdict.RIGHT),
-        (changed(error_force=math.nan), Verdict.WRONG),
-        (changed(error_displacement=math.nan), Verdict.WRONG),
-        (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
-        (changed(doubt="it is one of several", ending=BROKEN), Verdict.WRONG),
-        (Outcome(REFUSED, "load = 1 is refused"), Verdict.REFUSED),
-        (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG),
-        (changed(error_force=0.5, certified=True, residual=1e-13), Verdict.WRONG),
-        (changed(error_force=0.5, doubt="one", certified=True, residual=1e-13), Verdict.RIGHT),
-        (changed(certified=True, residual=2.0 * AT_ROUNDING), Verdict.WRONG),
-        (changed(certified=True, residual=3e-7, floor=3e-7), Verdict.RIGHT),
-        (changed(certified=True), Verdict.WRONG),
+        (GOOD, Verdict.RIGHT, Judge.REFERENCE),
+        (changed(error_force=1e-5), Verdict.WRONG, Judge.REFERENCE),
+        (changed(error_displacement=0.5), Verdict.WRONG, Judge.REFERENCE),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.UNSOLVED, Judge.NOTHING),
+        (
+            changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""),
+            Verdict.WRONG,
+            Judge.NOTHING,
+        ),
+        (changed(ending=Ending.STALLED), Verdict.RIGHT, Judge.REFERENCE),
+        (changed(error_force=math.nan), Verdict.WRONG, Judge.REFERENCE),
+        (changed(error_displacement=math.nan), Verdict.WRONG, Judge.REFERENCE),
+        (changed(doubt="one of several", error_force=math.nan), Verdict.UNCLEAR, Judge.NOTHING),
+        (changed(doubt="one of several", ending=BROKEN), Verdict.WRONG, Judge.NOTHING),
+        (Outcome(REFUSED, "load = 1 is refused"), Verdict.REFUSED, Judge.NOTHING),
+        (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG, Judge.NOTHING),
+        # Laws alone judge who is certified: the reference is found in the same way.
+        (changed(certified=True, laws=1e-13), Verdict.RIGHT, Judge.LAWS),
+        (changed(certified=True, error_force=0.0), Verdict.WRONG, Judge.LAWS),
+        (changed(certified=True, laws=2.0 * AT_ROUNDING), Verdict.WRONG, Judge.LAWS),
+        (changed(certified=True, laws=math.nan), Verdict.WRONG, Judge.LAWS),
+        (
+            changed(certified=True, laws=3e-7, reference_laws=3e-7, error_force=0.0),
+            Verdict.WRONG,
+            Judge.LAWS,
+        ),
+        (changed(error_force=0.5, certified=True, laws=1e-13), Verdict.RIGHT, Judge.LAWS),
+        (changed(laws=1e-13, doubt="no reference"), Verdict.RIGHT, Judge.LAWS),
+        # A reference that breaks a law is no judge, and says so in its doubt.
+        (
+            changed(reference_laws=1e-3, doubt="the reference breaks a law"),
+            Verdict.UNCLEAR,
+            Judge.NOTHING,
+        ),
+        (changed(reference_laws=math.nan), Verdict.WRONG, Judge.NOTHING),
     ],
 )
-def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
-    assert judge(outcome, 1e-6, 1e-6) is verdict
+def test_the_verdict_follows_from_laws_errors_and_status(outcome, verdict, by):
+    assert judge(outcome, 1e-6, 1e-6) == (verdict, by)
 
 
 def test_a_warning_breaks_a_run(monkeypatch):
@@ -128,15 +149,36 @@ def test_a_row_is_drawn_alike_whatever_was_drawn_before(scene):
     assert draw(scene, 3, 7).values() != draw(scene, 4, 7).values()
 
 
-@pytest.mark.parametrize("scene", SMALL)
-def test_the_equations_alone_tell_a_solution_from_what_is_near_it(scene):
-    problem = discretise(CATALOGUE[scene].checked(SMALL[scene]))
-    found = reference_of(problem)
-    weaker = dataclasses.replace(found, contact_force=0.999 * found.contact_force)
-    further = dataclasses.replace(found, displacement=1.001 * found.displacement)
-    assert kkt_residual(found, problem) < AT_ROUNDING
-    assert kkt_residual(weaker, problem) > 100.0 * AT_ROUNDING
-    assert kkt_residual(further, problem) > 100.0 * AT_ROUNDING
+@pytest.mark.parametrize("factor", [0.999, -1.0])
+def test_a_certified_answer_that_was_spoiled_is_wrong(monkeypatch, factor):
+    def spoiled_run(settings, **wanted):
+        made = finished_run(settings, **wanted)
+        iterate = made.iterate
+        assert made.solution.is_certified
+        spoiled = dataclasses.replace(iterate, force=factor * iterate.force)
+        solution = dataclasses.replace(made.solution, iterate=spoiled)
+        return dataclasses.replace(made, solution=solution)
+
+    for scene in ("bar", "block"):
+        case = StabilityCase("as it is", scene, SMALL[scene])
+        assert [row["judged_by"] for row in judged_runs([case])] == [Judge.LAWS]
+        with monkeypatch.context() as patch:
+            patch.setattr("solver.study.stability.finished_run", spoiled_run)
+            (row,) = judged_runs([case])
+        assert row["verdict"] == Verdict.WRONG
+        assert row["judged_by"] == Judge.LAWS
+
+
+def test_a_reference_that_breaks_a_law_judges_nobody(monkeypatch):
+    def weaker(problem, stop=None):
+        found = reference_of(problem)
+        return dataclasses.replace(found, contact_force=0.999 * found.contact_force)
+
+    monkeypatch.setattr("solver.study.quantities.finished.reference_of", weaker)
+    values = {**SMALL["bar"], "finish": "none", "accuracy": 1e-3}
+    (row,) = judged_runs([StabilityCase("by its own", "bar", values, error_force=0.1)])
+    assert row["verdict"] == Verdict.UNCLEAR
+    assert "the reference breaks a law (balance)" in row["doubt"]
 
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
@@ -148,5 +190,7 @@ def test_a_wrong_row_is_listed_with_what_repeats_it():
     assert wrong["command"] in text
     assert right["command"] not in text
     assert "1 of 2 runs pass" in text
+    judged = {name: runs for name, runs, _ in judges([wrong, right])[1:]}
+    assert judged == {"laws": "0", "reference": "2", "nothing": "0"}
     counted = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
     assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}
